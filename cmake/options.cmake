@@ -1,0 +1,12 @@
+# Compiler options of our own code, in one interface target.
+add_library(riffler_options INTERFACE)
+target_compile_options(
+  riffler_options
+  INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+            # Results decide topology and must agree between machines: no contraction into fused multiply-adds.
+            -ffp-contract=off)
+if(RIFFLER_WERROR)
+  target_compile_options(riffler_options INTERFACE -Werror)
+endif()
+# glm is used without its implicit conversions and with double precision throughout.
+target_compile_definitions(riffler_options INTERFACE GLM_FORCE_EXPLICIT_CTOR GLM_FORCE_XYZW_ONLY)

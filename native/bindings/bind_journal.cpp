@@ -1,0 +1,7 @@
+#include "bindings/bindings.hpp"
+
+namespace riffler {
+
+void bind_journal(py::module_&) {}
+
+}  // namespace riffler

@@ -1,0 +1,54 @@
+// What the binding files share: one bind_<topic> per folder of the core, and the conversions between numpy and it.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <optional>
+#include <string>
+
+#include "geom/progress.hpp"
+#include "geom/vec.hpp"
+
+namespace riffler {
+
+namespace py = pybind11;
+
+void bind_mesh(py::module_& m);
+void bind_tool(py::module_& m);
+void bind_volume(py::module_& m);
+void bind_program(py::module_& m);
+void bind_journal(py::module_& m);
+
+/// A numpy array of doubles in C order; any array-like converts.
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Throws ValueError naming `name` unless `array` has the shape (n, columns) and only finite values (naming the row).
+/// Returns n.
+std::size_t check_rows(const Doubles& array, std::size_t columns, const char* name);
+
+/// Three numbers from any sequence; ValueError naming `name`.
+Vec3 to_vec3(const py::object& object, const char* name);
+py::array_t<double> from_vec3(const Vec3& v);
+/// (n, 3) copy.
+py::array_t<double> from_vec3s(const std::vector<Vec3>& v);
+
+/// Hands a vector's storage to numpy without a copy; shape (rows, columns), or (rows,) for columns = 0.
+template <class T, class V>
+py::array_t<T> take(std::vector<V>&& values, std::size_t columns = 0) {
+  auto* owned = new std::vector<V>(std::move(values));
+  const py::capsule free(owned, [](void* p) { delete static_cast<std::vector<V>*>(p); });
+  const auto n = static_cast<py::ssize_t>(owned->size() * sizeof(V) / sizeof(T));
+  const auto wide = static_cast<py::ssize_t>(columns);
+  const T* data = reinterpret_cast<const T*>(owned->data());
+  if (wide == 0) return py::array_t<T>(n, data, free);
+  return py::array_t<T>({n / wide, wide}, data, free);
+}
+
+/// A Python callable as Progress, for calls that released the GIL: takes it back, lets Ctrl-C through, and cancels where
+/// the callable returns False (None and anything else go on). Empty for None, but Ctrl-C still works.
+Progress to_progress(const py::object& callable);
+
+}  // namespace riffler

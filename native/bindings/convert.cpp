@@ -1,0 +1,67 @@
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "bindings/bindings.hpp"
+
+namespace riffler {
+
+std::size_t check_rows(const Doubles& array, std::size_t columns, const char* name) {
+  if (array.ndim() != 2 || static_cast<std::size_t>(array.shape(1)) != columns) {
+    std::string shape;
+    for (py::ssize_t d = 0; d < array.ndim(); ++d) shape += (d ? ", " : "") + std::to_string(array.shape(d));
+    throw py::value_error(std::string(name) + " must have the shape (n, " + std::to_string(columns) + "), not (" +
+                          shape + (array.ndim() == 1 ? ",)" : ")"));
+  }
+  const std::size_t n = static_cast<std::size_t>(array.shape(0));
+  const double* p = array.data();
+  for (std::size_t i = 0; i < n * columns; ++i)
+    if (!std::isfinite(p[i])) throw py::value_error(std::string(name) + ", row " + std::to_string(i / columns) +
+                                                    ": not finite");
+  return n;
+}
+
+Vec3 to_vec3(const py::object& object, const char* name) {
+  Doubles array;
+  try {
+    array = py::cast<Doubles>(object);
+  } catch (const py::cast_error&) {
+    throw py::value_error(std::string(name) + " must be three numbers");
+  }
+  if (!array || array.ndim() != 1 || array.shape(0) != 3)
+    throw py::value_error(std::string(name) + " must be three numbers");
+  const Vec3 v{array.at(0), array.at(1), array.at(2)};
+  if (!finite(v)) throw py::value_error(std::string(name) + " must be finite");
+  return v;
+}
+
+py::array_t<double> from_vec3(const Vec3& v) {
+  py::array_t<double> out(3);
+  for (int k = 0; k < 3; ++k) out.mutable_at(k) = v[k];
+  return out;
+}
+
+py::array_t<double> from_vec3s(const std::vector<Vec3>& v) {
+  return take<double>(std::vector<Vec3>(v), 3);
+}
+
+Progress to_progress(const py::object& callable) {
+  // The function object must be released under the GIL, wherever the last copy of the Progress dies.
+  std::shared_ptr<py::object> held;
+  if (!callable.is_none())
+    held = std::shared_ptr<py::object>(new py::object(callable), [](py::object* p) {
+      const py::gil_scoped_acquire gil;
+      delete p;
+    });
+  using Clock = std::chrono::steady_clock;
+  return [held, last = Clock::time_point{}](double share) mutable {
+    const Clock::time_point now = Clock::now();
+    if (share < 1 && now - last < std::chrono::milliseconds(30)) return true;
+    last = now;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    return !held || !py::object((*held)(share)).is(py::bool_(false));
+  };
+}
+
+}  // namespace riffler

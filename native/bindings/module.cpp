@@ -1,0 +1,17 @@
+// The extension module riffler._core. Not public: the names that riffler exports are.
+#include "bindings/bindings.hpp"
+#include "geom/error.hpp"
+#include "geom/parallel.hpp"
+
+PYBIND11_MODULE(_core, m) {
+  using namespace riffler;
+  m.attr("__version__") = RIFFLER_VERSION;
+  py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError);
+  py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError);
+  m.def("thread_count", &thread_count, "Threads that parallel calls use: RIFFLER_THREADS or the CPU affinity.");
+  bind_mesh(m);
+  bind_tool(m);
+  bind_volume(m);
+  bind_program(m);
+  bind_journal(m);
+}

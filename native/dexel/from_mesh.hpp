@@ -1,0 +1,16 @@
+// Mesh → volume by winding number along each column.
+#pragma once
+
+#include "dexel/volume.hpp"
+#include "geom/progress.hpp"
+#include "mesh/mesh.hpp"
+
+namespace riffler {
+
+/// A volume over frame.box filled with the points whose absolute generalized winding number exceeds ½: spans end at
+/// crossings of the surface, or, in an opening of a broken part, where |w| passes ½. Rays on vertices, edges and walls
+/// are decided by a half-open rule on snapped coordinates, so a closed part has no odd ray at any alignment. What lies
+/// outside the box is clipped. Throws std::invalid_argument for a mesh that is invalid or has no volume.
+Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress = {});
+
+}  // namespace riffler

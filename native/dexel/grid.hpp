@@ -1,0 +1,65 @@
+// All rays of one direction, in tiles that snapshots share.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dexel/tile.hpp"
+#include "geom/vec.hpp"
+
+namespace riffler {
+
+/// Rays along `axis` in its cyclic frame (u, v, w): ray (i, j) stands at
+/// (lower.u + (i + ½) h, lower.v + (j + ½) h), 0 ≤ i < nu, 0 ≤ j < nv. Copying a grid copies pointers to tiles only.
+class Grid {
+ public:
+  /// An empty grid over `box` (world frame).
+  Grid(Axis axis, const Box3& box, double pitch, bool with_normals);
+
+  Axis axis() const { return axis_; }
+  double pitch() const { return pitch_; }
+  int nu() const { return nu_; }
+  int nv() const { return nv_; }
+  int tiles_u() const { return tiles_u_; }
+  int tiles_v() const { return tiles_v_; }
+  bool has_normals() const { return with_normals_; }
+  /// The box in the cyclic frame: x, y, z stand for u, v, w.
+  const Box3& box() const { return box_; }
+
+  double u(int i) const { return box_.lower.x + (i + 0.5) * pitch_; }
+  double v(int j) const { return box_.lower.y + (j + 0.5) * pitch_; }
+
+  std::size_t tile_count() const { return tiles_.size(); }
+  std::size_t tile_index(int tile_u, int tile_v) const { return static_cast<std::size_t>(tile_u) * tiles_v_ + tile_v; }
+  const Tile& tile(std::size_t index) const { return *tiles_[index]; }
+  const std::shared_ptr<const Tile>& shared_tile(std::size_t index) const { return tiles_[index]; }
+  void set_tile(std::size_t index, std::shared_ptr<const Tile> tile) { tiles_[index] = std::move(tile); }
+  /// The tile for writing: copied first where a snapshot, another volume or another place of this grid holds it too.
+  /// The caller gives it a fresh revision. Different tiles may be written by different threads.
+  Tile& writable(std::size_t index);
+
+  std::span<const Span> ray(int i, int j) const { return owner(i, j).ray(ray_index(i, j)); }
+  std::span<const SpanNormals> ray_normals(int i, int j) const { return owner(i, j).ray_normals(ray_index(i, j)); }
+  static int ray_index(int i, int j) { return (i % kTileSide) * kTileSide + j % kTileSide; }
+
+  /// Sum of all lengths × h², mm³; tile by tile, so the same for any number of threads.
+  double volume() const;
+  std::size_t span_count() const;
+  /// Bytes held, each shared tile counted once.
+  std::size_t nbytes() const;
+
+ private:
+  const Tile& owner(int i, int j) const { return *tiles_[tile_index(i / kTileSide, j / kTileSide)]; }
+
+  Axis axis_;
+  bool with_normals_;
+  double pitch_;
+  Box3 box_;
+  int nu_, nv_, tiles_u_, tiles_v_;
+  std::vector<std::shared_ptr<const Tile>> tiles_;
+};
+
+/// Rays along a side of length `extent`: max(1, round(extent / pitch)).
+int ray_count(double extent, double pitch);
+
+}  // namespace riffler

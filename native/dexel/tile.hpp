@@ -1,0 +1,63 @@
+// A square of 32 × 32 rays: the unit of sharing, copying on write, undo and re-meshing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dexel/span.hpp"
+#include "geom/interval.hpp"
+
+namespace riffler {
+
+inline constexpr int kTileSide = 32;
+inline constexpr int kTileRays = kTileSide * kTileSide;
+
+/// Rays of one tile in compressed rows: ray r = a · 32 + b (a along u, b along v) owns spans [offset[r], offset[r + 1]).
+/// A tile that more than one volume or snapshot holds is never written: Grid::writable copies it first.
+/// Rays of a border tile that lie beyond the grid are empty.
+struct Tile {
+  std::array<std::uint32_t, kTileRays + 1> offset{};
+  std::vector<Span> spans;
+  std::vector<SpanNormals> normals;  // as long as `spans`, or empty in a grid that stores none
+  Interval reach;                    // covers every span; may be larger after a cut, never smaller
+  std::uint64_t revision = 0;        // changes whenever the content does
+
+  std::span<const Span> ray(int r) const { return {spans.data() + offset[r], spans.data() + offset[r + 1]}; }
+  std::span<const SpanNormals> ray_normals(int r) const {
+    return normals.empty() ? std::span<const SpanNormals>{}
+                           : std::span<const SpanNormals>{normals.data() + offset[r], normals.data() + offset[r + 1]};
+  }
+  std::size_t nbytes() const;
+};
+
+/// A fresh revision number, greater than all before it in this process.
+std::uint64_t next_revision();
+
+/// Writes a tile ray by ray, in the order r = 0 … 1023; rays not written before `finish` are empty.
+class TileBuilder {
+ public:
+  explicit TileBuilder(bool with_normals) : with_normals_(with_normals) { clear(); }
+
+  /// Appends one span to the current ray. The caller keeps spans sorted and disjoint.
+  void add(const Span& span, const SpanNormals& normals = {}) {
+    tile_.spans.push_back(span);
+    if (with_normals_) tile_.normals.push_back(normals);
+    tile_.reach.include(span.near), tile_.reach.include(span.far);
+  }
+  /// Ends the current ray.
+  void next_ray() { tile_.offset[++rays_] = static_cast<std::uint32_t>(tile_.spans.size()); }
+  int rays() const { return rays_; }
+  /// The finished tile, with storage trimmed to its content and a fresh revision; the builder is empty again.
+  std::shared_ptr<Tile> finish();
+
+ private:
+  void clear();
+  bool with_normals_;
+  int rays_ = 0;
+  Tile tile_;
+};
+
+}  // namespace riffler

@@ -1,0 +1,21 @@
+// Closed intervals along a ray.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+namespace riffler {
+
+/// [near, far] along a ray; empty where near > far. The default is empty and joins as the neutral element.
+struct Interval {
+  double near = std::numeric_limits<double>::infinity();
+  double far = -std::numeric_limits<double>::infinity();
+
+  bool empty() const { return !(near <= far); }
+  double length() const { return empty() ? 0.0 : far - near; }
+  void include(double s) { near = std::min(near, s), far = std::max(far, s); }
+  Interval cut(const Interval& o) const { return {std::max(near, o.near), std::min(far, o.far)}; }
+  bool operator==(const Interval&) const = default;
+};
+
+}  // namespace riffler

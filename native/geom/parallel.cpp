@@ -1,0 +1,79 @@
+#include "geom/parallel.hpp"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace riffler {
+
+int thread_count() {
+  if (const char* text = std::getenv("RIFFLER_THREADS")) {
+    char* end = nullptr;
+    const long wanted = std::strtol(text, &end, 10);
+    if (end != text && *end == '\0' && wanted >= 1) return static_cast<int>(std::min(wanted, 256L));
+  }
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
+  return std::max(1U, std::thread::hardware_concurrency());
+}
+
+namespace {
+
+/// The state that the threads of one parallel_for share.
+struct Job {
+  std::size_t n, grain;
+  const std::function<void(std::size_t, std::size_t)>& body;
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> stop{false};
+  std::mutex mutex;
+  std::exception_ptr error;
+
+  /// Takes one chunk and runs it; false when none is left.
+  bool step() {
+    if (stop.load(std::memory_order_relaxed)) return false;
+    const std::size_t begin = next.fetch_add(grain);
+    if (begin >= n) return false;
+    try {
+      body(begin, std::min(n, begin + grain));
+    } catch (...) {
+      fail(std::current_exception());
+    }
+    return true;
+  }
+
+  void fail(std::exception_ptr e) {
+    const std::lock_guard lock(mutex);
+    if (!error) error = std::move(e);
+    stop = true;
+  }
+};
+
+}  // namespace
+
+void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
+                  const Progress& progress) {
+  if (n == 0) return;
+  grain = std::max<std::size_t>(1, grain);
+  Job job{n, grain, body, {}, {}, {}, {}};
+  const std::size_t chunks = (n + grain - 1) / grain;
+  const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(thread_count()), chunks) - 1;
+  std::vector<std::thread> threads;
+  threads.reserve(helpers);
+  for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back([&job] { while (job.step()) {} });
+  try {
+    while (job.step()) report(progress, static_cast<double>(std::min(job.next.load(), n)) / static_cast<double>(n));
+  } catch (...) {
+    job.fail(std::current_exception());
+  }
+  for (std::thread& t : threads) t.join();
+  if (job.error) std::rethrow_exception(job.error);
+}
+
+}  // namespace riffler

@@ -1,0 +1,27 @@
+#include "geom/pose.hpp"
+
+#include <cmath>
+
+namespace riffler {
+
+Motion::Motion(const Pose& from, const Pose& to) : from_(from), to_(to), angle_(0), rotation_(0), side_(0) {
+  const Vec3 cross = glm::cross(from.axis, to.axis);
+  const double sine = glm::length(cross), cosine = glm::dot(from.axis, to.axis);
+  // atan2 keeps its relative accuracy at both ends, where acos and asin lose half of their digits.
+  angle_ = std::atan2(sine, cosine);
+  if (sine > 0) {
+    const Vec3 normal = cross / sine;
+    rotation_ = angle_ * normal;
+    side_ = glm::cross(normal, from.axis);
+  } else {
+    angle_ = 0;
+  }
+}
+
+Vec3 Motion::axis(double t) const {
+  if (t == 1) return to_.axis;
+  if (angle_ == 0) return from_.axis;
+  return std::cos(t * angle_) * from_.axis + std::sin(t * angle_) * side_;
+}
+
+}  // namespace riffler

@@ -1,0 +1,16 @@
+// Volume → closed, outward, two-manifold mesh.
+#pragma once
+
+#include "dexel/volume.hpp"
+#include "geom/progress.hpp"
+#include "mesh/mesh.hpp"
+
+namespace riffler {
+
+/// The surface of the volume's material. Vertices are exact in float32, distinct, and no two triangles fold onto each
+/// other, so a binary STL that is read back and welded is the same closed mesh. The bytes are the same for any number
+/// of threads. An empty volume gives an empty mesh. Throws std::invalid_argument where the box lies so far from the
+/// origin that float32 cannot tell lattice points apart (|coordinate| ≥ 2²¹ h).
+Mesh to_mesh(const Volume& volume, const Progress& progress = {});
+
+}  // namespace riffler

@@ -1,0 +1,8 @@
+"""Riffler: sculpt with a pen as if milling, plan five-axis pencil cuts, take STL and NC code away.
+
+Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
+"""
+
+from ._core import Cancelled, FormatError, __version__
+
+__all__ = ["Cancelled", "FormatError", "__version__"]

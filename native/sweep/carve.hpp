@@ -1,0 +1,37 @@
+// Carving: a tool moves along poses and takes away what it sweeps.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dexel/volume.hpp"
+#include "geom/pose.hpp"
+#include "geom/progress.hpp"
+#include "tool/tool.hpp"
+
+namespace riffler {
+
+struct CarveOptions {
+  /// mm: every interval end lies within it, along its ray, of the exact swept surface; where the ray grazes, within it
+  /// in space. Moves without rotation are exact whatever it is.
+  double tolerance = 0.01;
+  /// s, one per move, or empty: no force.
+  std::vector<double> dt;
+  /// N·s/mm³: force per volume removed per second (methods: "Removal force").
+  double removal_constant = 0.05;
+  Progress progress;
+};
+
+/// What each move took away, from the rays that define Volume::volume().
+struct Cut {
+  std::vector<double> removed;  ///< mm³
+  std::vector<Vec3> force;      ///< N, on the tool, against its motion; zero unless dt was given
+  std::vector<Vec3> torque;     ///< N·mm about the tip at the end of the move
+};
+
+/// Carves poses.size() − 1 moves with the cutter over its full length; shank and holder never cut. Throws
+/// std::invalid_argument naming the row for poses that are not finite, axes whose length differs from 1 by 1e-6 or more,
+/// exactly opposite axes, a tolerance or dt that is not positive. Cancelled leaves the volume unchanged.
+Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options = {});
+
+}  // namespace riffler
