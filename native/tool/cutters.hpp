@@ -15,7 +15,7 @@ Tool fillet(double diameter, double corner_radius, double length);
 Tool taper(double tip_radius, double half_angle, double diameter, double length, bool flat_tip = false);
 /// A sharp tip, a cone up to `tip_height`, a second cone up to `diameter`, then a cylinder.
 Tool cone_end(double tip_half_angle, double tip_height, double half_angle, double diameter, double length);
-/// Any profile of lines and arcs.
-Tool profile(std::vector<ProfileSegment> segments);
+/// Any profile of lines and arcs, followed by a cylinder up to `length` where it ends below.
+Tool profile(std::vector<ProfileSegment> segments, double length);
 
 }  // namespace riffler::cutters

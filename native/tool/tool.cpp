@@ -1,0 +1,67 @@
+#include "tool/tool.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace riffler {
+
+namespace {
+
+void check_frusta(const std::vector<Frustum>& pieces, const char* what) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Frustum& f = pieces[i];
+    const std::string where = std::string(what) + " piece " + std::to_string(i) + ": ";
+    for (const double x : {f.z0, f.r0, f.z1, f.r1})
+      if (!std::isfinite(x)) throw std::invalid_argument(where + "not finite");
+    if (!(f.z0 < f.z1)) throw std::invalid_argument(where + "z0 must be less than z1");
+    if (f.r0 < 0 || f.r1 < 0 || f.r0 + f.r1 <= 0)
+      throw std::invalid_argument(where + "radii must not be negative, nor both 0");
+  }
+}
+
+std::string short_number(double x) {
+  std::string text = std::to_string(x);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+Tool::Tool(std::string kind, std::vector<std::pair<std::string, double>> parameters, Profile profile)
+    : kind_(std::move(kind)),
+      parameters_(std::move(parameters)),
+      profile_(std::move(profile)),
+      cutter_(profile_.pieces()) {
+  name_ = kind_ + " " + short_number(diameter());
+}
+
+Tool Tool::with_shank(const std::vector<Frustum>& pieces) const {
+  check_frusta(pieces, "shank");
+  Tool tool = *this;
+  tool.shank_ = pieces;
+  return tool;
+}
+
+Tool Tool::with_holder(const std::vector<Frustum>& pieces) const {
+  check_frusta(pieces, "holder");
+  Tool tool = *this;
+  tool.holder_ = pieces;
+  return tool;
+}
+
+Tool Tool::named(std::string name) const {
+  Tool tool = *this;
+  tool.name_ = std::move(name);
+  return tool;
+}
+
+std::vector<ToolPiece> Tool::assembly() const {
+  std::vector<ToolPiece> all;
+  for (const Piece& p : cutter_) all.push_back({Part::Cutter, p});
+  for (const Frustum& f : shank_) all.push_back({Part::Shank, f});
+  for (const Frustum& f : holder_) all.push_back({Part::Holder, f});
+  return all;
+}
+
+}  // namespace riffler
