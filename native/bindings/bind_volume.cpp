@@ -1,7 +1,193 @@
+// riffler.Volume
 #include "bindings/bindings.hpp"
+#include "bindings/shared_volume.hpp"
+#include "sweep/carve.hpp"
 
 namespace riffler {
 
-void bind_volume(py::module_&) {}
+namespace {
+
+/// A volume's state at one time; shares its tiles.
+struct Snapshot {
+  Volume volume;
+};
+
+std::shared_ptr<SharedVolume> share(Volume&& v) {
+  return std::make_shared<SharedVolume>(std::move(v));
+}
+
+std::shared_ptr<SharedVolume> block(const py::object& lower, const py::object& upper, double pitch,
+                                    const std::string& directions) {
+  const Frame frame{{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions};
+  return share(Volume::block(frame));
+}
+
+const Grid& grid_of(const Volume& volume, const std::string& direction) {
+  const std::vector<Axis> axes = parse_directions(direction);
+  const Grid* grid = axes.size() == 1 ? volume.grid(axes[0]) : nullptr;
+  if (!grid)
+    throw py::value_error("direction must be one of the volume's own, \"" + volume.frame().directions + "\", not \"" +
+                          direction + "\"");
+  return *grid;
+}
+
+/// Calls f(i, j) for every ray in C order.
+template <class F>
+void for_each_ray(const Grid& grid, const F& f) {
+  for (int i = 0; i < grid.nu(); ++i)
+    for (int j = 0; j < grid.nv(); ++j) f(i, j);
+}
+
+py::tuple intervals(SharedVolume& self, const std::string& direction) {
+  const Reading reading(self);
+  const Grid& grid = grid_of(reading.volume, direction);
+  py::array_t<std::uint32_t> counts({grid.nu(), grid.nv()});
+  py::array_t<double> spans({static_cast<py::ssize_t>(grid.span_count()), py::ssize_t{2}});
+  std::uint32_t* count = counts.mutable_data();
+  double* out = spans.mutable_data();
+  for_each_ray(grid, [&](int i, int j) {
+    const std::span<const Span> ray = grid.ray(i, j);
+    *count++ = static_cast<std::uint32_t>(ray.size());
+    for (const Span& s : ray) *out++ = s.near, *out++ = s.far;
+  });
+  return py::make_tuple(counts, spans);
+}
+
+py::array_t<double> normals(SharedVolume& self, const std::string& direction) {
+  const Reading reading(self);
+  const Grid& grid = grid_of(reading.volume, direction);
+  if (!grid.has_normals()) throw py::value_error("a volume of one direction stores no normals");
+  py::array_t<double> out({static_cast<py::ssize_t>(grid.span_count()), py::ssize_t{2}, py::ssize_t{3}});
+  double* p = out.mutable_data();
+  for_each_ray(grid, [&](int i, int j) {
+    for (const SpanNormals& n : grid.ray_normals(i, j))
+      for (const Vec3& v : {n.near.unpack(), n.far.unpack()})
+        for (int k = 0; k < 3; ++k) *p++ = v[k];
+  });
+  return out;
+}
+
+std::vector<Pose> to_poses(const Doubles& array) {
+  const std::size_t n = check_rows(array, 6, "poses");
+  std::vector<Pose> poses(n);
+  const double* p = array.data();
+  for (std::size_t i = 0; i < n; ++i, p += 6) poses[i] = {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
+  return poses;
+}
+
+std::vector<double> to_times(const py::object& dt, std::size_t moves) {
+  if (dt.is_none()) return {};
+  const Doubles array = py::cast<Doubles>(dt);
+  if (array.ndim() == 0) return std::vector<double>(moves, *array.data());
+  if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != moves)
+    throw py::value_error("dt must be a number or have the shape (" + std::to_string(moves) + ",), one per move");
+  return {array.data(), array.data() + moves};
+}
+
+Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance, const py::object& dt,
+                double removal_constant, const py::object& progress) {
+  const std::vector<Pose> path = to_poses(poses);
+  const CarveOptions options{tolerance, to_times(dt, path.empty() ? 0 : path.size() - 1), removal_constant,
+                             to_progress(progress)};
+  Writing writing(self);
+  const py::gil_scoped_release release;
+  return carve(writing.volume, tool, path, options);
+}
+
+py::dict stats(SharedVolume& self) {
+  Writing writing(self);
+  const Stats s = writing.volume.take_stats();
+  py::dict d;
+  d["moves"] = s.moves, d["steps"] = s.steps, d["tiles_visited"] = s.tiles_visited;
+  d["tiles_changed"] = s.tiles_changed, d["rays_tested"] = s.rays_tested, d["rays_changed"] = s.rays_changed;
+  d["tiles_meshed"] = s.tiles_meshed, d["triangles_tested"] = s.triangles_tested, d["bytes_copied"] = s.bytes_copied;
+  return d;
+}
+
+std::string describe(SharedVolume& self) {
+  const Reading reading(self);
+  const Volume& v = reading.volume;
+  std::string rays;
+  for (const Grid& g : v.grids())
+    rays += (rays.empty() ? "" : " + ") + std::to_string(g.nu()) + " × " + std::to_string(g.nv());
+  return "<riffler.Volume \"" + v.frame().directions + "\", pitch " +
+         py::cast<std::string>(py::str(py::float_(v.frame().pitch))) + " mm, " + rays + " rays>";
+}
+
+void bind_cut(py::module_& m) {
+  py::class_<Cut>(m, "Cut", "What each move of a carve took away; arrays with one row per move.")
+      .def_property_readonly(
+          "removed", [](const Cut& c) { return take<double>(std::vector<double>(c.removed)); }, "(n,) mm³.")
+      .def_property_readonly(
+          "force", [](const Cut& c) { return from_vec3s(c.force); },
+          "(n, 3) N on the tool, against its motion; zeros unless dt was given.")
+      .def_property_readonly(
+          "torque", [](const Cut& c) { return from_vec3s(c.torque); }, "(n, 3) N·mm about the tip at the move's end.")
+      .def("__len__", [](const Cut& c) { return c.removed.size(); });
+}
+
+}  // namespace
+
+void bind_volume(py::module_& m) {
+  bind_cut(m);
+  py::class_<Snapshot>(m, "Snapshot", "The state of a volume at one time; shares its tiles until they are written.")
+      .def_property_readonly("volume", [](const Snapshot& s) { return s.volume.volume(); })
+      .def_property_readonly("revision", [](const Snapshot& s) { return s.volume.revision(); })
+      .def_property_readonly("nbytes", [](const Snapshot& s) { return s.volume.nbytes(); });
+
+  py::class_<SharedVolume, std::shared_ptr<SharedVolume>>(m, "Volume",
+                                                          R"(A dexel volume: material as spans along parallel rays.
+
+``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
+normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
+(y, z), "y" rays (z, x). Lengths in mm.)")
+      .def_static("block", &block, py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z",
+                  "A box full of material. ValueError, before anything is allocated, if it does not fit in memory.")
+      .def_property_readonly("pitch", [](SharedVolume& v) { return v.volume.frame().pitch; })
+      .def_property_readonly("directions", [](SharedVolume& v) { return v.volume.frame().directions; })
+      .def_property_readonly("lower", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.lower); })
+      .def_property_readonly("upper", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.upper); })
+      .def_property_readonly(
+          "volume", [](SharedVolume& v) { return Reading(v).volume.volume(); },
+          "mm³: lengths of the z rays × h² (of the only rays, where there are no z rays).")
+      .def_property_readonly(
+          "nbytes", [](SharedVolume& v) { return Reading(v).volume.nbytes(); },
+          "Bytes held, shared tiles counted once.")
+      .def_property_readonly(
+          "revision", [](SharedVolume& v) { return Reading(v).volume.revision(); }, "Changes with the content.")
+      .def_property_readonly(
+          "rays",
+          [](SharedVolume& v) {
+            std::size_t n = 0;
+            for (const Grid& g : v.volume.grids()) n += static_cast<std::size_t>(g.nu()) * g.nv();
+            return n;
+          },
+          "Number of rays, all directions.")
+      .def("intervals", &intervals, py::arg("direction"),
+           "(counts (nu, nv) uint32, spans (counts.sum(), 2) [near, far]), rays in C order.")
+      .def("normals", &normals, py::arg("direction"),
+           "(spans, 2, 3): unit normals at the ends of the spans of ``intervals``; tri-dexel volumes only.")
+      .def("carve", &carve_poses, py::arg("tool"), py::arg("poses"), py::arg("tolerance") = 0.01,
+           py::arg("dt") = py::none(), py::arg("removal_constant") = CarveOptions{}.removal_constant,
+           py::arg("progress") = py::none(),
+           R"(Takes away what the cutter sweeps along ``poses`` (n, 6): tip xyz, unit axis xyz; n - 1 moves.
+
+``tolerance``: mm, for moves that turn the axis; others are exact. ``dt``: s, a number or (n - 1,), asks for force.
+``removal_constant``: N·s/mm³. Shank and holder never cut. ``progress``: called with the finished share; returning
+False cancels, raises Cancelled and leaves the volume as it was.)")
+      .def(
+          "snapshot", [](SharedVolume& v) { return Snapshot{Reading(v).volume.snapshot()}; },
+          "The state to come back to with restore(); costs pointers only.")
+      .def(
+          "restore", [](SharedVolume& v, const Snapshot& s) { Writing(v).volume.restore(s.volume); },
+          py::arg("snapshot"), "Back to a snapshot of this volume.")
+      .def(
+          "copy", [](SharedVolume& v) { return share(Reading(v).volume.snapshot()); },
+          "An independent volume; shares its tiles until one of the two is written.")
+      .def("__copy__", [](SharedVolume& v) { return share(Reading(v).volume.snapshot()); })
+      .def("__deepcopy__", [](SharedVolume& v, const py::dict&) { return share(Reading(v).volume.snapshot()); })
+      .def("stats", &stats, "Operation counters since the last call of stats().")
+      .def("__repr__", &describe);
+}
 
 }  // namespace riffler

@@ -47,8 +47,8 @@ py::array_t<T> take(std::vector<V>&& values, std::size_t columns = 0) {
   return py::array_t<T>({n / wide, wide}, data, free);
 }
 
-/// A Python callable as Progress, for calls that released the GIL: takes it back, lets Ctrl-C through, and cancels where
-/// the callable returns False (None and anything else go on). Empty for None, but Ctrl-C still works.
+/// A Python callable as Progress, for calls that released the GIL: takes it back, lets Ctrl-C through, and cancels
+/// where the callable returns False (None and anything else go on). Empty for None, but Ctrl-C still works.
 Progress to_progress(const py::object& callable);
 
 }  // namespace riffler

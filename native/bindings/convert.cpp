@@ -16,8 +16,8 @@ std::size_t check_rows(const Doubles& array, std::size_t columns, const char* na
   const std::size_t n = static_cast<std::size_t>(array.shape(0));
   const double* p = array.data();
   for (std::size_t i = 0; i < n * columns; ++i)
-    if (!std::isfinite(p[i])) throw py::value_error(std::string(name) + ", row " + std::to_string(i / columns) +
-                                                    ": not finite");
+    if (!std::isfinite(p[i]))
+      throw py::value_error(std::string(name) + ", row " + std::to_string(i / columns) + ": not finite");
   return n;
 }
 

@@ -6,7 +6,9 @@
 
 namespace riffler {
 
-int ray_count(double extent, double pitch) { return std::max(1, static_cast<int>(std::lround(extent / pitch))); }
+int ray_count(double extent, double pitch) {
+  return std::max(1, static_cast<int>(std::lround(extent / pitch)));
+}
 
 Grid::Grid(Axis axis, const Box3& box, double pitch, bool with_normals)
     : axis_(axis), with_normals_(with_normals), pitch_(pitch), box_(to_local(axis, box)) {

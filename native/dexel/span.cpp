@@ -6,7 +6,9 @@
 namespace riffler {
 
 namespace {
-double sign(double x) { return x < 0 ? -1.0 : 1.0; }
+double sign(double x) {
+  return x < 0 ? -1.0 : 1.0;
+}
 }  // namespace
 
 PackedNormal PackedNormal::pack(const Vec3& n) {

@@ -6,15 +6,15 @@
 namespace riffler {
 
 struct Stats {
-  std::uint64_t moves = 0;            ///< moves carved
-  std::uint64_t steps = 0;            ///< straight steps they were split into, over all pieces of the tool
-  std::uint64_t tiles_visited = 0;    ///< (tile, move) pairs whose rays were looked at
-  std::uint64_t tiles_changed = 0;    ///< tiles written
-  std::uint64_t rays_tested = 0;      ///< (ray, step) pairs intersected with a swept piece
-  std::uint64_t rays_changed = 0;     ///< of these, rays that lost material
-  std::uint64_t tiles_meshed = 0;     ///< tiles turned into triangles
-  std::uint64_t triangles_tested = 0; ///< triangles tested against rays or tools
-  std::uint64_t bytes_copied = 0;     ///< bytes of tiles copied on write
+  std::uint64_t moves = 0;             ///< moves carved
+  std::uint64_t steps = 0;             ///< straight steps they were split into, over all pieces of the tool
+  std::uint64_t tiles_visited = 0;     ///< (tile, move) pairs whose rays were looked at
+  std::uint64_t tiles_changed = 0;     ///< tiles written
+  std::uint64_t rays_tested = 0;       ///< (ray, step) pairs intersected with a swept piece
+  std::uint64_t rays_changed = 0;      ///< of these, rays that lost material
+  std::uint64_t tiles_meshed = 0;      ///< tiles turned into triangles
+  std::uint64_t triangles_tested = 0;  ///< triangles tested against rays or tools
+  std::uint64_t bytes_copied = 0;      ///< bytes of tiles copied on write
 
   Stats& operator+=(const Stats& o) {
     moves += o.moves, steps += o.steps, tiles_visited += o.tiles_visited, tiles_changed += o.tiles_changed;

@@ -15,9 +15,9 @@ namespace riffler {
 inline constexpr int kTileSide = 32;
 inline constexpr int kTileRays = kTileSide * kTileSide;
 
-/// Rays of one tile in compressed rows: ray r = a · 32 + b (a along u, b along v) owns spans [offset[r], offset[r + 1]).
-/// A tile that more than one volume or snapshot holds is never written: Grid::writable copies it first.
-/// Rays of a border tile that lie beyond the grid are empty.
+/// Rays of one tile in compressed rows: ray r = a · 32 + b (a along u, b along v) owns spans [offset[r], offset[r +
+/// 1]). A tile that more than one volume or snapshot holds is never written: Grid::writable copies it first. Rays of a
+/// border tile that lie beyond the grid are empty.
 struct Tile {
   std::array<std::uint32_t, kTileRays + 1> offset{};
   std::vector<Span> spans;

@@ -63,7 +63,8 @@ double estimated_bytes(const Frame& frame) {
   double bytes = 0;
   for (const Axis axis : axes) {
     const Vec3 size = to_local(axis, frame.box).size();
-    bytes += std::max(1.0, std::round(size.x / frame.pitch)) * std::max(1.0, std::round(size.y / frame.pitch)) * per_ray;
+    bytes +=
+        std::max(1.0, std::round(size.x / frame.pitch)) * std::max(1.0, std::round(size.y / frame.pitch)) * per_ray;
   }
   return bytes;
 }

@@ -66,7 +66,11 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
   const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(thread_count()), chunks) - 1;
   std::vector<std::thread> threads;
   threads.reserve(helpers);
-  for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back([&job] { while (job.step()) {} });
+  for (std::size_t i = 0; i < helpers; ++i)
+    threads.emplace_back([&job] {
+      while (job.step()) {
+      }
+    });
   try {
     while (job.step()) report(progress, static_cast<double>(std::min(job.next.load(), n)) / static_cast<double>(n));
   } catch (...) {

@@ -27,9 +27,7 @@ class Motion {
   /// Rotation vector of the whole motion: unit normal of the great circle times the angle; zero if there is none.
   const Vec3& rotation() const { return rotation_; }
   /// Velocity, mm per unit of t, of the tool's material point that is at `p` at time t.
-  Vec3 velocity(const Vec3& p, double t) const {
-    return (to_.tip - from_.tip) + glm::cross(rotation_, p - tip(t));
-  }
+  Vec3 velocity(const Vec3& p, double t) const { return (to_.tip - from_.tip) + glm::cross(rotation_, p - tip(t)); }
 
  private:
   Pose from_, to_;

@@ -1,8 +1,8 @@
 // Vectors, matrices and boxes: GLM in double precision under the names that the rest of the core uses.
 #pragma once
 
-#include <glm/glm.hpp>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <limits>
 
 namespace riffler {
@@ -29,7 +29,9 @@ struct Box3 {
   }
 };
 
-inline bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// The three ray directions. A grid of direction D works in the *cyclic frame* of D: local (u, v, w) with w along the
 /// ray: "x" → (y, z, x), "y" → (z, x, y), "z" → (x, y, z). The change of frame is a rotation, so it keeps handedness.
@@ -38,21 +40,29 @@ enum class Axis : unsigned char { X = 0, Y = 1, Z = 2 };
 /// World → cyclic frame of `axis`.
 inline Vec3 to_local(Axis axis, const Vec3& p) {
   switch (axis) {
-    case Axis::X: return {p.y, p.z, p.x};
-    case Axis::Y: return {p.z, p.x, p.y};
-    default: return p;
+    case Axis::X:
+      return {p.y, p.z, p.x};
+    case Axis::Y:
+      return {p.z, p.x, p.y};
+    default:
+      return p;
   }
 }
 
 /// Cyclic frame of `axis` → world.
 inline Vec3 to_world(Axis axis, const Vec3& p) {
   switch (axis) {
-    case Axis::X: return {p.z, p.x, p.y};
-    case Axis::Y: return {p.y, p.z, p.x};
-    default: return p;
+    case Axis::X:
+      return {p.z, p.x, p.y};
+    case Axis::Y:
+      return {p.y, p.z, p.x};
+    default:
+      return p;
   }
 }
 
-inline Box3 to_local(Axis axis, const Box3& b) { return {to_local(axis, b.lower), to_local(axis, b.upper)}; }
+inline Box3 to_local(Axis axis, const Box3& b) {
+  return {to_local(axis, b.lower), to_local(axis, b.upper)};
+}
 
 }  // namespace riffler

@@ -30,8 +30,8 @@ struct Cut {
 };
 
 /// Carves poses.size() − 1 moves with the cutter over its full length; shank and holder never cut. Throws
-/// std::invalid_argument naming the row for poses that are not finite, axes whose length differs from 1 by 1e-6 or more,
-/// exactly opposite axes, a tolerance or dt that is not positive. Cancelled leaves the volume unchanged.
+/// std::invalid_argument naming the row for poses that are not finite, axes whose length differs from 1 by 1e-6 or
+/// more, exactly opposite axes, a tolerance or dt that is not positive. Cancelled leaves the volume unchanged.
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options = {});
 
 }  // namespace riffler

@@ -8,7 +8,8 @@ namespace riffler::cutters {
 namespace {
 
 void need_positive(double x, const char* name) {
-  if (!std::isfinite(x) || !(x > 0)) throw std::invalid_argument(std::string(name) + " must be a positive length in mm");
+  if (!std::isfinite(x) || !(x > 0))
+    throw std::invalid_argument(std::string(name) + " must be a positive length in mm");
 }
 
 void need_angle(double x, const char* name) {
@@ -23,8 +24,12 @@ void need_length(double length, double height) {
                                 std::to_string(height) + " mm)");
 }
 
-ProfileSegment line(double r, double z) { return {{r, z}, {}}; }
-ProfileSegment arc(double r, double z, double cr, double cz) { return {{r, z}, Vec2{cr, cz}}; }
+ProfileSegment line(double r, double z) {
+  return {{r, z}, {}};
+}
+ProfileSegment arc(double r, double z, double cr, double cz) {
+  return {{r, z}, Vec2{cr, cz}};
+}
 
 /// `segments`, then the cylinder up to `length`.
 Profile up_to(std::vector<ProfileSegment> segments, double length) {

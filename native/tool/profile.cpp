@@ -15,7 +15,9 @@ namespace {
 
 /// An arc of a profile whose heights do not fall lies wholly on one side of its centre: to the right it bulges out of
 /// the solid (convex), to the left it is a hollow.
-bool bulges(const Vec2& from, const Vec2& to, const Vec2& centre) { return from.x + to.x >= 2 * centre.x; }
+bool bulges(const Vec2& from, const Vec2& to, const Vec2& centre) {
+  return from.x + to.x >= 2 * centre.x;
+}
 
 void check_arc(std::size_t i, const Vec2& from, const Vec2& to, const Vec2& centre) {
   const double r = glm::length(from - centre), slack = 1e-6 * r;

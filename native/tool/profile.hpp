@@ -9,8 +9,8 @@
 
 namespace riffler {
 
-/// One step of a profile, from the end of the one before to `to` = (radius, height): a straight line, or, where `centre`
-/// is given, an arc about it, the shorter way round.
+/// One step of a profile, from the end of the one before to `to` = (radius, height): a straight line, or, where
+/// `centre` is given, an arc about it, the shorter way round.
 struct ProfileSegment {
   Vec2 to;
   std::optional<Vec2> centre;
@@ -27,8 +27,8 @@ class Profile {
   double length() const { return segments_.back().to.y; }
   double max_radius() const { return max_radius_; }
 
-  /// Convex pieces whose union is the cutter, from the tip upwards. Lines and outward arcs are exact; an inward (concave)
-  /// arc becomes truncated cones that leave at most `kConcaveTolerance` of it.
+  /// Convex pieces whose union is the cutter, from the tip upwards. Lines and outward arcs are exact; an inward
+  /// (concave) arc becomes truncated cones that leave at most `kConcaveTolerance` of it.
   std::vector<Piece> pieces() const;
 
   static constexpr double kConcaveTolerance = 1e-3;  // mm
