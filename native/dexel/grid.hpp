@@ -26,6 +26,12 @@ class Grid {
   /// The box in the cyclic frame: x, y, z stand for u, v, w.
   const Box3& box() const { return box_; }
 
+  /// Where algorithms put ray (i, j): a shade beside its place, so that rays exactly on a wall, an edge or a vertex are
+  /// decided alike everywhere: of two walls a whole number of pitches apart, one takes the ray and the other leaves it.
+  static constexpr double kRayShift = 5e-10;  // pitches, along v; 0.7 of it along u
+  double shifted_u(int i) const { return u(i) + 0.7 * kRayShift * pitch_; }
+  double shifted_v(int j) const { return v(j) + kRayShift * pitch_; }
+
   double u(int i) const { return box_.lower.x + (i + 0.5) * pitch_; }
   double v(int j) const { return box_.lower.y + (j + 0.5) * pitch_; }
 

@@ -160,10 +160,10 @@ class GridCarver {
     const auto [u0, u1] = indices(step.body.rows(), grid_.box().lower.x, grid_.nu());
     const int first_u = std::max(u0, tile_u * kTileSide), last_u = std::min(u1, tile_u * kTileSide + kTileSide - 1);
     for (int i = first_u; i <= last_u; ++i) {
-      const double u = grid_.u(i);
+      const double u = grid_.shifted_u(i);
       const auto [v0, v1] = indices(step.body.row(u), grid_.box().lower.y, grid_.nv());
       const int first_v = std::max(v0, tile_v * kTileSide), last_v = std::min(v1, tile_v * kTileSide + kTileSide - 1);
-      for (int j = first_v; j <= last_v; ++j) cut_ray(work, cut, step, i, j, u, grid_.v(j));
+      for (int j = first_v; j <= last_v; ++j) cut_ray(work, cut, step, i, j, u, grid_.shifted_v(j));
     }
   }
 
