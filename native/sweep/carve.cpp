@@ -71,8 +71,8 @@ class GridCarver {
     for (std::size_t m = 0; m < motions_.size(); ++m) {
       for (const Piece& piece : tool.cutter())
         for_each_step(piece, motions_[m], static_cast<std::uint32_t>(m), grid_.box(), options_.tolerance,
-                      [&](const Step& step) {
-                        steps_.push_back(step);
+                      [&](Step&& step) {
+                        steps_.push_back(std::move(step));
                         if (steps_.size() == kBatch) flush(), moves_done(m);
                       });
     }
@@ -94,7 +94,7 @@ class GridCarver {
     if (steps_.empty()) return;
     std::vector<Work> work = assign();
     double rays = 0;
-    for (const Step& s : steps_) rays += s.body.rows().length() * s.body.columns().length();
+    for (const Step& s : steps_) rays += s.footprint().rows().length() * s.footprint().columns().length();
     rays /= grid_.pitch() * grid_.pitch();
     const auto body = [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) cut_tile(work[k]);
@@ -112,9 +112,9 @@ class GridCarver {
   std::vector<Work> assign() {
     pairs_.clear();
     for (std::size_t k = 0; k < steps_.size(); ++k) {
-      const SweptPiece& body = steps_[k].body;
-      const auto [u0, u1] = indices(body.rows(), grid_.box().lower.x, grid_.nu());
-      const auto [v0, v1] = indices(body.columns(), grid_.box().lower.y, grid_.nv());
+      const Footprint& footprint = steps_[k].footprint();
+      const auto [u0, u1] = indices(footprint.rows(), grid_.box().lower.x, grid_.nu());
+      const auto [v0, v1] = indices(footprint.columns(), grid_.box().lower.y, grid_.nv());
       if (u0 > u1 || v0 > v1) continue;
       for (int a = u0 / kTileSide; a <= u1 / kTileSide; ++a)
         for (int b = v0 / kTileSide; b <= v1 / kTileSide; ++b) pairs_.emplace_back(grid_.tile_index(a, b), k);
@@ -143,9 +143,9 @@ class GridCarver {
     std::uint32_t last_move = ~0U;
     for (std::size_t k = work.begin; k < work.end; ++k) {
       const Step& step = steps_[pairs_[k].second];
-      if (tile.reach.cut(step.body.height()).empty()) continue;  // the tool stays above or below the tile
-      work.stats.tiles_visited += step.move != last_move;
-      last_move = step.move;
+      if (tile.reach.cut(step.footprint().height()).empty()) continue;  // the tool stays above or below the tile
+      work.stats.tiles_visited += step.move() != last_move;
+      last_move = step.move();
       cut_step(work, cut, step);
     }
     if (!cut.changed()) return;
@@ -157,11 +157,11 @@ class GridCarver {
   void cut_step(Work& work, TileCut& cut, const Step& step) const {
     const int tile_u = static_cast<int>(work.tile) / grid_.tiles_v(),
               tile_v = static_cast<int>(work.tile) % grid_.tiles_v();
-    const auto [u0, u1] = indices(step.body.rows(), grid_.box().lower.x, grid_.nu());
+    const auto [u0, u1] = indices(step.footprint().rows(), grid_.box().lower.x, grid_.nu());
     const int first_u = std::max(u0, tile_u * kTileSide), last_u = std::min(u1, tile_u * kTileSide + kTileSide - 1);
     for (int i = first_u; i <= last_u; ++i) {
       const double u = grid_.shifted_u(i);
-      const auto [v0, v1] = indices(step.body.row(u), grid_.box().lower.y, grid_.nv());
+      const auto [v0, v1] = indices(step.footprint().row(u), grid_.box().lower.y, grid_.nv());
       const int first_v = std::max(v0, tile_v * kTileSide), last_v = std::min(v1, tile_v * kTileSide + kTileSide - 1);
       for (int j = first_v; j <= last_v; ++j) cut_ray(work, cut, step, i, j, u, grid_.shifted_v(j));
     }
@@ -170,36 +170,44 @@ class GridCarver {
   void cut_ray(Work& work, TileCut& cut, const Step& step, int i, int j, double u, double v) const {
     const int r = Grid::ray_index(i, j);
     const std::span<const Span> spans = cut.ray(r);
-    if (spans.empty() || spans.front().near >= step.body.height().far || spans.back().far <= step.body.height().near)
+    if (spans.empty() || spans.front().near >= step.footprint().height().far ||
+        spans.back().far <= step.footprint().height().near)
       return;
     ++work.stats.rays_tested;
-    SweptHit near, far;
-    if (!step.body.hit(u, v, near, far)) return;
+    SweptIntervals swept;
+    step.hit(u, v, {spans.front().near, spans.back().far}, swept);
+    bool changed = false;
+    for (const SweptInterval& interval : swept) changed |= cut_interval(work, cut, step, r, u, v, interval);
+    work.stats.rays_changed += changed;
+  }
+
+  bool cut_interval(Work& work, TileCut& cut, const Step& step, int r, double u, double v,
+                    const SweptInterval& interval) const {
     const auto normals = [&](PackedNormal& at_near, PackedNormal& at_far) {
       // The material's new surface looks into the tool.
-      at_near = PackedNormal::pack(to_world(grid_.axis(), -step.body.normal(u, v, near)));
-      at_far = PackedNormal::pack(to_world(grid_.axis(), -step.body.normal(u, v, far)));
+      at_near = PackedNormal::pack(to_world(grid_.axis(), -step.normal(u, v, interval.near, interval.near_t)));
+      at_far = PackedNormal::pack(to_world(grid_.axis(), -step.normal(u, v, interval.far, interval.far_t)));
     };
     const auto removed = [&](double lo, double hi) {
-      if (measured_) add_share(work, step, {u, v, (lo + hi) / 2}, hi - lo);
+      if (measured_) add_share(work, step, (interval.near_t + interval.far_t) / 2, {u, v, (lo + hi) / 2}, hi - lo);
     };
-    work.stats.rays_changed += cut.subtract(r, {near.s, far.s}, normals, removed);
+    return cut.subtract(r, {interval.near.s, interval.far.s}, normals, removed);
   }
 
   /// (3.18)–(3.24) with k per volume and second; the direction is against the velocity of the tool's material point at
   /// the piece, which contains the source's cases I–IV, and along the axis where that point stands still.
-  void add_share(Work& work, const Step& step, const Vec3& p, double length) const {
-    if (work.shares.empty() || work.shares.back().move != step.move)
-      work.shares.push_back({step.move, 0, Vec3(0), Vec3(0)});
+  void add_share(Work& work, const Step& step, double t, const Vec3& p, double length) const {
+    if (work.shares.empty() || work.shares.back().move != step.move())
+      work.shares.push_back({step.move(), 0, Vec3(0), Vec3(0)});
     Share& share = work.shares.back();
     const double removed = length * grid_.pitch() * grid_.pitch();
     share.removed += removed;
     if (options_.dt.empty()) return;
-    const Motion& motion = motions_[step.move];
-    const Vec3 velocity = motion.velocity(p, step.t);
+    const Motion& motion = motions_[step.move()];
+    const Vec3 velocity = motion.velocity(p, t);
     const double speed = glm::length(velocity);
-    const Vec3 direction = speed > 0 ? -velocity / speed : motion.axis(step.t);
-    const Vec3 force = direction * (options_.removal_constant * removed / options_.dt[step.move]);
+    const Vec3 direction = speed > 0 ? -velocity / speed : motion.axis(t);
+    const Vec3 force = direction * (options_.removal_constant * removed / options_.dt[step.move()]);
     share.force += force;
     share.torque += glm::cross(p - motion.to().tip, force);
   }

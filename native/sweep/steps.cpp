@@ -7,10 +7,10 @@ namespace riffler {
 
 namespace {
 
-/// Share of the tolerance that the displacement in space may use. Where moving a ray sideways by the tolerance moves
+/// Share of the tolerance that the departure from convexity may use. Where moving a ray sideways by the tolerance moves
 /// its ends by at most twice that, the surface's slope against the ray is at most 2, so a displacement d in space moves
-/// an end along the ray by at most √5 d: 0.44 would do.
-constexpr double kShare = 0.4;
+/// an end along the ray by at most √5 d; 0.1 more is left to the search for extremes.
+constexpr double kShare = 0.35;
 
 /// Greatest height on the axis at which the tool can meet the box during the move. f(t) = (corner − tip) · axis has
 /// |f″| ≤ 2 P φ + D φ², so it exceeds its ends' greater value by at most an eighth of that.
@@ -35,58 +35,48 @@ Piece below(const Piece& piece, double height) {
   return Frustum{f->z0, f->r0, height, radius_at(piece, height)};
 }
 
-struct Pivot {
-  double height, lever;
-};
-
-/// The point of the axis about which the piece is turned from step to step, and how far its points are from there. A
-/// whole ball does not change when it is turned about its centre, a torus moves as its disc does.
-Pivot pivot_of(const Piece& piece) {
-  if (const auto* r = std::get_if<Round>(&piece)) {
-    const bool whole = r->z0 <= r->zc - r->r && r->z1 >= r->zc + r->r;
-    if (whole && r->e >= 0) return {r->zc, r->e};
+void turning_steps(const Piece& piece, const Motion& motion, std::uint32_t move, const Box3& box, double tolerance,
+                   const std::function<void(Step&&)>& sink) {
+  const double lever = std::hypot(std::max(std::abs(bottom(piece)), std::abs(top(piece))), max_radius(piece));
+  const double way = glm::length(motion.to().tip - motion.from().tip);
+  const std::uint64_t n = part_count(motion.angle(), way, lever, kShare * tolerance);
+  for (std::uint64_t k = 0; k < n; ++k) {
+    const double t0 = static_cast<double>(k) / static_cast<double>(n);
+    const double t1 = static_cast<double>(k + 1) / static_cast<double>(n);
+    const Footprint footprint(piece, {motion.at(t0), motion.at(t1)}, tolerance);
+    if (footprint.overlaps(box)) sink(Step(move, footprint, TurningPiece(piece, motion, t0, t1, tolerance)));
   }
-  const double half = (top(piece) - bottom(piece)) / 2;
-  return {bottom(piece) + half, std::hypot(half, max_radius(piece))};
-}
-
-bool touches(const SweptPiece& body, const Box3& box) {
-  return body.rows().near <= box.upper.x && body.rows().far >= box.lower.x && body.columns().near <= box.upper.y &&
-         body.columns().far >= box.lower.y && body.height().near <= box.upper.z && body.height().far >= box.lower.z;
 }
 
 }  // namespace
 
-std::uint64_t step_count(double angle, double lever, double pivot, double bound) {
-  if (angle == 0) return 1;
-  // The positive root of bound · N² − (lever φ / 2) N − |pivot| φ² / 8 = 0.
-  const double a = lever * angle / 2, b = std::abs(pivot) * angle * angle / 8;
-  const double n = (a + std::sqrt(a * a + 4 * bound * b)) / (2 * bound);
-  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(std::min(n, 1e15))));
+void Step::hit(double u, double v, const Interval& material, SweptIntervals& out) const {
+  if (const auto* turning = std::get_if<TurningPiece>(&body_)) return turning->hit(u, v, material, out);
+  SweptInterval interval;
+  if (std::get<SweptPiece>(body_).hit(u, v, interval.near, interval.far)) out.add(interval);
+}
+
+Vec3 Step::normal(double u, double v, const SweptHit& hit, double t) const {
+  if (const auto* turning = std::get_if<TurningPiece>(&body_)) return turning->normal(u, v, hit, t);
+  return std::get<SweptPiece>(body_).normal(u, v, hit);
+}
+
+std::uint64_t part_count(double angle, double way, double lever, double bound) {
+  const double n = std::sqrt((lever * angle + 2 * way) * angle / (2 * bound));
+  // Half a radian a part at most keeps silhouettes apart however loose the tolerance.
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(std::min(std::max(n, 2 * angle), 1e12))));
 }
 
 void for_each_step(const Piece& piece, const Motion& motion, std::uint32_t move, const Box3& box, double tolerance,
-                   const std::function<void(const Step&)>& sink) {
+                   const std::function<void(Step&&)>& sink) {
   const double height = highest_contact(motion, box);
   if (height <= bottom(piece)) return;
   const Piece low = below(piece, height);
-  if (motion.angle() == 0) {
-    const Step step{move, 0.5,
-                    SweptPiece(low, motion.from().tip, motion.from().axis, motion.to().tip - motion.from().tip)};
-    if (touches(step.body, box)) sink(step);
-    return;
-  }
-  const Pivot pivot = pivot_of(low);
-  const std::uint64_t n = step_count(motion.angle(), pivot.lever, pivot.height, kShare * tolerance);
-  const auto at = [&](double t) { return motion.tip(t) + pivot.height * motion.axis(t); };
-  Vec3 from = at(0);
-  for (std::uint64_t k = 0; k < n; ++k) {
-    const double t = (static_cast<double>(k) + 0.5) / static_cast<double>(n);
-    const Vec3 axis = motion.axis(t), to = at(static_cast<double>(k + 1) / static_cast<double>(n));
-    const Step step{move, t, SweptPiece(low, from - pivot.height * axis, axis, to - from)};
-    if (touches(step.body, box)) sink(step);
-    from = to;
-  }
+  if (motion.angle() > 0) return turning_steps(low, motion, move, box, tolerance, sink);
+  const Footprint footprint(low, {motion.from(), motion.to()}, 0);
+  const Pose& from = motion.from();
+  if (footprint.overlaps(box))
+    sink(Step(move, footprint, SweptPiece(low, from.tip, from.axis, motion.to().tip - from.tip)));
 }
 
 }  // namespace riffler

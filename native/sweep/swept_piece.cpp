@@ -50,46 +50,15 @@ SweptPiece::SweptPiece(const Piece& piece, const Vec3& tip, const Vec3& axis, co
   } else {
     kind_ = Kind::Frustum;
   }
-  set_bounds(piece);
 }
 
-void SweptPiece::set_bounds(const Piece& piece) {
-  thickness_ = max_radius(piece);
-  const bool whole_ball = kind_ == Kind::Ball && !cut_bottom_ && !cut_top_;
-  // Of a whole ball the axis that matters is one point.
-  const double low = whole_ball ? zc_ : z0_, high = whole_ball ? zc_ : z1_;
-  const Vec3 a = tip_ + low * axis_, b = tip_ + high * axis_, c = direction_ * way_;
-  const Vec3 ends[4] = {a, b, b + c, a + c};
-  for (int k = 0; k < 4; ++k) {
-    corner_[k] = {ends[k].x, ends[k].y};
-    rows_.include(ends[k].x - thickness_), rows_.include(ends[k].x + thickness_);
-    columns_.include(ends[k].y - thickness_), columns_.include(ends[k].y + thickness_);
-    const double reach = whole_ball ? thickness_ : thickness_ * tilt_;
-    height_.include(ends[k].z - reach), height_.include(ends[k].z + reach);
-  }
-}
-
-Interval SweptPiece::row(double u) const {
-  Interval out;
-  for (int k = 0; k < 4; ++k) {
-    const Vec2 p = corner_[k], q = corner_[(k + 1) % 4], edge = q - p;
-    const double du = u - p.x, half = thickness_ * thickness_ - du * du;
-    if (half >= 0) out.include(p.y - std::sqrt(half)), out.include(p.y + std::sqrt(half));
-    const double length = glm::length(edge);
-    if (length == 0) continue;
-    // Both long sides of the thickened edge: v is linear in u along them.
-    const Vec2 side = Vec2(-edge.y, edge.x) * (thickness_ / length);
-    for (const Vec2 from : {p + side, p - side}) {
-      const double t = edge.x == 0 ? -1 : (u - from.x) / edge.x;
-      if (t >= 0 && t <= 1) out.include(from.y + t * edge.y);
-    }
-  }
-  return out;
+SweptPiece::Ray SweptPiece::ray(double u, double v) const {
+  const double du = u - tip_.x, dv = v - tip_.y;
+  return {du * e1_.x + dv * e1_.y, du * e2_.x + dv * e2_.y, du * axis_.x + dv * axis_.y, axis_.z};
 }
 
 bool SweptPiece::hit(double u, double v, SweptHit& near, SweptHit& far) const {
-  const double du = u - tip_.x, dv = v - tip_.y;
-  const Ray ray{du * e1_.x + dv * e1_.y, du * e2_.x + dv * e2_.y, du * axis_.x + dv * axis_.y, axis_.z};
+  const Ray ray = this->ray(u, v);
   Extremes out;
   switch (kind_) {
     case Kind::Frustum:
@@ -215,6 +184,25 @@ void SweptPiece::ball(const Ray& ray, Extremes& out) const {
     const double t = p0 + s * p1, z = ray.z + ray.oz * s - mo_ * t;
     if (t >= 0 && t <= way_ && (!cut || (z >= z0_ && z <= z1_))) out.add(s, t, Surface::Lateral);
   }
+}
+
+double SweptPiece::clearance(double u, double v, double beyond) const {
+  const Ray ray = this->ray(u, v);
+  const double low = z0_ - beyond, high = z1_ + beyond;
+  const Interval inside = slab(ray.z - low, ray.oz, high - low);
+  if (inside.empty()) return std::max(low - ray.z, ray.z - high) + beyond;
+  const auto clamp = [&](double s) { return std::clamp(s, inside.near, inside.far); };
+  if (kind_ == Kind::Torus) return round_clearance(ray, inside);
+  if (kind_ == Kind::Ball) {
+    const double z = ray.z - zc_, s = clamp(-(ray.x * tilt_ + z * ray.oz));
+    return glm::length(Vec3(ray.x + s * tilt_, ray.y, z + s * ray.oz)) - r_;
+  }
+  // ρ − k is convex along the ray and least where dρ/ds = dk/ds.
+  const double grow = slope_ * ray.oz, ratio = tilt_ > 0 ? grow / tilt_ : kInfinity;
+  const double s = std::abs(ratio) < 1 ? clamp((ratio * std::abs(ray.y) / std::sqrt(1 - ratio * ratio) - ray.x) / tilt_)
+                                       : (grow > 0 ? inside.far : inside.near);
+  const double k = r0_ + slope_ * (ray.z + s * ray.oz - z0_);
+  return (std::hypot(ray.x + s * tilt_, ray.y) - k) / std::hypot(1.0, slope_);
 }
 
 Vec3 SweptPiece::normal(double u, double v, const SweptHit& hit) const {

@@ -19,7 +19,7 @@ enum class Surface : unsigned char {
 /// One end of the interval in which a ray meets the swept body.
 struct SweptHit {
   double s = 0;    ///< coordinate along the ray
-  double way = 0;  ///< how far the tool has moved along the step there, mm
+  double way = 0;  ///< how far the tool has moved along the straight way there, mm
   Surface surface = Surface::Lateral;
 };
 
@@ -40,13 +40,10 @@ class SweptPiece {
   bool hit(double u, double v, SweptHit& near, SweptHit& far) const;
   /// Unit normal, out of the body, at a hit of the ray through (u, v).
   Vec3 normal(double u, double v, const SweptHit& hit) const;
-  /// Range of the third coordinate that the body lies in (not always tight).
-  const Interval& height() const { return height_; }
-  /// Range of v in which rays with this u can meet the body: its axis, swept, thickened by its largest radius.
-  Interval row(double u) const;
-  /// Ranges of u and of v of the same, over all rows.
-  const Interval& rows() const { return rows_; }
-  const Interval& columns() const { return columns_; }
+  /// For a piece that does not move: a lower bound of the distance between it and the ray through (u, v), among the
+  /// points of the ray that are at most `beyond` above or below it along its axis; positive exactly where the ray
+  /// misses it if `beyond` is 0. Convex in the piece's position.
+  double clearance(double u, double v, double beyond) const;
 
  private:
   /// A ray in the coordinates of the section: its point (s, τ) is tip + (x + s tilt − τ m1) e1 + (y − τ m2) e2 +
@@ -63,6 +60,7 @@ class SweptPiece {
       if (s > far.s) far = {s, way, surface};
     }
   };
+  Ray ray(double u, double v) const;
   void frustum(const Ray& ray, Extremes& out) const;
   void ball(const Ray& ray, Extremes& out) const;
   void torus(const Ray& ray, Extremes& out) const;
@@ -75,7 +73,7 @@ class SweptPiece {
   Gap gap(const Ray& ray, double s, double way) const;
   double nearest_way(const Ray& ray, double s, const Interval& ways, double guess) const;
   bool extreme(const Ray& ray, double sign, const Interval& ways, SweptHit& out) const;
-  void set_bounds(const Piece& piece);
+  double round_clearance(const Ray& ray, const Interval& inside) const;
 
   enum class Kind : unsigned char { Frustum, Ball, Torus } kind_;
   bool cut_bottom_ = false, cut_top_ = false;  // a Round that ends in a flat face there
@@ -86,9 +84,6 @@ class SweptPiece {
   double m1_, m2_, mo_;                        // its components along e1, e2 and the axis
   double z0_, z1_, r0_, r1_, slope_;           // ends and dr/dz (Frustum)
   double e_ = 0, zc_ = 0, r_ = 0;              // torus (Round)
-  Interval height_, rows_, columns_;
-  Vec2 corner_[4];  // the swept axis, seen along the ray: a parallelogram
-  double thickness_;
 };
 
 }  // namespace riffler
