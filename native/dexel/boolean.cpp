@@ -1,0 +1,263 @@
+// Every ray is a linear merge of two sorted lists of ends. Work follows the pairs of *distinct* tiles: a block's inner
+// tiles are one shared tile, and what happens to a pair of tiles happens to every place that holds it.
+#include "dexel/boolean.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "geom/parallel.hpp"
+
+namespace riffler {
+
+namespace {
+
+using TilePtr = std::shared_ptr<const Tile>;
+
+/// Spans and gaps thinner than this part of the pitch vanish.
+constexpr double kSliver = 1e-9;
+
+/// The opposite direction, exactly: on the octahedron's unfolded square −n is (−u, −v) folded over to the other half.
+PackedNormal opposite(const PackedNormal& n) {
+  const int u = n.u, v = n.v;
+  const int fu = 32767 - (v < 0 ? -v : v), fv = 32767 - (u < 0 ? -u : u);
+  return {static_cast<std::int16_t>(u > 0 ? -fu : fu), static_cast<std::int16_t>(v > 0 ? -fv : fv)};
+}
+
+bool inside(Boolean op, bool a, bool b) {
+  switch (op) {
+    case Boolean::Subtract:
+      return a && !b;
+    case Boolean::Add:
+      return a || b;
+    default:
+      return a && b;
+  }
+}
+
+/// The ends of one operand's ray in order: end 2k is the near end of span k, 2k + 1 its far end.
+class Ends {
+ public:
+  Ends(std::span<const Span> spans, std::span<const SpanNormals> normals) : spans_(spans), normals_(normals) {}
+
+  bool done() const { return next_ == 2 * spans_.size(); }
+  double coordinate() const {
+    if (done()) return std::numeric_limits<double>::infinity();
+    const Span& span = spans_[next_ / 2];
+    return next_ % 2 == 0 ? span.near : span.far;
+  }
+  bool inside() const { return next_ % 2 == 1; }
+  /// Passes all ends at x; true if that changed inside().
+  bool pass(double x) {
+    const bool before = inside();
+    while (!done() && coordinate() <= x) ++next_;
+    return inside() != before;
+  }
+  /// Normal at the end passed last.
+  PackedNormal normal() const {
+    if (normals_.empty()) return {};
+    const SpanNormals& n = normals_[(next_ - 1) / 2];
+    return next_ % 2 == 1 ? n.near : n.far;
+  }
+
+ private:
+  std::span<const Span> spans_;
+  std::span<const SpanNormals> normals_;
+  std::size_t next_ = 0;
+};
+
+/// Hands the result's ends on as spans: first joins over gaps, then drops slivers.
+class Joiner {
+ public:
+  Joiner(TileBuilder& out, double least) : out_(out), least_(least) {}
+
+  void open(double x, const PackedNormal& normal) {
+    if (pending_ && x - span_.far < least_) return;
+    flush();
+    span_.near = x, normals_.near = normal, pending_ = true;
+  }
+  void close(double x, const PackedNormal& normal) { span_.far = x, normals_.far = normal; }
+  void flush() {
+    if (pending_ && span_.length() >= least_) out_.add(span_, normals_);
+    pending_ = false;
+  }
+
+ private:
+  TileBuilder& out_;
+  double least_;
+  bool pending_ = false;
+  Span span_{};
+  SpanNormals normals_;
+};
+
+/// Where both operands have an end at one place, a's normal stays.
+void merge(Boolean op, Ends a, Ends b, Joiner out) {
+  bool was = false;
+  while (!a.done() || !b.done()) {
+    const double x = std::min(a.coordinate(), b.coordinate());
+    const bool by_a = a.pass(x);
+    b.pass(x);
+    const bool is = inside(op, a.inside(), b.inside());
+    if (is == was) continue;
+    was = is;
+    const PackedNormal normal = by_a ? a.normal() : op == Boolean::Subtract ? opposite(b.normal()) : b.normal();
+    if (is)
+      out.open(x, normal);
+    else
+      out.close(x, normal);
+  }
+  out.flush();
+}
+
+bool same_content(const Tile& a, const Tile& b) {
+  return a.offset == b.offset && a.spans == b.spans && a.normals == b.normals;
+}
+
+/// What one operation does to one grid: the results of short cuts, and merges for the rest.
+class TileOperation {
+ public:
+  TileOperation(Boolean op, const Grid& grid)
+      : op_(op), grid_(grid), empty_(TileBuilder(grid.has_normals()).finish()) {}
+
+  /// The tile that takes a's place: `a` itself if nothing changes. `rays` is how many of its rays lie on the grid.
+  TilePtr run(const TilePtr& a, const TilePtr& b, std::size_t rays, TileBuilder& builder) const {
+    if (TilePtr known = short_cut(a, b, rays)) return known;
+    const double least = kSliver * grid_.pitch();
+    for (int r = 0; r < kTileRays; ++r) {
+      merge(op_, {a->ray(r), a->ray_normals(r)}, {b->ray(r), b->ray_normals(r)}, {builder, least});
+      builder.next_ray();
+    }
+    TilePtr merged = builder.finish();
+    return same_content(*merged, *a) ? a : merged;
+  }
+
+ private:
+  /// The result where it needs no merge, else null.
+  TilePtr short_cut(const TilePtr& a, const TilePtr& b, std::size_t rays) const {
+    const bool apart = a->spans.empty() || b->spans.empty() || a->reach.cut(b->reach).empty();
+    switch (op_) {
+      case Boolean::Subtract:
+        if (apart) return a;
+        return a == b || full(*b, rays) ? empty_ : nullptr;
+      case Boolean::Add:
+        if (b->spans.empty() || a == b || full(*a, rays)) return a;
+        return a->spans.empty() || full(*b, rays) ? b : nullptr;
+      default:
+        if (a->spans.empty() || a == b) return a;
+        if (apart) return empty_;
+        return full(*b, rays) ? a : full(*a, rays) ? b : nullptr;
+    }
+  }
+
+  /// Whether the tile's rays on the grid are all one span over the whole box; most tiles that are not fail at once.
+  bool full(const Tile& tile, std::size_t rays) const {
+    const Span whole{grid_.box().lower.z, grid_.box().upper.z};
+    if (tile.spans.size() != rays || tile.spans.front() != whole) return false;
+    for (const Span& span : tile.spans)
+      if (span != whole) return false;
+    return true;  // as many whole spans as rays, and no ray can hold two
+  }
+
+  Boolean op_;
+  const Grid& grid_;
+  TilePtr empty_;
+};
+
+/// A pair of tiles that stand at one place or more, how many of their rays lie on the grid there (a border tile and an
+/// inner one may be the same tile), and what becomes of them.
+struct Pair {
+  TilePtr a, b;
+  std::size_t rays;
+  TilePtr result;
+};
+
+using PairKey = std::tuple<const Tile*, const Tile*, std::size_t>;
+
+struct PairHash {
+  std::size_t operator()(const PairKey& key) const {
+    const std::hash<const Tile*> hash;
+    return (hash(std::get<0>(key)) * 31 + hash(std::get<1>(key))) * 31 + std::get<2>(key);
+  }
+};
+
+/// The distinct pairs of two grids and, tile by tile, which one stands there.
+struct Pairs {
+  std::vector<Pair> pairs;
+  std::vector<std::uint32_t> at;
+
+  Pairs(const Grid& a, const Grid& b) {
+    std::unordered_map<PairKey, std::uint32_t, PairHash> known;
+    at.reserve(a.tile_count());
+    for (int tu = 0; tu < a.tiles_u(); ++tu)
+      for (int tv = 0; tv < a.tiles_v(); ++tv) {
+        const std::size_t t = a.tile_index(tu, tv), rays = rays_on_grid(a, tu, tv);
+        const auto [found, added] =
+            known.try_emplace(PairKey(&a.tile(t), &b.tile(t), rays), static_cast<std::uint32_t>(pairs.size()));
+        if (added) pairs.push_back({a.shared_tile(t), b.shared_tile(t), rays, nullptr});
+        at.push_back(found->second);
+      }
+  }
+
+  static std::size_t rays_on_grid(const Grid& grid, int tu, int tv) {
+    const int rows = std::min(kTileSide, grid.nu() - tu * kTileSide);
+    const int columns = std::min(kTileSide, grid.nv() - tv * kTileSide);
+    return static_cast<std::size_t>(rows) * columns;
+  }
+};
+
+void check_same(const Frame& a, const Frame& b) {
+  if (a == b) return;
+  const char* what = a.directions != b.directions ? "directions"
+                     : a.pitch != b.pitch         ? "pitch"
+                     : a.box.lower != b.box.lower ? "lower"
+                                                  : "upper";
+  throw std::invalid_argument(std::string("the two volumes must have the same grid, but their ") + what + " differs");
+}
+
+}  // namespace
+
+void apply(Boolean op, Volume& a, const Volume& b, const Progress& progress) {
+  check_same(a.frame(), b.frame());
+  std::vector<Pairs> work;
+  std::vector<TileOperation> operations;
+  std::vector<std::pair<std::size_t, std::size_t>> jobs;  // (grid, pair)
+  for (std::size_t g = 0; g < a.grids().size(); ++g) {
+    work.emplace_back(a.grids()[g], b.grids()[g]);
+    operations.emplace_back(op, a.grids()[g]);
+    for (std::size_t p = 0; p < work[g].pairs.size(); ++p) jobs.emplace_back(g, p);
+  }
+
+  constexpr std::size_t grain = 16;
+  parallel_for(
+      jobs.size(), grain,
+      [&](std::size_t begin, std::size_t end) {
+        TileBuilder builder(a.grids().front().has_normals());
+        for (std::size_t k = begin; k < end; ++k) {
+          const auto [g, p] = jobs[k];
+          Pair& pair = work[g].pairs[p];
+          pair.result = operations[g].run(pair.a, pair.b, pair.rays, builder);
+        }
+      },
+      progress);
+
+  // Nothing below throws: the volume changes as a whole or not at all.
+  Stats stats;
+  for (std::size_t g = 0; g < work.size(); ++g)
+    for (std::size_t t = 0; t < work[g].at.size(); ++t) {
+      const Pair& pair = work[g].pairs[work[g].at[t]];
+      if (pair.result == pair.a) continue;
+      a.grids()[g].set_tile(t, pair.result);
+      ++stats.tiles_changed;
+    }
+  stats.tiles_visited = jobs.size();
+  a.count(stats);
+  if (stats.tiles_changed > 0) a.touch();
+}
+
+}  // namespace riffler
