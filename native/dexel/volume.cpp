@@ -9,9 +9,6 @@
 
 namespace riffler {
 
-namespace {
-
-/// Memory that this machine can still give, bytes; infinity where the system does not say.
 double available_memory() {
   std::ifstream info("/proc/meminfo");
   for (std::string key; info >> key;) {
@@ -21,6 +18,8 @@ double available_memory() {
   }
   return std::numeric_limits<double>::infinity();
 }
+
+namespace {
 
 void check(const Frame& frame) {
   parse_directions(frame.directions);

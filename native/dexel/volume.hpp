@@ -66,4 +66,7 @@ std::vector<Axis> parse_directions(const std::string& directions);
 /// Bytes that a fresh volume of one span a ray would take.
 double estimated_bytes(const Frame& frame);
 
+/// Memory that this machine can still give, bytes; infinity where the system does not say.
+double available_memory();
+
 }  // namespace riffler
