@@ -1,6 +1,8 @@
 // riffler.Volume
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
+#include "dexel/boolean.hpp"
+#include "dexel/file.hpp"
 #include "sweep/carve.hpp"
 
 namespace riffler {
@@ -92,6 +94,31 @@ Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, doub
   Writing writing(self);
   const py::gil_scoped_release release;
   return carve(writing.volume, tool, path, options);
+}
+
+/// v.subtract(w) and its like: changes v and returns it.
+auto boolean(Boolean op) {
+  return [op](const std::shared_ptr<SharedVolume>& self, SharedVolume& other, const py::object& progress) {
+    const Progress listener = to_progress(progress);
+    const Volume operand = Reading(other).volume.snapshot();  // which may be `self`
+    Writing writing(*self);
+    const py::gil_scoped_release release;
+    apply(op, writing.volume, operand, listener);
+    return self;
+  };
+}
+
+void save_volume(SharedVolume& self, const std::filesystem::path& path, const py::object& progress) {
+  const Progress listener = to_progress(progress);
+  const Volume state = Reading(self).volume.snapshot();
+  const py::gil_scoped_release release;
+  save(state, path, listener);
+}
+
+std::shared_ptr<SharedVolume> load_volume(const std::filesystem::path& path, const py::object& progress) {
+  const Progress listener = to_progress(progress);
+  const py::gil_scoped_release release;
+  return share(load(path, listener));
 }
 
 py::dict stats(SharedVolume& self) {
@@ -186,6 +213,18 @@ False cancels, raises Cancelled and leaves the volume as it was.)")
           "An independent volume; shares its tiles until one of the two is written.")
       .def("__copy__", [](SharedVolume& v) { return share(Reading(v).volume.snapshot()); })
       .def("__deepcopy__", [](SharedVolume& v, const py::dict&) { return share(Reading(v).volume.snapshot()); })
+      .def(
+          "subtract", boolean(Boolean::Subtract), py::arg("other"), py::arg("progress") = py::none(),
+          "Takes the other volume's material away, in place; returns this volume. ValueError unless both have the same "
+          "lower, upper, pitch and directions.")
+      .def("add", boolean(Boolean::Add), py::arg("other"), py::arg("progress") = py::none(),
+           "Adds the other volume's material, in place; see subtract.")
+      .def("intersect", boolean(Boolean::Intersect), py::arg("other"), py::arg("progress") = py::none(),
+           "Keeps what both volumes have, in place; see subtract.")
+      .def("save", &save_volume, py::arg("path"), py::arg("progress") = py::none(),
+           "Writes a .rvol file, whole or not at all. Equal volumes are equal files.")
+      .def_static("load", &load_volume, py::arg("path"), py::arg("progress") = py::none(),
+                  "Reads a .rvol file; FormatError where it is damaged or not one.")
       .def("stats", &stats, "Operation counters since the last call of stats().")
       .def("__repr__", &describe);
 }
