@@ -6,6 +6,11 @@
 PYBIND11_MODULE(_core, m) {
   using namespace riffler;
   m.attr("__version__") = RIFFLER_VERSION;
+#ifdef __clang__
+  m.attr("__compiler__") = __VERSION__;
+#else
+  m.attr("__compiler__") = "GCC " __VERSION__;
+#endif
   py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError);
   py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError);
   m.def("thread_count", &thread_count, "Threads that parallel calls use: RIFFLER_THREADS or the CPU affinity.");
