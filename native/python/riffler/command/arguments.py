@@ -1,0 +1,83 @@
+"""What the commands' arguments mean: lengths, boxes, files; each says in one line what is wrong with it."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+from pathlib import Path
+
+MESHES = (".stl", ".obj", ".ply")
+VOLUMES = (".rvol",)
+ORIGINS = ("corner", "top-centre", "bottom-centre")
+
+
+def finite(text: str, what: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{what} must be a number, not {text!r}")
+    return value
+
+
+def length(text: str, what: str) -> float:
+    value = finite(text, what)
+    if value <= 0:
+        raise ValueError(f"{what} must be positive, not {text}")
+    return value
+
+
+def add_pitch(parser: argparse.ArgumentParser, required: bool, more: str = "") -> None:
+    parser.add_argument("--pitch", metavar="MM", required=required, help="distance of the rays, mm" + more)
+
+
+def add_directions(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--directions", choices=("z", "xyz"), help='rays along z, or along all three axes (default "xyz"): sharp edges'
+    )
+
+
+def box(text: str, origin: str) -> tuple[list[float], list[float]]:
+    """Lower and upper corner of a block ``WxDxH`` at ``origin``: ``x,y,z`` of its lower corner, or one of ORIGINS."""
+    sizes = [length(part, f"--stock {text}: size") for part in text.lower().split("x")]
+    if len(sizes) != 3:
+        raise ValueError(f"--stock {text}: three sizes expected, as in 100x60x30")
+    w, d, h = sizes
+    if origin in ORIGINS:
+        lower = {"corner": [0.0, 0.0, 0.0], "top-centre": [-w / 2, -d / 2, -h], "bottom-centre": [-w / 2, -d / 2, 0.0]}[
+            origin
+        ]
+    else:
+        lower = [finite(part, f"--origin {origin}: coordinate") for part in origin.split(",")]
+        if len(lower) != 3:
+            raise ValueError(f"--origin {origin}: x,y,z of the lower corner expected, or one of {', '.join(ORIGINS)}")
+    return lower, [a + b for a, b in zip(lower, sizes, strict=True)]
+
+
+def is_box(text: str) -> bool:
+    return not text.lower().endswith(MESHES + VOLUMES) and not os.path.exists(text)
+
+
+def input_file(text: str, suffixes: tuple[str, ...]) -> Path:
+    path = Path(text)
+    if path.suffix.lower() not in suffixes:
+        raise ValueError(f"{path.name}: {' or '.join(suffixes)} expected")
+    if not path.exists():
+        raise FileNotFoundError(2, os.strerror(2), text)
+    return path
+
+
+def output_file(text: str, suffixes: tuple[str, ...]) -> Path:
+    """Checked before the work begins, not after it."""
+    path = Path(text)
+    if path.suffix.lower() not in suffixes:
+        raise ValueError(f"--out {path.name}: a name that ends with {' or '.join(suffixes)} expected")
+    if path.is_dir():
+        raise ValueError(f"--out {path.name}: is a directory")
+    if not path.parent.is_dir():
+        raise ValueError(f"--out {text}: there is no folder {str(path.parent)!r}")
+    if not os.access(path.parent, os.W_OK):
+        raise ValueError(f"--out {text}: the folder {str(path.parent)!r} cannot be written")
+    return path

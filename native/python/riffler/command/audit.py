@@ -1,0 +1,41 @@
+"""Say what a mesh is worth; exit status 1 unless it is a closed 2-manifold.
+
+riffler audit part.stl
+"""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from .. import Mesh
+from .arguments import MESHES, input_file
+from .console import Console, number
+
+HELP = "check that a mesh is a closed 2-manifold"
+
+# Any of these, and the mesh is not one.
+DEFECTS = ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "duplicates")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("mesh", metavar="FILE", help=".stl, .obj or .ply")
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    path = input_file(arguments.mesh, MESHES)
+    mesh = Mesh.read(path)
+    audit = {key: value.item() if isinstance(value, np.generic) else value for key, value in mesh.audit().items()}
+    closed = not any(audit[key] for key in DEFECTS)
+    data = {
+        "file": str(path),
+        "closed": closed,
+        "vertices": len(mesh.vertices),
+        "triangles": len(mesh.triangles),
+        **audit,
+    }
+    rows = [(key.replace("_", " "), number(value)) for key, value in data.items() if key not in ("file", "closed")]
+    verdict = "a closed 2-manifold" if closed else "not a closed 2-manifold"
+    console.result(data, f"{path.name}: {verdict}", rows)
+    return 0 if closed else 1

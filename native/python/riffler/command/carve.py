@@ -1,0 +1,146 @@
+"""Carve stock with an NC program and write what is left.
+
+riffler carve --stock 100x60x30 --pitch 0.25 --tool ball:6 --program part.ngc --out part.stl
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from .. import Program, Tool, Volume
+from . import tools
+from .arguments import MESHES, ORIGINS, VOLUMES, add_directions, add_pitch, box, input_file, is_box, length, output_file
+from .console import Console, number, times
+from .shapes import from_mesh, rays, write_mesh
+
+HELP = "carve stock with an NC program"
+__doc__ += "\n" + tools.FORMS
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--stock", required=True, metavar="WxDxH|FILE", help="a block's sizes, or a .stl, .obj, .ply or .rvol file"
+    )
+    add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
+    add_directions(parser)
+    parser.add_argument(
+        "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
+    )
+    parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see below; may be repeated")
+    parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274")
+    parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
+    parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
+    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply or .rvol")
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    tolerance = length(arguments.tolerance, "--tolerance")
+    out = output_file(arguments.out, MESHES + VOLUMES)
+    wanted = [tools.parse(text) for text in arguments.tool]
+    with console.step("program"):
+        program = Program.read(arguments.program, machine=arguments.machine)
+        poses = np.asarray(program.poses)
+        called = np.asarray(program.tool)
+        rapid = np.asarray(program.rapid)[1:]
+    if len(poses) < 2:
+        raise ValueError(f"{Path(arguments.program).name}: no moves to carve")
+    # A cutter whose length is not named is long enough to reach out of the stock wherever it is.
+    volume = stock(arguments, console)
+    reach = float(np.linalg.norm(volume.upper - volume.lower))
+    by_number = tools.assign(wanted, called[1:], reach)
+    before = volume.volume
+    removed = carve(volume, poses, called, by_number, tolerance, console)
+    after = volume.volume
+
+    triangles = None
+    if out.suffix.lower() in VOLUMES:
+        with console.step("write") as progress:
+            volume.save(out, progress=progress)
+    else:
+        with console.step("mesh") as progress:
+            mesh = volume.to_mesh(progress=progress)
+        triangles = write_mesh(mesh, out, console)
+
+    data = {
+        "out": str(out),
+        "pitch": volume.pitch,
+        "directions": volume.directions,
+        "rays": rays(volume),
+        "moves": len(removed),
+        "tools": {str(n): tool.to_dict() for n, tool in by_number.items()},
+        "volume_before": before,
+        "volume": after,
+        "removed": float(removed.sum()),
+        "removed_by_rapids": float(removed[rapid].sum()),
+        "triangles": triangles,
+        "bytes": out.stat().st_size,
+        "seconds": console.seconds,
+    }
+    console.result(data, f"{out.name} written", table(data))
+    return 0
+
+
+def stock(arguments: argparse.Namespace, console: Console) -> Volume:
+    """The volume to carve: a block, a mesh or a .rvol file."""
+    pitch = None if arguments.pitch is None else length(arguments.pitch, "--pitch")
+    if is_box(arguments.stock):
+        lower, upper = box(arguments.stock, arguments.origin or "corner")
+        if pitch is None:
+            raise ValueError("--pitch is needed for a block")
+        with console.step("stock"):
+            return Volume.block(lower, upper, pitch, arguments.directions or "xyz")
+    path = input_file(arguments.stock, MESHES + VOLUMES)
+    if arguments.origin is not None:
+        raise ValueError(f"--origin is for blocks; {path.name} has its own place")
+    if path.suffix.lower() in VOLUMES:
+        with console.step("stock") as progress:
+            volume = Volume.load(path, progress=progress)
+        if pitch is not None and pitch != volume.pitch:
+            raise ValueError(f"{path.name} has pitch {volume.pitch} mm, not the {pitch} of --pitch")
+        if arguments.directions not in (None, volume.directions):
+            raise ValueError(f"{path.name} has directions {volume.directions}, not {arguments.directions}")
+        return volume
+    if pitch is None:
+        raise ValueError(f"--pitch is needed for {path.name}")
+    return from_mesh(path, pitch, arguments.directions or "xyz", console, "stock")
+
+
+def carve(
+    volume: Volume,
+    poses: np.ndarray,
+    called: np.ndarray,
+    by_number: dict[int, Tool],
+    tolerance: float,
+    console: Console,
+) -> np.ndarray:
+    """What each move took away, mm³. Every run of moves of one tool is one call."""
+    removed = np.zeros(len(poses) - 1)
+    with console.step("carve") as progress:
+        for first, last, tool in tools.runs(called):
+
+            def share(done: float, first: int = first, last: int = last) -> None:
+                progress((first + done * (last - first)) / len(removed))
+
+            cut = volume.carve(
+                by_number[tool], poses[first : last + 1], tolerance=tolerance, progress=share if progress else None
+            )
+            removed[first:last] = cut.removed
+    return removed
+
+
+def table(data: dict) -> list[tuple[str, str]]:
+    rows = [
+        ("rays", f"{number(data['rays'])} ({data['directions']}, pitch {data['pitch']:g} mm)"),
+        ("moves", number(data["moves"])),
+        ("tools", ", ".join(f"T{n} {tool['name']}" for n, tool in data["tools"].items())),
+        ("removed", number(data["removed"], "mm³")),
+        ("left", number(data["volume"], "mm³")),
+    ]
+    if data["removed_by_rapids"] > 0:
+        rows.insert(4, ("by rapids", number(data["removed_by_rapids"], "mm³") + "  (rapid moves in material!)"))
+    if data["triangles"] is not None:
+        rows.append(("triangles", number(data["triangles"])))
+    return [*rows, ("file", number(data["bytes"], "bytes")), ("times", times(data["seconds"]))]

@@ -1,0 +1,143 @@
+"""Say what riffler found on this machine: versions, processor, memory, Blender, pens.
+
+riffler doctor
+"""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import importlib.metadata
+import importlib.util
+import os
+import platform
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import __version__, _core
+from .console import Console, number
+
+HELP = "versions, instruction set, devices found and why one did not open"
+
+# The ones that matter for arithmetic, best first.
+INSTRUCTION_SETS = ("avx512f", "avx2", "avx", "sse4_2", "asimd")
+REASONS = {
+    errno.EACCES: "permission denied: a udev rule or group must give this user the device",
+    errno.EPERM: "permission denied by the system (a container or sandbox?)",
+    errno.EBUSY: "busy: another program has it open",
+    errno.ENODEV: "it was unplugged",
+    errno.ENXIO: "it was unplugged",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    pass
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    data = report()
+    devices = [(d["path"], f"{d['name']} {d['id']}: " + (d["problem"] or "can be opened")) for d in data["devices"]]
+    memory = data["memory"]
+    cpu = data["cpu"]
+    rows = [
+        ("riffler", f"{data['riffler']}, compiled with {data['compiler']}"),
+        ("Python", f"{data['python']}, numpy {data['numpy']}"),
+        ("system", data["system"]),
+        ("processor", f"{cpu['model']}, {cpu['instruction_set'] or 'instruction set unknown'}"),
+        ("threads", number(data["threads"])),
+        ("memory", f"{gigabytes(memory['available'])} free of {gigabytes(memory['total'])}"),
+        ("Blender", data["bpy"] or "no bpy in this Python"),
+        *(devices or [("devices", "no HID device (/dev/hidraw*)")]),
+    ]
+    console.result(data, "riffler doctor", rows)
+    return 0
+
+
+def report() -> dict[str, Any]:
+    return {
+        "riffler": __version__,
+        "compiler": _core.__compiler__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "system": platform.platform(),
+        "cpu": cpu(),
+        "threads": _core.thread_count(),
+        "memory": memory(),
+        "bpy": bpy_version(),
+        "devices": devices(),
+    }
+
+
+def cpu(info: Path = Path("/proc/cpuinfo")) -> dict[str, Any]:
+    fields: dict[str, str] = {}
+    for line in read(info).splitlines():
+        key, colon, value = line.partition(":")
+        if colon:
+            fields.setdefault(key.strip(), value.strip())
+    flags = set((fields.get("flags") or fields.get("Features", "")).split())
+    best = next((s for s in INSTRUCTION_SETS if s in flags), None)
+    return {
+        "model": fields.get("model name") or platform.processor() or platform.machine(),
+        "instruction_set": best,
+        "cores": os.cpu_count(),
+    }
+
+
+def memory(info: Path = Path("/proc/meminfo")) -> dict[str, int | None]:
+    kilobytes = {}
+    for line in read(info).splitlines():
+        key, _, value = line.partition(":")
+        if value.split()[:1] and value.split()[0].isdecimal():
+            kilobytes[key] = int(value.split()[0])
+    found = {"total": kilobytes.get("MemTotal"), "available": kilobytes.get("MemAvailable")}
+    return {key: None if value is None else 1024 * value for key, value in found.items()}
+
+
+def gigabytes(count: int | None) -> str:
+    return "unknown" if count is None else f"{count / 1e9:.1f} GB"
+
+
+def bpy_version() -> str | None:
+    """Whether ``import bpy`` would find Blender; it is not imported, which takes seconds."""
+    try:
+        if importlib.util.find_spec("bpy") is None:
+            return None
+    except (ImportError, ValueError):
+        return None
+    try:
+        return "bpy " + importlib.metadata.version("bpy")
+    except importlib.metadata.PackageNotFoundError:
+        return "bpy, version unknown"
+
+
+def devices(folder: Path = Path("/dev"), system: Path = Path("/sys/class/hidraw")) -> list[dict[str, Any]]:
+    """Every hidraw device, what it says it is, and why it cannot be opened, or None."""
+    found = []
+    for path in sorted(folder.glob("hidraw*"), key=lambda p: (len(p.name), p.name)):
+        pairs = (line.partition("=") for line in read(system / path.name / "device" / "uevent").splitlines())
+        fields = {key: value for key, _, value in pairs}
+        # HID_ID=0003:0000256F:0000C635 is bus, vendor and product.
+        vendor, product = (fields.get("HID_ID", "") + "::").split(":")[1:3]
+        name = fields.get("HID_NAME") or "unnamed device"
+        identity = f"{vendor[-4:]}:{product[-4:]}".lower() if vendor else "of unknown maker"
+        found.append({"path": str(path), "name": name, "id": identity, "problem": why_not(path)})
+    return found
+
+
+def why_not(path: Path) -> str | None:
+    """Why the device cannot be opened for reading and writing; None if it can."""
+    try:
+        os.close(os.open(path, os.O_RDWR | os.O_NONBLOCK | os.O_CLOEXEC))
+    except OSError as error:
+        return REASONS.get(error.errno or 0, error.strerror or str(error))
+    return None
+
+
+def read(path: Path) -> str:
+    """A system file's text; empty where there is none."""
+    try:
+        return path.read_text(errors="replace")
+    except OSError:
+        return ""

@@ -1,0 +1,54 @@
+"""Turn a dexel volume into a closed mesh.
+
+riffler mesh part.rvol --out part.stl [--decimate 0.01]
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from .. import Volume
+from .arguments import MESHES, VOLUMES, input_file, length, output_file
+from .console import Console, number, times
+from .shapes import write_mesh
+
+HELP = "turn a dexel volume into a closed mesh"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("volume", metavar="FILE", help=".rvol")
+    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj or .ply")
+    parser.add_argument("--decimate", metavar="MM", help="leave out triangles as long as the surface moves no further")
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    tolerance = None if arguments.decimate is None else length(arguments.decimate, "--decimate")
+    path = input_file(arguments.volume, VOLUMES)
+    out = output_file(arguments.out, MESHES)
+    with console.step("read") as progress:
+        volume = Volume.load(path, progress=progress)
+    with console.step("mesh") as progress:
+        mesh = volume.to_mesh(progress=progress)
+    meshed = len(mesh.triangles)
+    if tolerance is not None:
+        with console.step("decimate"):
+            mesh = mesh.decimate(tolerance=tolerance)
+    triangles = write_mesh(mesh, out, console)
+    data = {
+        "out": str(out),
+        "triangles": triangles,
+        "triangles_before_decimation": meshed,
+        "volume": volume.volume,
+        "mesh_volume": float(mesh.volume),
+        "bytes": out.stat().st_size,
+        "seconds": console.seconds,
+    }
+    before = f"  (of {number(meshed)})" if tolerance is not None else ""
+    rows = [
+        ("triangles", number(triangles) + before),
+        ("volume", number(data["mesh_volume"], "mm³")),
+        ("file", number(data["bytes"], "bytes")),
+        ("times", times(console.seconds)),
+    ]
+    console.result(data, f"{out.name} written", rows)
+    return 0

@@ -1,0 +1,30 @@
+"""Between files, meshes and volumes: what several commands do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .. import Mesh, Volume
+from .console import Console
+
+
+def from_mesh(path: Path, pitch: float, directions: str, console: Console, step: str) -> Volume:
+    """The volume of a mesh file."""
+    with console.step("read"):
+        mesh = Mesh.read(path)
+    with console.step(step) as progress:
+        try:
+            return Volume.from_mesh(mesh, pitch, directions, progress=progress)
+        except ValueError as error:
+            raise ValueError(f"{path.name}: {error}") from None
+
+
+def write_mesh(mesh: Mesh, path: Path, console: Console) -> int:
+    """Writes the file and returns the number of triangles."""
+    with console.step("write"):
+        mesh.write(path)
+    return len(mesh.triangles)
+
+
+def rays(volume: Volume) -> int:
+    return int(volume.rays)

@@ -1,0 +1,118 @@
+"""Tools as the command line names them: ``ball:6``, ``3=fillet:10:1.5:40``, or a file."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import Tool
+from .arguments import finite
+
+FORMS = """tools:
+  ball:D[:L]  flat:D[:L]  fillet:D:r[:L]             diameter, corner radius, length
+  taper:R:A:D[:L]                                    tip radius, half angle in degrees, diameter, length
+  cone-end:A1:H1:A2:D[:L]                            tip's half angle, its height, upper half angle, diameter, length
+  tool.json, tool.toml                               the form of Tool.to_dict, angles in rad there
+  The length defaults to whatever reaches out of the stock. N=… is the tool that the program calls N."""
+
+# Sizes in the order of the command line; those that end with "angle" are in degrees there, in rad in the dictionary.
+SIZES = {
+    "ball": ("diameter",),
+    "flat": ("diameter",),
+    "fillet": ("diameter", "corner_radius"),
+    "taper": ("tip_radius", "half_angle", "diameter"),
+    "cone-end": ("tip_half_angle", "tip_height", "half_angle", "diameter"),
+}
+
+
+@dataclass(frozen=True)
+class ToolArgument:
+    """One ``--tool``: the program's number for it, or None for every number, and how to make it."""
+
+    text: str
+    number: int | None
+    make: Callable[[float], Tool]  # from the length that a tool of unnamed length gets
+
+
+def parse(text: str) -> ToolArgument:
+    number, equals, form = text.partition("=")
+    if not equals:
+        return ToolArgument(text, None, _maker(text, text))
+    if not number.isdecimal():
+        raise ValueError(f"--tool {text}: the number before = must be a tool number")
+    return ToolArgument(text, int(number), _maker(form, text))
+
+
+def _maker(form: str, text: str) -> Callable[[float], Tool]:
+    if form.lower().endswith((".json", ".toml")):
+        tool = Tool.from_dict(_read(Path(form)))
+        return lambda _: tool
+    kind, *numbers = form.split(":")
+    names = SIZES.get(kind)
+    if names is None:
+        raise ValueError(f"--tool {text}: {', '.join(SIZES)} or a .json or .toml file expected")
+    if len(numbers) not in (len(names), len(names) + 1):
+        raise ValueError(f"--tool {text}: {kind}:{':'.join(names)}[:length] expected")
+    entry: dict[str, Any] = {"kind": kind.replace("-", "_"), "name": form}
+    for name, value in zip((*names, "length"), numbers, strict=False):
+        size = finite(value, f"--tool {text}: {name}")
+        entry[name] = math.radians(size) if name.endswith("angle") else size
+
+    def make(reach: float) -> Tool:
+        try:
+            return Tool.from_dict({"length": max(5 * entry["diameter"], reach), **entry})
+        except ValueError as error:
+            raise ValueError(f"--tool {text}: {error}") from None
+
+    make(1e3 * max(1.0, abs(entry["diameter"])))  # what is wrong with its sizes shows before any work
+    return make
+
+
+def _read(path: Path) -> dict[str, Any]:
+    data = path.read_bytes()
+    try:
+        entry = tomllib.loads(data.decode()) if path.suffix.lower() == ".toml" else json.loads(data)
+    except ValueError as error:  # of encoding, JSON and TOML alike
+        raise ValueError(f"{path.name}: {error}") from None
+    if not isinstance(entry, dict):
+        raise ValueError(f"{path.name}: one tool, a table of its sizes, expected")
+    return entry
+
+
+def assign(arguments: Iterable[ToolArgument], called: Iterable[int], reach: float) -> dict[int, Tool]:
+    """The tool of each number that the program calls (0: it cuts before it calls any)."""
+    arguments, called = list(arguments), sorted({int(n) for n in called})
+    numbers = [a.number for a in arguments]
+    for number in numbers:
+        if numbers.count(number) > 1:
+            which = "a number" if number is None else f"number {number}"
+            raise ValueError(f"--tool: two tools for {which}; several tools need N=… with different N")
+    by_number = {a.number: a.make(reach) for a in arguments}
+    if None in by_number:
+        if len(arguments) > 1:
+            raise ValueError("--tool: give every tool its number, N=…, or one tool for all")
+        if len(called) > 1:
+            raise ValueError(f"the program changes between tools {_list(called)}: give --tool N=… for each")
+        return dict.fromkeys(called, by_number[None])
+    missing = [n for n in called if n not in by_number]
+    if missing:
+        raise ValueError(f"the program calls tool {_list(missing)}: give --tool N=… for it")
+    return {n: by_number[n] for n in called}
+
+
+def _list(numbers: Iterable[int]) -> str:
+    return ", ".join(map(str, numbers))
+
+
+def runs(tool: np.ndarray) -> list[tuple[int, int, int]]:
+    """(first, last, number) of every run of moves [first, last) with one tool; move i goes from row i to row i + 1."""
+    numbers = np.asarray(tool)[1:]
+    ends = [*(np.flatnonzero(np.diff(numbers)) + 1).tolist(), len(numbers)]
+    return [(a, b, int(numbers[a])) for a, b in zip([0, *ends], ends, strict=False) if b > a]
