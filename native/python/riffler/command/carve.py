@@ -70,6 +70,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "directions": volume.directions,
         "rays": rays(volume),
         "moves": len(removed),
+        "moves_without_tool": sum(last - first for first, last, n in tools.runs(called) if n not in by_number),
         "tools": {str(n): tool.to_dict() for n, tool in by_number.items()},
         "volume_before": before,
         "volume": after,
@@ -116,10 +117,15 @@ def carve(
     tolerance: float,
     console: Console,
 ) -> np.ndarray:
-    """What each move took away, mm³. Every run of moves of one tool is one call."""
+    """What each move took away, mm³. Every run of moves of one tool is one call.
+
+    The first move after a tool change starts where the last one ended, as on a machine that changes tools in place.
+    """
     removed = np.zeros(len(poses) - 1)
     with console.step("carve") as progress:
         for first, last, tool in tools.runs(called):
+            if tool not in by_number:
+                continue  # nothing is in the spindle yet
 
             def share(done: float, first: int = first, last: int = last) -> None:
                 progress((first + done * (last - first)) / len(removed))
@@ -141,6 +147,10 @@ def table(data: dict) -> list[tuple[str, str]]:
     ]
     if data["removed_by_rapids"] > 0:
         rows.insert(4, ("by rapids", number(data["removed_by_rapids"], "mm³") + "  (rapid moves in material!)"))
+    if data["moves_without_tool"] > 0:
+        rows.insert(
+            2, ("", f"{number(data['moves_without_tool'])} of them before the first tool is called: not carved")
+        )
     if data["triangles"] is not None:
         rows.append(("triangles", number(data["triangles"])))
     return [*rows, ("file", number(data["bytes"], "bytes")), ("times", times(data["seconds"]))]

@@ -87,28 +87,35 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def assign(arguments: Iterable[ToolArgument], called: Iterable[int], reach: float) -> dict[int, Tool]:
-    """The tool of each number that the program calls (0: it cuts before it calls any)."""
-    arguments, called = list(arguments), sorted({int(n) for n in called})
-    numbers = [a.number for a in arguments]
-    for number in numbers:
-        if numbers.count(number) > 1:
-            which = "a number" if number is None else f"number {number}"
+    """The tool of each number that the program calls.
+
+    0 stands for moves before any call: they have the only tool if the program never calls one, else none at all.
+    """
+    arguments, numbers = list(arguments), {int(n) for n in called}
+    if len(numbers) > 1:
+        numbers.discard(0)
+    given = [a.number for a in arguments]
+    for number in given:
+        if given.count(number) > 1:
+            which = "every number" if number is None else f"number {number}"
             raise ValueError(f"--tool: two tools for {which}; several tools need N=… with different N")
-    by_number = {a.number: a.make(reach) for a in arguments}
-    if None in by_number:
-        if len(arguments) > 1:
-            raise ValueError("--tool: give every tool its number, N=…, or one tool for all")
-        if len(called) > 1:
-            raise ValueError(f"the program changes between tools {_list(called)}: give --tool N=… for each")
-        return dict.fromkeys(called, by_number[None])
-    missing = [n for n in called if n not in by_number]
+    made = {a.number: a.make(reach) for a in arguments}
+    if len(made) == 1 and (None in made or numbers == {0}):
+        if len(numbers) > 1:
+            raise ValueError(f"the program changes between tools {_list(numbers)}: give --tool N=… for each")
+        return dict.fromkeys(numbers, next(iter(made.values())))
+    if None in made:
+        raise ValueError("--tool: give every tool its number, N=…, or one tool for all")
+    missing = numbers - made.keys()
+    if missing == {0}:
+        raise ValueError("the program calls no tool: give one --tool only")
     if missing:
         raise ValueError(f"the program calls tool {_list(missing)}: give --tool N=… for it")
-    return {n: by_number[n] for n in called}
+    return {n: made[n] for n in numbers}
 
 
 def _list(numbers: Iterable[int]) -> str:
-    return ", ".join(map(str, numbers))
+    return ", ".join(map(str, sorted(numbers)))
 
 
 def runs(tool: np.ndarray) -> list[tuple[int, int, int]]:
