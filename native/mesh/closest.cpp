@@ -1,0 +1,240 @@
+#include "mesh/closest.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "geom/parallel.hpp"
+#include "mesh/adjacency.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr std::size_t kLeaf = 4;
+
+double square(const Vec3& v) {
+  return glm::dot(v, v);
+}
+
+double square_to_box(const Vec3& p, const Box3& box) {
+  return square(glm::max(Vec3(0), glm::max(box.lower - p, p - box.upper)));
+}
+
+/// Nearest point of a segment: 0 inside, 1 at a, 2 at b.
+std::pair<Vec3, int> closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double along = glm::dot(p - a, ab), length2 = square(ab);
+  if (!(along > 0)) return {a, 1};
+  if (along >= length2) return {b, 2};
+  return {a + (along / length2) * ab, 0};
+}
+
+/// As v, with length 1, or 0 where it has none.
+Vec3 unit(const Vec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : Vec3(0);
+}
+
+}  // namespace
+
+OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = glm::cross(b - a, c - a);
+  const double length2 = square(normal);
+  if (length2 > 0 && glm::dot(glm::cross(b - a, p - a), normal) > 0 && glm::dot(glm::cross(c - b, p - b), normal) > 0 &&
+      glm::dot(glm::cross(a - c, p - c), normal) > 0)
+    return {p - (glm::dot(p - a, normal) / length2) * normal, OnTriangle::Face};
+  using Part = OnTriangle::Part;
+  constexpr Part kParts[3][3] = {{Part::EdgeAB, Part::VertexA, Part::VertexB},
+                                 {Part::EdgeBC, Part::VertexB, Part::VertexC},
+                                 {Part::EdgeCA, Part::VertexC, Part::VertexA}};
+  const std::array<Vec3, 4> corner{a, b, c, a};
+  OnTriangle best{a, Part::VertexA};
+  double best2 = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const auto [q, where] = closest_on_segment(p, corner[k], corner[k + 1]);
+    if (const double d2 = square(p - q); d2 < best2) best2 = d2, best = {q, kParts[k][where]};
+  }
+  return best;
+}
+
+Closest::Closest(const Mesh& mesh, bool with_sides) {
+  validate(mesh);
+  if (mesh.empty()) throw std::invalid_argument("a mesh without triangles has no nearest point");
+  std::vector<Corners> corners(mesh.triangles.size());
+  parallel_for(corners.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Vec3i& v = mesh.triangles[t];
+      corners[t] = {mesh.vertices[v.x], mesh.vertices[v.y], mesh.vertices[v.z]};
+    }
+  });
+  build(corners);
+  if (with_sides) prepare_sides(mesh);
+}
+
+void Closest::build(const std::vector<Corners>& corners) {
+  const std::size_t n = corners.size();
+  id_.resize(n);
+  std::iota(id_.begin(), id_.end(), 0);
+  while ((n >> levels_) > kLeaf) ++levels_;
+  boxes_.resize((std::size_t{2} << levels_) - 1);
+  std::vector<Vec3> centres(n);
+  parallel_for(n, 1 << 15, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) centres[t] = (corners[t].a + corners[t].b + corners[t].c) / 3.0;
+  });
+  // Level by level, every node's triangles are split at the median of their centres along the widest axis. Ties are
+  // decided by the index: the tree is the same whatever nth_element does.
+  for (std::size_t level = 0; level < levels_; ++level)
+    parallel_for(std::size_t{1} << level, 1, [&](std::size_t place, std::size_t) {
+      const auto begin = id_.begin() + static_cast<std::ptrdiff_t>(first(level, place));
+      const auto middle = id_.begin() + static_cast<std::ptrdiff_t>(first(level + 1, 2 * place + 1));
+      const auto end = id_.begin() + static_cast<std::ptrdiff_t>(first(level, place + 1));
+      Box3 box;
+      for (auto i = begin; i != end; ++i) box.add(centres[*i]);
+      const Vec3 size = box.size();
+      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+      std::nth_element(begin, middle, end, [&](int i, int j) {
+        const double x = centres[i][axis], y = centres[j][axis];
+        return x != y ? x < y : i < j;
+      });
+    });
+  corners_.resize(n), slot_.resize(n);
+  parallel_for(std::size_t{1} << levels_, 1 << 12, [&](std::size_t from, std::size_t to) {
+    for (std::size_t place = from; place < to; ++place) {
+      // nth_element leaves the order within a leaf open; ties between equally near triangles go by it.
+      std::sort(id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, place)),
+                id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, place + 1)));
+      Box3& box = boxes_[(std::size_t{1} << levels_) - 1 + place];
+      for (std::size_t i = first(levels_, place); i < first(levels_, place + 1); ++i) {
+        const Corners& c = corners_[i] = corners[id_[i]];
+        slot_[id_[i]] = static_cast<int>(i);
+        box.add(c.a), box.add(c.b), box.add(c.c);
+      }
+    }
+  });
+  for (std::size_t i = (std::size_t{1} << levels_) - 1; i-- > 0;) {
+    boxes_[i] = boxes_[2 * i + 1];
+    boxes_[i].add(boxes_[2 * i + 2]);
+  }
+}
+
+/// Calls visit(slot) for triangles whose box is nearer than the square root of `bound`, which visit may lower, near
+/// boxes first, until it returns true.
+template <class Visit>
+void Closest::descend(const Vec3& p, double& bound, const Visit& visit) const {
+  struct Entry {
+    std::size_t node;
+    double square;
+  };
+  std::array<Entry, 64> stack;
+  std::size_t depth = 0;
+  const std::size_t leaves = (std::size_t{1} << levels_) - 1;
+  stack[depth++] = {0, square_to_box(p, boxes_[0])};
+  while (depth > 0) {
+    Entry entry = stack[--depth];
+    if (!(entry.square <= bound)) continue;
+    while (entry.node < leaves) {
+      Entry near{2 * entry.node + 1, square_to_box(p, boxes_[2 * entry.node + 1])};
+      Entry far{2 * entry.node + 2, square_to_box(p, boxes_[2 * entry.node + 2])};
+      if (far.square < near.square) std::swap(near, far);
+      if (far.square <= bound) stack[depth++] = far;
+      entry = near;
+      if (!(entry.square <= bound)) break;
+    }
+    if (entry.node < leaves) continue;
+    const std::size_t place = entry.node - leaves;
+    for (std::size_t i = first(levels_, place); i < first(levels_, place + 1); ++i)
+      if (visit(i)) return;
+  }
+}
+
+Closest::Hit Closest::operator()(const Vec3& p, double limit) const {
+  Hit hit;
+  double bound = limit * limit;
+  descend(p, bound, [&](std::size_t i) {
+    const OnTriangle on = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
+    const double d2 = square(p - on.point);
+    if (d2 < bound || (d2 == bound && (hit.triangle < 0 || id_[i] < hit.triangle))) {
+      bound = d2;
+      hit = {on.point, 0, id_[i], on.part};
+    }
+    return false;
+  });
+  if (hit.triangle >= 0) hit.distance = std::sqrt(bound);
+  return hit;
+}
+
+bool Closest::within(const Vec3& p, double limit) const {
+  double bound = limit * limit;
+  bool found = false;
+  descend(p, bound, [&](std::size_t i) {
+    const OnTriangle on = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
+    return found = square(p - on.point) <= bound;
+  });
+  return found;
+}
+
+double Closest::distance_to(int t, const Vec3& p) const {
+  const Corners& c = corners_[slot_[t]];
+  return glm::length(p - closest_on_triangle(p, c.a, c.b, c.c).point);
+}
+
+void Closest::prepare_sides(const Mesh& mesh) {
+  triangles_ = mesh.triangles;
+  face_normals_.resize(triangles_.size());
+  edge_normals_.resize(3 * triangles_.size());
+  vertex_normals_.assign(mesh.vertices.size(), Vec3(0));
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Corners& c = corners_[slot_[t]];
+    const std::array<Vec3, 3> p{c.a, c.b, c.c};
+    face_normals_[t] = unit(glm::cross(c.b - c.a, c.c - c.a));
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 e = p[(k + 1) % 3] - p[k], f = p[(k + 2) % 3] - p[k];
+      const double angle = std::atan2(glm::length(glm::cross(e, f)), glm::dot(e, f));
+      vertex_normals_[triangles_[t][k]] += angle * face_normals_[t];
+    }
+  }
+  EdgeTable(mesh).for_each_edge([&](int, std::span<const EdgeTable::Use> uses) {
+    Vec3 sum(0);
+    for (const EdgeTable::Use& use : uses) sum += face_normals_[triangle_of(use.half())];
+    for (const EdgeTable::Use& use : uses) edge_normals_[use.half()] = sum;
+  });
+}
+
+double Closest::signed_distance(const Vec3& p, const Hit& hit) const {
+  Vec3 normal;
+  if (hit.part == OnTriangle::Face)
+    normal = face_normals_[hit.triangle];
+  else if (hit.part <= OnTriangle::EdgeCA)
+    normal = edge_normals_[3 * static_cast<std::size_t>(hit.triangle) + (hit.part - OnTriangle::EdgeAB)];
+  else
+    normal = vertex_normals_[triangles_[hit.triangle][hit.part - OnTriangle::VertexA]];
+  return glm::dot(p - hit.point, normal) < 0 ? -hit.distance : hit.distance;
+}
+
+std::vector<double> deviation(const Mesh& mesh, const Mesh& other, bool with_sign, const Progress& progress) {
+  validate(mesh);
+  const Closest closest(other, with_sign);
+  report(progress, 0);
+  std::vector<double> result(mesh.vertices.size());
+  parallel_for(
+      result.size(), 512,
+      [&](std::size_t begin, std::size_t end) {
+        int last = -1;
+        for (std::size_t i = begin; i < end; ++i) {
+          // The previous vertex's triangle bounds the distance from above: most of the tree is out at once. A little
+          // more than the bound, so that this triangle itself is found again.
+          const Vec3& p = mesh.vertices[i];
+          const double bound = last < 0 ? std::numeric_limits<double>::infinity() : closest.distance_to(last, p);
+          const Closest::Hit hit = closest(p, bound * (1 + 1e-12));
+          last = hit.triangle;
+          result[i] = with_sign ? closest.signed_distance(p, hit) : hit.distance;
+        }
+      },
+      progress);
+  return result;
+}
+
+}  // namespace riffler
