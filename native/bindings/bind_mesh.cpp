@@ -1,7 +1,197 @@
+// riffler.Mesh: triangle meshes, their files, audit, decimation and smoothing.
+#include "mesh/mesh.hpp"
+
+#include <array>
+#include <cstring>
+#include <memory>
+
 #include "bindings/bindings.hpp"
+#include "mesh/audit.hpp"
+#include "mesh/closest.hpp"
+#include "mesh/decimate.hpp"
+#include "mesh/io.hpp"
+#include "mesh/smooth.hpp"
 
 namespace riffler {
 
-void bind_mesh(py::module_&) {}
+namespace {
+
+using MeshPtr = std::shared_ptr<Mesh>;
+using NoGil = py::gil_scoped_release;
+
+/// A read-only view of a vector that `owner` keeps; a Mesh never changes once Python has it.
+template <class T, class V>
+py::array view(const std::vector<V>& values, py::handle owner) {
+  const std::array<py::ssize_t, 2> shape{static_cast<py::ssize_t>(values.size()), 3};
+  py::array array(py::dtype::of<T>(), shape, values.data(), owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+/// (0,) counts as (0, 3), so that empty lists make an empty mesh.
+bool is_empty(const py::array& array) {
+  return array.ndim() == 1 && array.shape(0) == 0;
+}
+
+std::vector<Vec3> to_vertices(const py::object& object) {
+  Doubles array = Doubles::ensure(object);
+  if (!array) {
+    PyErr_Clear();
+    throw py::value_error("vertices must be numbers of the shape (n, 3)");
+  }
+  if (is_empty(array)) return {};
+  const std::size_t n = check_rows(array, 3, "vertices");
+  std::vector<Vec3> vertices(n);
+  if (n > 0) std::memcpy(vertices.data(), array.data(), n * sizeof(Vec3));
+  return vertices;
+}
+
+std::vector<Vec3i> to_triangles(const py::object& object) {
+  const py::array given = py::array::ensure(object);
+  if (!given) {
+    PyErr_Clear();
+    throw py::value_error("triangles must be integers of the shape (k, 3)");
+  }
+  if (is_empty(given)) return {};
+  if (given.ndim() != 2 || given.shape(1) != 3)
+    throw py::value_error("triangles must have the shape (k, 3), not " +
+                          py::str(given.attr("shape")).cast<std::string>());
+  const char kind = given.dtype().kind();
+  if (given.size() > 0 && kind != 'i' && kind != 'u')
+    throw py::value_error("triangles must be integers, not " + py::str(given.dtype()).cast<std::string>());
+  // What does not fit 64 bits becomes negative there, and so is out of range as well.
+  const auto array = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(given);
+  std::vector<Vec3i> triangles(static_cast<std::size_t>(array.shape(0)));
+  const std::int64_t* p = array.data();
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k, ++p) {
+      if (*p < 0 || *p > 0x7fffffff)
+        throw py::value_error("triangles, row " + std::to_string(t) + ": no vertex has the index " +
+                              std::to_string(*p));
+      triangles[t][k] = static_cast<int>(*p);
+    }
+  return triangles;
+}
+
+MeshPtr make(const py::object& vertices, const py::object& triangles) {
+  auto mesh = std::make_shared<Mesh>(Mesh{to_vertices(vertices), to_triangles(triangles)});
+  validate(*mesh);
+  return mesh;
+}
+
+py::dict audit_dict(const Mesh& mesh, const py::object& progress) {
+  Audit a;
+  {
+    const Progress listener = to_progress(progress);
+    const NoGil no_gil;
+    a = audit(mesh, listener);
+  }
+  using namespace py::literals;
+  return py::dict("open_edges"_a = a.open_edges, "nonmanifold_edges"_a = a.nonmanifold_edges,
+                  "nonmanifold_vertices"_a = a.nonmanifold_vertices, "degenerate"_a = a.degenerate,
+                  "duplicates"_a = a.duplicates, "folds"_a = a.folds, "components"_a = a.components,
+                  "volume"_a = a.volume);
+}
+
+py::array_t<double> bounds_array(const Mesh& mesh) {
+  if (mesh.empty()) throw py::value_error("a mesh without triangles has no bounds");
+  const Box3 box = bounds(mesh);
+  return take<double>(std::vector<Vec3>{box.lower, box.upper}, 3);
+}
+
+std::optional<std::size_t> to_count(const std::optional<std::int64_t>& triangles) {
+  if (!triangles) return {};
+  if (*triangles < 0) throw py::value_error("triangles must not be negative, not " + std::to_string(*triangles));
+  return static_cast<std::size_t>(*triangles);
+}
+
+MeshPtr decimated(const Mesh& mesh, std::optional<std::int64_t> triangles, std::optional<double> tolerance,
+                  const py::object& progress) {
+  const DecimateLimits limits{to_count(triangles), tolerance};
+  const Progress listener = to_progress(progress);
+  const NoGil no_gil;
+  return std::make_shared<Mesh>(decimate(mesh, limits, listener));
+}
+
+MeshPtr smoothed(const Mesh& mesh, int iterations, std::optional<double> tolerance, const py::object& progress) {
+  const Progress listener = to_progress(progress);
+  const NoGil no_gil;
+  return std::make_shared<Mesh>(smooth(mesh, iterations, tolerance, listener));
+}
+
+py::array_t<double> deviation_array(const Mesh& mesh, const Mesh& other, bool with_sign, const py::object& progress) {
+  std::vector<double> distances;
+  {
+    const Progress listener = to_progress(progress);
+    const NoGil no_gil;
+    distances = deviation(mesh, other, with_sign, listener);
+  }
+  return take<double>(std::move(distances));
+}
+
+std::string repr(const Mesh& mesh) {
+  return "<riffler.Mesh: " + std::to_string(mesh.vertices.size()) + " vertices, " +
+         std::to_string(mesh.triangles.size()) + " triangles>";
+}
+
+}  // namespace
+
+void bind_mesh(py::module_& m) {
+  using namespace py::literals;
+  py::class_<Mesh, MeshPtr> mesh(m, "Mesh",
+                                 R"(A triangle mesh, mm. It never changes: what changes a mesh returns a new one.
+
+Mesh(vertices, triangles): (n, 3) numbers and (k, 3) integers, indices of vertices, counter-clockwise seen from outside.
+ValueError naming the argument and the row for a wrong shape, a vertex that is not finite or beyond 1e30, an index out of
+range. Vertices are not welded; files are, when they are read.)");
+  mesh.def(py::init(&make), "vertices"_a, "triangles"_a);
+  mesh.def_static(
+      "read", [](const std::filesystem::path& path) { return std::make_shared<Mesh>(read_mesh(path)); }, "path"_a,
+      py::call_guard<NoGil>(),
+      "The mesh in a .stl (binary or ASCII), .obj or .ply file; equal vertices become one. FormatError naming the byte "
+      "or "
+      "line for a bad file, among them those with no triangle; ValueError for another extension.");
+  mesh.def(
+      "write", [](const Mesh& self, const std::filesystem::path& path) { write_mesh(self, path); }, "path"_a,
+      py::call_guard<NoGil>(),
+      "Writes .stl (binary, coordinates rounded to float32), .obj or .ply (binary), whole or not at all.");
+  mesh.def_property_readonly(
+      "vertices", [](const py::object& self) { return view<double>(self.cast<const Mesh&>().vertices, self); },
+      "(n, 3) float64, read-only, no copy.");
+  mesh.def_property_readonly(
+      "triangles", [](const py::object& self) { return view<std::int32_t>(self.cast<const Mesh&>().triangles, self); },
+      "(k, 3) int32, read-only, no copy.");
+  mesh.def_property_readonly("volume", &volume, py::call_guard<NoGil>(), "mm³, signed; of a closed mesh.");
+  mesh.def_property_readonly("area", &area, py::call_guard<NoGil>(), "mm².");
+  mesh.def_property_readonly(
+      "bounds", &bounds_array,
+      "(2, 3) float64, lower and upper corner of the triangles' box. ValueError without triangles.");
+  mesh.def("audit", &audit_dict, py::kw_only(), "progress"_a = py::none(),
+           R"(A dict of counts, all 0 but the last two for a closed two-manifold without defects:
+open_edges (of one triangle), nonmanifold_edges (of three or more, or of two in the same direction),
+nonmanifold_vertices (whose triangles are not one fan), degenerate (a vertex twice, or area exactly 0),
+duplicates (the vertices of an earlier triangle), folds (edges whose two triangles lie on each other),
+components (pieces connected across edges), volume (mm³, signed).)");
+  mesh.def("decimate", &decimated, "triangles"_a = py::none(), "tolerance"_a = py::none(), py::kw_only(),
+           "progress"_a = py::none(),
+           R"(A mesh with fewer of the same vertices: down to `triangles`, or as far as old and new surface stay within
+`tolerance` (mm) of each other, or until the first of both. Closed and two-manifold where this one is.)");
+  mesh.def("smooth", &smoothed, "iterations"_a = 10, "tolerance"_a = py::none(), py::kw_only(),
+           "progress"_a = py::none(),
+           R"(A smoother mesh of the same triangles (Taubin); no vertex moves farther than `tolerance` (mm) in all.
+Vertices on borders stay.)");
+  mesh.def(
+      "deviation", &deviation_array, "other"_a, py::kw_only(), "signed"_a = false, "progress"_a = py::none(),
+      R"((n,) float64: how far (mm) each vertex is from the surface of `other`; with signed=True negative inside.)");
+  mesh.def("__repr__", &repr);
+  mesh.def("__copy__", [](const MeshPtr& self) { return self; });
+  mesh.def("__deepcopy__", [](const MeshPtr& self, const py::dict&) { return self; }, "memo"_a);
+  mesh.def(
+      py::pickle([](const py::object& self) { return py::make_tuple(self.attr("vertices"), self.attr("triangles")); },
+                 [](const py::tuple& state) {
+                   if (state.size() != 2) throw py::value_error("a pickled Mesh has two arrays");
+                   return make(state[0], state[1]);
+                 }));
+}
 
 }  // namespace riffler

@@ -216,6 +216,7 @@ double Closest::signed_distance(const Vec3& p, const Hit& hit) const {
 
 std::vector<double> deviation(const Mesh& mesh, const Mesh& other, bool with_sign, const Progress& progress) {
   validate(mesh);
+  if (other.empty()) throw std::invalid_argument("other: a mesh without triangles has no nearest point");
   const Closest closest(other, with_sign);
   report(progress, 0);
   std::vector<double> result(mesh.vertices.size());

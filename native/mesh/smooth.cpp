@@ -1,0 +1,156 @@
+#include "mesh/smooth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "geom/parallel.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/weld.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr std::size_t kGrain = 1 << 13;
+constexpr double kShrink = 0.5, kInflate = -0.53;
+
+/// The neighbours of every vertex; none for those that must stay.
+class Neighbours {
+ public:
+  explicit Neighbours(const Mesh& mesh) : begin_(mesh.vertices.size() + 1, 0) {
+    const Adjacency adjacency(mesh);
+    std::vector<char> fixed(mesh.vertices.size(), 0);
+    const int halves = static_cast<int>(3 * mesh.triangles.size());
+    for (int half = 0; half < halves; ++half)
+      if (adjacency.twin(half) < 0) fixed[start_of(mesh, half)] = fixed[end_of(mesh, half)] = 1;
+    for (int half = 0; half < halves; ++half)
+      if (const int v = start_of(mesh, half); !fixed[v]) ++begin_[v + 1];
+    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    other_.resize(begin_.back());
+    std::vector<std::size_t> at(begin_.begin(), begin_.end() - 1);
+    // Around a vertex without border every neighbour is the end of just one half-edge.
+    for (int half = 0; half < halves; ++half)
+      if (const int v = start_of(mesh, half); !fixed[v]) other_[at[v]++] = end_of(mesh, half);
+  }
+
+  std::span<const int> of(std::size_t v) const {
+    return std::span(other_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
+  }
+
+ private:
+  std::vector<std::size_t> begin_;
+  std::vector<int> other_;
+};
+
+/// p, or the point of the ball about `home` towards it.
+Vec3 limited(const Vec3& p, const Vec3& home, double limit) {
+  const Vec3 moved = p - home;
+  const double length = glm::length(moved);
+  return length > limit ? home + (limit / length) * moved : p;
+}
+
+/// One step of every vertex towards (factor > 0) or away from the mean of its neighbours.
+void step(const std::vector<Vec3>& from, std::vector<Vec3>& to, const Mesh& mesh, const Neighbours& neighbours,
+          double factor, double limit) {
+  parallel_for(from.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const std::span<const int> others = neighbours.of(v);
+      to[v] = from[v];
+      if (others.empty()) continue;
+      Vec3 sum(0);
+      for (const int other : others) sum += from[other] - from[v];
+      to[v] = limited(from[v] + (factor / static_cast<double>(others.size())) * sum, mesh.vertices[v], limit);
+    }
+  });
+}
+
+Vec3 cross_in_float(const std::vector<Vec3>& vertices, const Vec3i& t) {
+  const Vec3 a(Vec3f(vertices[t.x])), b(Vec3f(vertices[t.y])), c(Vec3f(vertices[t.z]));
+  return glm::cross(b - a, c - a);
+}
+
+bool opposed(const Vec3& a, const Vec3& b) {
+  return glm::dot(a, b) < -0.9 * glm::length(a) * glm::length(b);
+}
+
+/// Puts vertices back until nothing is wrong; at the latest everything is back where it was.
+class Repair {
+ public:
+  Repair(const Mesh& mesh, std::vector<Vec3>& vertices) : mesh_(mesh), vertices_(vertices), adjacency_(mesh) {
+    for (const Vec3i& t : mesh.triangles) old_.push_back(cross_in_float(mesh.vertices, t));
+  }
+
+  void run() {
+    for (;;) {
+      back_.assign(vertices_.size(), 0);
+      mark_triangles();
+      mark_meeting();
+      bool any = false;
+      for (std::size_t v = 0; v < back_.size(); ++v)
+        if (back_[v] && vertices_[v] != mesh_.vertices[v]) vertices_[v] = mesh_.vertices[v], any = true;
+      if (!any) return;
+    }
+  }
+
+ private:
+  void mark(int t) {
+    for (int k = 0; k < 3; ++k) back_[mesh_.triangles[t][k]] = 1;
+  }
+
+  void mark_triangles() {
+    std::vector<Vec3> now(mesh_.triangles.size());
+    parallel_for(now.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) now[t] = cross_in_float(vertices_, mesh_.triangles[t]);
+    });
+    for (int t = 0; t < static_cast<int>(now.size()); ++t) {
+      if (old_[t] != Vec3(0) && !(glm::dot(now[t], old_[t]) > 0)) mark(t);
+      for (int half = 3 * t; half < 3 * t + 3; ++half)
+        if (const int twin = adjacency_.twin(half); twin > half && opposed(now[t], now[twin / 3]))
+          if (!opposed(old_[t], old_[twin / 3])) mark(t), mark(twin / 3);
+    }
+  }
+
+  /// Vertices that moved onto another one.
+  void mark_meeting() {
+    Welder<Vec3f> welder(vertices_.size());
+    std::vector<int> first;
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+      const int place = welder.add(Vec3f(vertices_[v]));
+      if (place == static_cast<int>(first.size()))
+        first.push_back(static_cast<int>(v));
+      else
+        back_[v] = back_[first[place]] = 1;
+    }
+  }
+
+  const Mesh& mesh_;
+  std::vector<Vec3>& vertices_;
+  Adjacency adjacency_;
+  std::vector<Vec3> old_;
+  std::vector<char> back_;
+};
+
+}  // namespace
+
+Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, const Progress& progress) {
+  if (iterations < 0) throw std::invalid_argument("iterations must not be negative, not " + std::to_string(iterations));
+  if (tolerance && !(*tolerance >= 0 && std::isfinite(*tolerance)))
+    throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*tolerance));
+  validate(mesh);
+  const Neighbours neighbours(mesh);
+  // A hair less than asked for, so that rounding does not exceed it.
+  const double limit = tolerance ? *tolerance * (1 - 1e-12) : std::numeric_limits<double>::infinity();
+  std::vector<Vec3> vertices = mesh.vertices, scratch(vertices.size());
+  for (int i = 0; i < iterations; ++i) {
+    report(progress, 0.9 * i / iterations);
+    step(vertices, scratch, mesh, neighbours, kShrink, limit);
+    step(scratch, vertices, mesh, neighbours, kInflate, limit);
+  }
+  if (iterations > 0) Repair(mesh, vertices).run();
+  return {std::move(vertices), mesh.triangles};
+}
+
+}  // namespace riffler
