@@ -5,6 +5,8 @@ target_compile_options(
   INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
             # Results decide topology and must agree between machines: no contraction into fused multiply-adds.
             -ffp-contract=off)
+# A shared library is loaded only where something of it is called.
+target_link_options(riffler_options INTERFACE LINKER:--as-needed)
 if(RIFFLER_WERROR)
   target_compile_options(riffler_options INTERFACE -Werror)
 endif()

@@ -1,0 +1,76 @@
+# Everything the project does has one command here; the work is in tools/. `make help` lists them.
+# Each target brings what it stands on up to date first, and is quick where nothing changed.
+
+# Blender 4.2 to 5.0 speak Python 3.11, and so does the project where it is there.
+PYTHON ?= $(shell for p in python3.11 python3; do $$p -c '' 2>/dev/null && echo $$p && break; done)
+ready  := $(PYTHON) tools/setup.py
+python := .venv/bin/python
+
+# `make test` runs one recipe after the other; the tools use all cores themselves.
+.NOTPARALLEL:
+.PHONY: help setup demo test test-cpp test-python test-docs test-blender bench lint format sanitize docs package clean
+.DEFAULT_GOAL := help
+
+help:  ## Show this list
+	@sed -n 's/^\([a-z -]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 24
+
+setup:  ## Install what is needed, make .venv, build riffler into it
+	@$(ready)
+
+demo:  ## Carve the demo figure, write STL and NC code, render it: out/demo
+	@$(ready) demo
+	$(python) demo/run.py --out out/demo --blender-python .envs/bpy-4.5/bin/python
+
+test:  ## Run every test: C++, Python, documents, Blender
+	@$(ready) test
+	@$(python) tools/test.py
+
+test-cpp:  ## Run the C++ tests only
+	@$(ready) cpp-tests
+	@$(python) tools/test.py cpp
+
+test-python test-docs:  ## Run the Python tests or the documents' examples only
+	@$(ready)
+	@$(python) tools/test.py $(@:test-%=%)
+
+test-blender:  ## Run the Blender tests only
+	@$(ready) test
+	@$(python) tools/test.py blender
+
+bench:  ## Measure run time and error: out/bench
+	@$(ready) bench
+	$(python) tools/preset.py bench
+	mkdir -p out/bench
+	build/bench/native/bench/riffler_bench --benchmark_out=out/bench/native.json
+	$(python) native/bench/run.py --out out/bench
+
+lint:  ## Check style, layers, and that every header stands alone
+	@$(ready) cpp-tests
+	$(python) -m ruff check .
+	$(python) -m ruff format --check .
+	find native -name '*.[ch]pp' | xargs .venv/bin/clang-format --dry-run -Werror
+	$(python) tools/check_layers.py
+	$(python) tools/preset.py release riffler_core_verify_interface_header_sets
+
+format:  ## Bring all sources into style
+	@$(ready)
+	find native -name '*.[ch]pp' | xargs .venv/bin/clang-format -i
+	$(python) -m ruff check --fix-only --quiet .
+	$(python) -m ruff format .
+
+sanitize:  ## Run the C++ tests under the address and undefined-behaviour sanitizers
+	@$(ready) cpp-tests
+	$(python) tools/preset.py asan riffler_tests
+	build/asan/native/tests/riffler_tests --gtest_brief=1
+
+docs:  ## Check links and examples, collect the documents and the API reference: out/docs
+	@$(ready)
+	$(python) tools/check_docs.py
+	$(python) tools/collect_docs.py
+
+package:  ## Make the wheel and the Blender extension: dist
+	@$(ready)
+	$(python) tools/package.py
+
+clean:  ## Remove what was built (not .venv and .envs)
+	rm -rf build out dist

@@ -1,0 +1,129 @@
+"""Checks the Markdown documents: relative links and anchors lead somewhere, Python examples and `riffler` command lines
+run. All ```python blocks of a document run as one script, then the lines of its ```sh blocks that start with `riffler`,
+in an empty folder. A block under the line `<!-- not run: reason -->` is left out, and the reason printed.
+
+    tools/check_docs.py [FILE ...]
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from shell import PYTHON, ROOT, main, tool_environment
+
+LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
+FENCE = re.compile(r"^(\s*)(```+|~~~+)\s*(\w*)")
+NOT_RUN = re.compile(r"<!--\s*not run:\s*(.+?)\s*-->")
+CODE = re.compile(r"`[^`]*`")
+SECONDS = 300
+
+
+@dataclass
+class Document:
+    """A Markdown file taken apart."""
+
+    path: Path
+    links: list[tuple[int, str]] = field(default_factory=list)
+    anchors: set[str] = field(default_factory=set)
+    python: list[str] = field(default_factory=list)  # as many lines as the file has, so that line numbers agree
+    commands: list[tuple[int, str]] = field(default_factory=list)
+    blocks: int = 0
+    skipped: list[tuple[int, str]] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        return str(self.path.relative_to(ROOT))
+
+
+def slug(heading: str) -> str:
+    """The anchor that GitHub gives a heading."""
+    text = re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading.strip().lower())
+    return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+
+
+def read(path: Path) -> Document:
+    document = Document(path)
+    fence = language = None
+    previous = ""
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        document.python.append("")
+        match = FENCE.match(line)
+        if fence is None and match:
+            fence, language = match[2], match[3]
+            if above := NOT_RUN.search(previous):
+                document.skipped.append((number, above[1]))
+                language = None
+            document.blocks += language == "python"
+        elif fence is not None and match and match[2].startswith(fence) and not match[3]:
+            fence = language = None
+        elif fence is not None:
+            if language == "python":
+                document.python[-1] = line
+            elif language == "sh" and line.startswith("riffler "):
+                document.commands.append((number, line))
+        else:
+            if line.startswith("#"):
+                document.anchors.add(slug(line.lstrip("#")))
+            document.links += ((number, target) for target in LINK.findall(CODE.sub("", line)))
+        previous = line
+    return document
+
+
+def link_problems(document: Document, documents: dict[Path, Document]) -> list[str]:
+    problems = []
+    for number, target in document.links:
+        if re.match(r"[a-z]+:", target):
+            continue
+        name, _, anchor = target.partition("#")
+        path = (document.path.parent / name).resolve() if name else document.path
+        if not path.exists():
+            problems.append(f"{document.name}:{number}: {target}: no such file")
+        elif anchor and path in documents and anchor not in documents[path].anchors:
+            problems.append(f"{document.name}:{number}: {target}: no such heading")
+    return problems
+
+
+def example_problems(document: Document) -> list[str]:
+    with tempfile.TemporaryDirectory() as folder:
+        steps = []
+        if document.blocks:
+            script = Path(folder, document.path.name + ".py")
+            script.write_text("\n".join(document.python))
+            steps.append((f"{document.name}: its Python examples", [str(PYTHON), script.name]))
+        steps += ((f"{document.name}:{number}: {line}", ["sh", "-c", line]) for number, line in document.commands)
+        for what, command in steps:
+            result = subprocess.run(command, cwd=folder, env=tool_environment(), timeout=SECONDS, check=False,
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
+            if result.returncode != 0:
+                return [f"{what}: exit code {result.returncode}\n{result.stdout}"]
+    return []
+
+
+def entry() -> None:
+    every = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
+    every += (path for folder in ("docs", "addon", "device") for path in (ROOT / folder).rglob("*.md"))
+    documents = {path: read(path) for path in sorted(every)}
+    wanted = [Path(name).resolve() for name in sys.argv[1:]] or list(documents)
+    problems = []
+    for path in wanted:
+        document = documents[path]
+        problems += link_problems(document, documents) + example_problems(document)
+        for number, reason in document.skipped:
+            print(f"{document.name}:{number}: not run: {reason}")
+    print("\n".join(problems))
+    chosen = [documents[path] for path in wanted]
+    print(
+        f"docs: {len(chosen)} documents, {sum(len(d.links) for d in chosen)} links, "
+        f"{sum(d.blocks for d in chosen)} Python examples, {sum(len(d.commands) for d in chosen)} command lines: "
+        + (f"{len(problems)} PROBLEMS" if problems else "all right")
+    )
+    sys.exit(bool(problems))
+
+
+if __name__ == "__main__":
+    main(entry)

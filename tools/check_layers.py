@@ -1,0 +1,64 @@
+"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core never touches Python,
+and addon/core never touches Blender. Prints every line that breaks a rule and exits 1."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+from shell import ROOT, StepError, main
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+IMPORTS_BLENDER = re.compile(r"^\s*(?:import|from)\s+(?:bpy|bmesh|gpu|mathutils|blf|bl_\w+)\b")
+
+
+def topics() -> list[str]:
+    """The order of the topics, as the build has it."""
+    match = re.search(r"set\(RIFFLER_TOPICS ([^)]*)\)", (ROOT / "CMakeLists.txt").read_text())
+    if not match:
+        raise StepError("CMakeLists.txt sets no RIFFLER_TOPICS")
+    return match[1].split()
+
+
+def lines(folder: Path, *suffixes: str):
+    for path in sorted(folder.rglob("*")):
+        if path.suffix in suffixes:
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                yield f"{path.relative_to(ROOT)}:{number}", line
+
+
+def includes(folder: Path):
+    for place, line in lines(folder, ".cpp", ".hpp"):
+        if match := INCLUDE.match(line):
+            yield place, match[1], match[2]
+
+
+def core_problems() -> list[str]:
+    order = topics()
+    problems = []
+    for rank, topic in enumerate(order):
+        for place, quote, name in includes(ROOT / "native" / topic):
+            folder = name.split("/")[0]
+            if name == "Python.h" or folder == "pybind11":
+                problems.append(f"{place}: the core includes {name}")
+            elif quote == '"' and "/" not in name:
+                problems.append(f"{place}: write the topic's folder: {topic}/{name}")
+            elif quote == '"' and folder not in order[: rank + 1]:
+                problems.append(f"{place}: {topic} includes {name}, which is not above it")
+    return problems
+
+
+def addon_problems() -> list[str]:
+    core = ROOT / "addon" / "core"
+    return [f"{place}: addon/core imports Blender" for place, line in lines(core, ".py") if IMPORTS_BLENDER.match(line)]
+
+
+def entry() -> None:
+    problems = core_problems() + addon_problems()
+    print("\n".join(problems) or "layers: every include points upwards")
+    sys.exit(bool(problems))
+
+
+if __name__ == "__main__":
+    main(entry)

@@ -1,0 +1,144 @@
+"""What the machine itself must have: checked for, installed by apt where that may be done, named where not."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from shell import StepError, say
+
+
+@dataclass(frozen=True)
+class Need:
+    """One thing, how to see that it is there, Debian's package of it, and where everybody else finds it."""
+
+    what: str
+    package: str
+    where: str
+    found: Callable[[], bool]
+
+
+@cache
+def compiler() -> str | None:
+    """The C++ compiler that CMake will take as well."""
+    wanted = os.environ.get("CXX")
+    return next((c for c in ([wanted] if wanted else ["c++", "g++", "clang++"]) if shutil.which(c)), None)
+
+
+def preprocesses(text: str) -> bool:
+    """Whether the compiler gets through `text` in C++20."""
+    if compiler() is None:
+        return False
+    command = [compiler(), "-std=c++20", "-x", "c++", "-E", "-o", os.devnull, "-"]
+    return subprocess.run(command, input=text, text=True, capture_output=True, check=False).returncode == 0
+
+
+def header(name: str) -> Callable[[], bool]:
+    return lambda: preprocesses(f"#if !__has_include(<{name}>)\n#error missing\n#endif\n")
+
+
+def program(name: str) -> Callable[[], bool]:
+    return lambda: shutil.which(name) is not None
+
+
+def library(name: str) -> Callable[[], bool]:
+    def found() -> bool:
+        try:
+            ctypes.CDLL(name)
+        except OSError:
+            return False
+        return True
+
+    return found
+
+
+def python_header() -> bool:
+    return Path(sysconfig.get_path("include"), "Python.h").is_file()
+
+
+def python_environments() -> bool:
+    """venv needs ensurepip, or a pip of this interpreter that can install into another one (22.3 and later)."""
+    if importlib.util.find_spec("ensurepip") is not None:
+        return True
+    pip = [sys.executable, "-m", "pip", "--python", sys.executable, "--version"]
+    return subprocess.run(pip, capture_output=True, check=False).returncode == 0
+
+
+BUILD = [
+    Need("a C++20 compiler", "g++", "GCC 12 or Clang 16, or later", lambda: preprocesses("#include <span>\n")),
+    Need("pkg-config", "pkg-config", "https://www.freedesktop.org/wiki/Software/pkg-config/", program("pkg-config")),
+    Need("GLM headers", "libglm-dev", "https://github.com/g-truc/glm", header("glm/glm.hpp")),
+    Need("OpenMesh", "libopenmesh-dev", "https://www.graphics.rwth-aachen.de/software/openmesh/",
+         header("OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh")),
+    Need("hidapi (hidraw)", "libhidapi-dev", "https://github.com/libusb/hidapi", header("hidapi/hidapi.h")),
+    Need("zlib headers", "zlib1g-dev", "https://zlib.net", header("zlib.h")),
+    Need("Python.h of this Python", "python3-dev", "your Python's development package", python_header),
+    Need("ensurepip or pip 22.3", "python3-venv", "https://pip.pypa.io", python_environments),
+]  # fmt: skip
+
+# The bpy wheels link these and do not carry them (ldd on their libraries). They come with any desktop.
+BLENDER_MODULE = [
+    Need(f"shared library {name}", package, "your desktop's X11 and OpenGL packages", library(name))
+    for name, package in {
+        "libX11.so.6": "libx11-6", "libXrender.so.1": "libxrender1", "libXxf86vm.so.1": "libxxf86vm1",
+        "libXfixes.so.3": "libxfixes3", "libXi.so.6": "libxi6", "libXext.so.6": "libxext6", "libXt.so.6": "libxt6",
+        "libSM.so.6": "libsm6", "libICE.so.6": "libice6", "libxkbcommon.so.0": "libxkbcommon0", "libGL.so.1": "libgl1",
+        "libgomp.so.1": "libgomp1",
+    }.items()
+]  # fmt: skip
+
+CPP_TESTS = [Need("GoogleTest", "libgtest-dev", "https://github.com/google/googletest", header("gtest/gtest.h"))]
+
+BLENDER_WINDOW = [
+    Need("Blender with a window", "blender", "https://www.blender.org/download/", program("blender")),
+    Need("a virtual display: xvfb-run", "xvfb", "your X server's packages", program("xvfb-run")),
+    Need("xauth", "xauth", "your X server's packages", program("xauth")),
+    Need("OpenGL in software", "libgl1-mesa-dri", "https://mesa3d.org", library("libGLX_mesa.so.0")),
+    Need("EGL", "libegl1", "https://mesa3d.org", library("libEGL.so.1")),
+    Need("ImageMagick's import", "imagemagick", "https://imagemagick.org", program("import")),
+]
+
+BENCH = [
+    Need("Google Benchmark", "libbenchmark-dev", "https://github.com/google/benchmark", header("benchmark/benchmark.h"))
+]
+
+
+def require(needs: list[Need]) -> None:
+    """Makes sure of every need: by apt as root on Debian and its kin, otherwise StepError with the exact list."""
+    missing = [need for need in needs if not need.found()]
+    if not missing:
+        return
+    packages = sorted({need.package for need in missing})
+    if os.geteuid() == 0 and shutil.which("apt-get"):
+        apt_install(packages)
+        compiler.cache_clear()
+        missing = [need for need in missing if not need.found()]
+        if not missing:
+            return
+    lines = [f"  {need.what:<34} Debian: {need.package:<18} elsewhere: {need.where}" for need in missing]
+    hint = f"\nOn Debian or Ubuntu, as root:\n  apt-get install --no-install-recommends {' '.join(packages)}"
+    raise StepError("this machine lacks\n" + "\n".join(lines) + hint)
+
+
+def apt_install(packages: list[str]) -> None:
+    """Installs; where that fails, repairs an interrupted dpkg, refreshes the lists and tries twice more."""
+    say(f"apt-get install {' '.join(packages)}")
+    env = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
+    options = ["-q", "-y", "--no-install-recommends", "-o", "Acquire::Retries=3", "-o", "DPkg::Lock::Timeout=600"]
+    install = ["apt-get", "install", *options, *packages]
+    for repair in [[], ["apt-get", "update", "-q"], ["apt-get", "install", "-f", *options]]:
+        if repair:
+            subprocess.run(["dpkg", "--configure", "-a"], env=env, check=False)
+            subprocess.run(repair, env=env, check=False)
+        if subprocess.run(install, env=env, check=False).returncode == 0:
+            return
+    say("apt-get did not install everything")

@@ -1,0 +1,47 @@
+"""Our own wheel, built in place by scikit-build-core in a kept directory: a second build compiles only what changed."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from shell import PYTHON, ROOT, StepError, digest, is_stamped, run, say, tool_environment, write_stamp
+
+FOLDER = ROOT / "build" / "wheel"
+# Folders of native/ that do not go into the wheel.
+NOT_SHIPPED = {"tests", "bench", "fuzz"}
+
+
+def sources() -> list[Path]:
+    """Every file that the wheel depends on."""
+    files = [ROOT / name for name in ("CMakeLists.txt", "pyproject.toml", "README.md", "LICENSE")]
+    files += (ROOT / "cmake").rglob("*.cmake")
+    for topic in (ROOT / "native").iterdir():
+        if topic.is_dir() and topic.name not in NOT_SHIPPED:
+            files += (f for f in topic.rglob("*") if f.is_file() and f.suffix not in {".so", ".pyc"})
+    return files
+
+
+def build_wheel() -> tuple[Path, str]:
+    """The wheel of the present sources and the digest that names them."""
+    flags = [f"{name}={os.environ.get(name, '')}" for name in ("CXX", "CXXFLAGS", "LDFLAGS", "CMAKE_ARGS")]
+    requirements = ROOT / "requirements" / "dev.txt"
+    key = digest([*sources(), requirements], sys.version, *flags)
+    stamp = FOLDER / ".stamp"
+    wheels = list(FOLDER.glob("riffler-*.whl"))
+    if is_stamped(stamp, key) and len(wheels) == 1:
+        return wheels[0], key
+    say("building riffler's wheel")
+    stamp.unlink(missing_ok=True)
+    for old in wheels:
+        old.unlink()
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    # The PEP 517 hook that pip would call, called directly: the compiler's progress stays visible.
+    hook = "import sys; from scikit_build_core.build import build_wheel; build_wheel(sys.argv[1])"
+    run(PYTHON, "-c", hook, FOLDER, env=tool_environment(CMAKE_GENERATOR="Ninja"))
+    wheels = list(FOLDER.glob("riffler-*.whl"))
+    if len(wheels) != 1:
+        raise StepError(f"expected one wheel in {FOLDER.relative_to(ROOT)}, found {len(wheels)}")
+    write_stamp(stamp, key)
+    return wheels[0], key
