@@ -133,7 +133,8 @@ def apt_install(packages: list[str]) -> None:
     """Installs; where that fails, repairs an interrupted dpkg, refreshes the lists and tries twice more."""
     say(f"apt-get install {' '.join(packages)}")
     env = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
-    options = ["-q", "-y", "--no-install-recommends", "-o", "Acquire::Retries=3", "-o", "DPkg::Lock::Timeout=600"]
+    options = ["-q", "-y", "--no-install-recommends", "-oDpkg::Use-Pty=0", "-oAcquire::Retries=3"]
+    options += ["-oDPkg::Lock::Timeout=600"]
     install = ["apt-get", "install", *options, *packages]
     for repair in [[], ["apt-get", "update", "-q"], ["apt-get", "install", "-f", *options]]:
         if repair:
