@@ -73,6 +73,14 @@ def python_environments() -> bool:
     return subprocess.run(pip, capture_output=True, check=False).returncode == 0
 
 
+def numpy_for_packaged_blender() -> bool:
+    """A distribution's Blender runs the distribution's Python and does not insist on numpy; others carry their own."""
+    if shutil.which("blender") not in {None, "/usr/bin/blender"}:
+        return True
+    command = ["/usr/bin/python3", "-c", "import numpy"]
+    return subprocess.run(command, env={}, capture_output=True, check=False).returncode == 0
+
+
 BUILD = [
     Need("a C++20 compiler", "g++", "GCC 12 or Clang 16, or later", lambda: preprocesses("#include <span>\n")),
     Need("pkg-config", "pkg-config", "https://www.freedesktop.org/wiki/Software/pkg-config/", program("pkg-config")),
@@ -100,6 +108,7 @@ CPP_TESTS = [Need("GoogleTest", "libgtest-dev", "https://github.com/google/googl
 
 BLENDER_WINDOW = [
     Need("Blender with a window", "blender", "https://www.blender.org/download/", program("blender")),
+    Need("numpy beside that Blender", "python3-numpy", "https://numpy.org", numpy_for_packaged_blender),
     Need("a virtual display: xvfb-run", "xvfb", "your X server's packages", program("xvfb-run")),
     Need("xauth", "xauth", "your X server's packages", program("xauth")),
     Need("OpenGL in software", "libgl1-mesa-dri", "https://mesa3d.org", library("libGLX_mesa.so.0")),
