@@ -1,0 +1,66 @@
+#include "marching/diagonal.hpp"
+
+#include <cmath>
+
+namespace riffler::marching {
+
+namespace {
+
+/// The quad seen along its edge, from outside: two coordinates across, the height along.
+struct Projection {
+  Vec2 p[4];
+  double height[4];
+  double area012, area023, area123, area130;  // doubled
+
+  explicit Projection(const Quad& q) {
+    const int b = (q.axis + 1) % 3, c = (q.axis + 2) % 3;
+    for (int n = 0; n < 4; ++n) {
+      // Seen from the other side left and right change places.
+      p[n] = {q.side * (q.corner[n][b] - q.corner[0][b]), q.corner[n][c] - q.corner[0][c]};
+      height[n] = q.corner[n][q.axis] - q.corner[0][q.axis];
+    }
+    area012 = twice_area(0, 1, 2), area023 = twice_area(0, 2, 3);
+    area123 = twice_area(1, 2, 3), area130 = twice_area(1, 3, 0);
+  }
+  double twice_area(int r, int s, int t) const { return cross(p[s] - p[r], p[t] - p[r]); }
+  static double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
+
+  /// Height over `o` of the triangle (r, s, t), whose doubled area is given.
+  double height_at(const Vec2& o, int r, int s, int t, double area) const {
+    const double at_s = cross(p[t] - o, p[r] - o), at_t = cross(p[r] - o, p[s] - o);
+    return height[r] + ((height[s] - height[r]) * at_s + (height[t] - height[r]) * at_t) / area;
+  }
+};
+
+double squared_length(const Vec3& v) {
+  return glm::dot(v, v);
+}
+
+}  // namespace
+
+Diagonals valid_diagonals(const Quad& quad) {
+  const Projection s(quad);
+  return {s.area012 > 0 && s.area023 > 0, s.area123 > 0 && s.area130 > 0};
+}
+
+int choose_diagonal(const Quad& quad, const Vec3& hit, double tie) {
+  const Projection s(quad);
+  const bool first = s.area012 > 0 && s.area023 > 0, second = s.area123 > 0 && s.area130 > 0;
+  if (!first || !second) return first ? 0 : second ? 1 : -1;
+  // Six times the volume between the two surfaces over their area: how far apart they are at most, about.
+  const double apart = s.height[1] * s.area023 + s.height[3] * s.area012 - s.height[2] * s.area130;
+  if (std::abs(apart) > tie * (s.area012 + s.area023)) {
+    const int b = (quad.axis + 1) % 3, c = (quad.axis + 2) % 3;
+    const Vec2 o{quad.side * (hit[b] - quad.corner[0][b]), hit[c] - quad.corner[0][c]};
+    const double target = hit[quad.axis] - quad.corner[0][quad.axis];
+    const double at_first =
+        Projection::cross(s.p[2], o) < 0 ? s.height_at(o, 0, 1, 2, s.area012) : s.height_at(o, 0, 2, 3, s.area023);
+    const double at_second = Projection::cross(s.p[3] - s.p[1], o - s.p[1]) < 0 ? s.height_at(o, 1, 2, 3, s.area123)
+                                                                                : s.height_at(o, 1, 3, 0, s.area130);
+    const double first_off = std::abs(at_first - target), second_off = std::abs(at_second - target);
+    if (std::abs(first_off - second_off) > tie) return first_off < second_off ? 0 : 1;
+  }
+  return squared_length(quad.corner[2] - quad.corner[0]) <= squared_length(quad.corner[3] - quad.corner[1]) ? 0 : 1;
+}
+
+}  // namespace riffler::marching

@@ -1,0 +1,74 @@
+#include "marching/float_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler::marching {
+
+namespace {
+
+/// Nearest integer for |x| < 2^51, without a library call: the sum's unit is 1.
+double round_to_integer(double x) {
+  constexpr double shift = 0x1.8p52;
+  return (x + shift) - shift;
+}
+
+/// Nearest number ≡ rest modulo `modulus`.
+double round_to_class(double x, int rest, int modulus) {
+  return modulus * round_to_integer((x - rest) / modulus) + rest;
+}
+
+}  // namespace
+
+FloatGrid::FloatGrid(const Lattice& lattice)
+    : step_(lattice.step()), steps_per_cell_(lattice.pitch() / lattice.step()) {
+  opening_ = std::clamp(0.5 - 6 / steps_per_cell_, 0.0, 0.49);
+  for (int a = 0; a < 3; ++a) {
+    range_[a].resize(lattice.cells(a));
+    for (int n = 0; n < lattice.cells(a); ++n) {
+      Range& r = range_[a][n];
+      r.base = lattice.at(a, n) / step_;
+      r.low = std::floor(r.base) + 1, r.high = std::ceil(lattice.at(a, n + 1) / step_) - 1;
+      if (a == 0) r.low = 2 * std::ceil(r.low / 2), r.high = 2 * std::floor(r.high / 2);
+    }
+  }
+}
+
+Vec3 FloatGrid::inside(const Vec3i& cell, const Vec3& p) const {
+  const Range &x = range_[0][cell.x], &y = range_[1][cell.y], &z = range_[2][cell.z];
+  const Vec3 q{2 * round_to_integer((x.base + p.x * steps_per_cell_) / 2),
+               round_to_integer(y.base + p.y * steps_per_cell_), round_to_integer(z.base + p.z * steps_per_cell_)};
+  return Vec3{std::clamp(q.x, x.low, x.high), std::clamp(q.y, y.low, y.high), std::clamp(q.z, z.low, z.high)} * step_;
+}
+
+Vec3 FloatGrid::outside(const Vec3i& cell, const Vec3& p, int opened) const {
+  Vec3 out;
+  for (int a = 0; a < 3; ++a) {
+    const Range& r = range_[a][cell[a]];
+    double q = r.base + p[a] * steps_per_cell_;
+    if (!(opened >> (2 * a) & 1)) q = std::max(q, r.low + 4);
+    if (!(opened >> (2 * a + 1) & 1)) q = std::min(q, r.high - 4);
+    const int odd = cell[a] & 1;
+    out[a] = a == 0 ? round_to_class(q, 2 * odd + 1, 4) : round_to_class(q, odd, 2);
+  }
+  return out * step_;
+}
+
+Vec3 FloatGrid::to_cell(const Vec3i& cell, const Vec3& v) const {
+  Vec3 p;
+  for (int a = 0; a < 3; ++a) p[a] = (v[a] / step_ - range_[a][cell[a]].base) / steps_per_cell_;
+  return p;
+}
+
+Vec3i FloatGrid::cell_of(const Vec3& v) const {
+  Vec3i cell;
+  for (int a = 0; a < 3; ++a) {
+    const auto& ranges = range_[a];
+    const auto above = std::upper_bound(ranges.begin(), ranges.end(), v[a] / step_,
+                                        [](double q, const Range& r) { return q < r.low; });
+    cell[a] = static_cast<int>(above - ranges.begin()) - 1;
+  }
+  return cell;
+}
+
+}  // namespace riffler::marching

@@ -1,0 +1,39 @@
+// Places that vertices may take: multiples of the float32 step u, chosen so that no two vertices ever share one.
+//
+// A vertex inside its cell keeps off the cell's walls and has an even x; a vertex outside has an odd x and parities
+// that say which cell it came from. Vertices of different cells therefore differ, as do the floats written to a file.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "marching/lattice.hpp"
+
+namespace riffler::marching {
+
+class FloatGrid {
+ public:
+  explicit FloatGrid(const Lattice& lattice);
+
+  /// Nearest place strictly inside cell `cell` to the point `p` (cell units: the cell is [0, 1]³).
+  Vec3 inside(const Vec3i& cell, const Vec3& p) const;
+  /// Nearest place for a vertex outside its cell: at least four steps off each wall whose bit in `opened` (2 axis +
+  /// side) is not set, no limit at the others.
+  Vec3 outside(const Vec3i& cell, const Vec3& p, int opened) const;
+  /// How far vertices may leave their cell, in cells: 0 where the float32 steps are too coarse for it.
+  double opening() const { return opening_; }
+  double step() const { return step_; }
+  /// `v` (world units) in cell units of `cell`.
+  Vec3 to_cell(const Vec3i& cell, const Vec3& v) const;
+  /// The cell that contains a vertex made by `inside`.
+  Vec3i cell_of(const Vec3& v) const;
+
+ private:
+  struct Range {
+    double base, low, high;  // lower wall, least and greatest place in the open cell, in steps
+  };
+  std::array<std::vector<Range>, 3> range_;
+  double step_, steps_per_cell_, opening_;
+};
+
+}  // namespace riffler::marching

@@ -1,0 +1,30 @@
+// Where the surface crosses a lattice edge, and its normal there.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "marching/counts.hpp"
+
+namespace riffler::marching {
+
+/// Topology never depends on hits: signs alone say which edges are crossed.
+struct Hit {
+  /// Place along the edge in pitches, up to half a pitch outside [0, 1] where the ray's own end lies there. A weak hit
+  /// is one that its ray does not really have: no end near, or an end whose normal looks the wrong way; it has the axis
+  /// as its normal and is stored kWeak lower.
+  float place;
+  std::array<float, 3> normal;  // unit, out of the material, in the lattice's axes
+
+  static constexpr float kWeak = 8;
+  bool weak() const { return place < -kWeak / 2; }
+  double t() const { return weak() ? place + kWeak : place; }
+};
+
+/// One hit for each crossed edge, in the order of `counts`. In a volume of one direction the edges across the rays are
+/// crossed in the middle, half a pitch from the ray, with the axis as normal; the ends of its rays have the ray's
+/// direction as normal.
+std::vector<Hit> hits_of(const Volume& volume, const Lattice& lattice, const SignField& signs, const Counts& counts,
+                         const Progress& progress);
+
+}  // namespace riffler::marching

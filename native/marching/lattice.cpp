@@ -1,0 +1,42 @@
+#include "marching/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace riffler::marching {
+
+namespace {
+
+/// 2²¹ pitches leave a cell more than four float32 steps: room for the parities that keep vertices apart.
+void check_reach(double reach, double pitch) {
+  if (reach < 0x1p21 * pitch) return;
+  std::ostringstream text;
+  text << "the volume's box reaches " << reach << " mm from the origin; a mesh in float32 coordinates needs less than "
+       << 0x1p21 * pitch << " mm (2^21 times the pitch)";
+  throw std::invalid_argument(text.str());
+}
+
+}  // namespace
+
+Lattice::Lattice(const Volume& volume) : axis_(volume.reference().axis()), pitch_(volume.frame().pitch) {
+  const Box3 box = to_local(axis_, volume.frame().box);
+  double reach = 0;
+  for (int a = 0; a < 3; ++a) {
+    reach = std::max({reach, std::abs(box.lower[a]), std::abs(box.upper[a])});
+    rays_[a] = ray_count(box.size()[a], pitch_);
+    origin_[a] = box.lower[a];
+    // A lone ray may stand outside a box that is thinner than half a pitch. Its plane is moved to the middle of the
+    // box (tri-dexel, or along the rays, where nothing stands there), so that both faces lie on the lattice's edges.
+    const bool movable = volume.grids().size() == 3 || a == 2;
+    if (rays_[a] == 1 && movable) origin_[a] = (box.lower[a] + box.upper[a] - pitch_) / 2;
+  }
+  check_reach(reach, pitch_);
+  for (int a = 0; a < 3; ++a) reach = std::max({reach, std::abs(at(a, 0)), std::abs(at(a, points(a) - 1))});
+  int exponent = 0;
+  std::frexp(reach, &exponent);  // reach < 2^exponent
+  step_ = std::ldexp(1.0, exponent - 24);
+}
+
+}  // namespace riffler::marching

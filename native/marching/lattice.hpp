@@ -1,0 +1,39 @@
+// The lattice that a volume's rays span, and the float32 coordinates that its mesh may use.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "dexel/volume.hpp"
+
+namespace riffler::marching {
+
+/// Lattice points (I, J, K) with one layer outside the volume on every side: 0 ≤ I ≤ count(0) + 1 and so on; I − 1 is
+/// the index of a ray. Cell (I, J, K) is the cube between points (I, J, K) and (I + 1, J + 1, K + 1).
+/// Axes are those of the world for a tri-dexel volume and the cyclic frame of its rays for any other.
+class Lattice {
+ public:
+  /// Throws std::invalid_argument where the box reaches 2²¹ pitches or more from the origin.
+  explicit Lattice(const Volume& volume);
+
+  /// The direction whose cyclic frame the lattice works in.
+  Axis axis() const { return axis_; }
+  /// Rays along each axis, without the outer layers.
+  int rays(int axis) const { return rays_[axis]; }
+  int points(int axis) const { return rays_[axis] + 2; }
+  int cells(int axis) const { return rays_[axis] + 1; }
+  double pitch() const { return pitch_; }
+  /// Coordinate of lattice plane `index`; for planes that carry rays it is bit for bit what Grid::u and Grid::v say.
+  double at(int axis, int index) const { return origin_[axis] + (index - 0.5) * pitch_; }
+  /// The distance u between neighbouring float32 values where the box reaches furthest out, a power of two: every
+  /// multiple of u within the lattice is a float32. Less than a quarter of the pitch.
+  double step() const { return step_; }
+
+ private:
+  Axis axis_;
+  std::array<int, 3> rays_;
+  std::array<double, 3> origin_;
+  double pitch_, step_;
+};
+
+}  // namespace riffler::marching

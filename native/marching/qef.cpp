@@ -1,0 +1,106 @@
+#include "marching/qef.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace riffler::marching {
+
+namespace {
+
+constexpr double kSmooth = 0.985;  // |mean normal|² above which the surface is taken for smooth
+constexpr double kDamping = 0.01;  // λ of the stepwise solution: directions that no plane fixes stay near the mean
+constexpr double kAnchor = 1e-3;   // weight of the distance to the mean in the box
+
+/// Solves the rows and columns of a x = r that `free` names, for a symmetric positive definite `a`; x holds the others.
+void solve_free(const Mat3& a, const Vec3& r, int free, Vec3& x) {
+  int axis[3], n = 0;
+  for (int d = 0; d < 3; ++d)
+    if (free >> d & 1) axis[n++] = d;
+  double m[3][4];
+  for (int row = 0; row < n; ++row) {
+    m[row][3] = r[axis[row]];
+    for (int d = 0; d < 3; ++d)
+      if (!(free >> d & 1)) m[row][3] -= a[axis[row]][d] * x[d];
+    for (int column = 0; column < n; ++column) m[row][column] = a[axis[row]][axis[column]];
+  }
+  for (int p = 0; p < n; ++p)
+    for (int row = p + 1; row < n; ++row) {
+      const double f = m[row][p] / m[p][p];
+      for (int column = p + 1; column < n; ++column) m[row][column] -= f * m[p][column];
+      m[row][3] -= f * m[p][3];
+    }
+  for (int p = n - 1; p >= 0; --p) {
+    double sum = m[p][3];
+    for (int column = p + 1; column < n; ++column) sum -= m[p][column] * x[axis[column]];
+    x[axis[p]] = sum / m[p][p];
+  }
+}
+
+}  // namespace
+
+Qef::Qef(const Tangents& tangents) : hits_(tangents) {
+  for (int i = 0; i < hits_.count; ++i) {
+    const Vec3 &p = hits_.point[i], &n = hits_.normal[i];
+    mean_ += p, mean_normal_ += n;
+    a_ += glm::outerProduct(n, n);
+    b_ += n * glm::dot(n, p);
+  }
+  const double share = 1.0 / hits_.count;
+  mean_ *= share, mean_normal_ *= share, a_ *= share, b_ *= share;
+}
+
+Vec3 Qef::solve() const {
+  const double agreement = glm::dot(mean_normal_, mean_normal_);
+  if (agreement > kSmooth) {
+    // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel.
+    const Vec3 g = mean_normal_ / std::sqrt(agreement);
+    double distance = 0, slope = 0;
+    for (int i = 0; i < hits_.count; ++i) {
+      distance += glm::dot(hits_.normal[i], hits_.point[i] - mean_);
+      slope += glm::dot(hits_.normal[i], g);
+    }
+    return mean_ + g * (0.5 * distance / slope);
+  }
+  const Mat3 inverse = glm::inverse(a_ + Mat3(kDamping));
+  Vec3 x = mean_;
+  for (int step = 0; step < 3; ++step) x += inverse * (b_ - a_ * x);
+  return x;
+}
+
+Vec3 Qef::solve_in(const Box3& box) const {
+  // Strictly convex, so the least of the feasible stationary points over all 27 sets of active bounds is the minimum.
+  // (Coordinate descent would slide along a feature and stop early.)
+  const Mat3 a = a_ + Mat3(kAnchor);
+  const Vec3 r = b_ + kAnchor * mean_;
+  Vec3 best = glm::clamp(mean_, box.lower, box.upper);
+  double least = std::numeric_limits<double>::infinity();
+  for (int set = 0; set < 27; ++set) {
+    const int bound[3] = {set % 3, set / 3 % 3, set / 9};
+    Vec3 x{0, 0, 0};
+    int free = 0;
+    for (int d = 0; d < 3; ++d) {
+      if (bound[d] == 0)
+        free |= 1 << d;
+      else
+        x[d] = bound[d] == 1 ? box.lower[d] : box.upper[d];
+    }
+    solve_free(a, r, free, x);
+    bool feasible = true;
+    for (int d = 0; d < 3; ++d) feasible = feasible && x[d] >= box.lower[d] && x[d] <= box.upper[d];
+    const double value = glm::dot(x, a * x - 2.0 * r);
+    if (feasible && value < least) least = value, best = x;
+  }
+  return best;
+}
+
+double Qef::residual(const Vec3& x) const {
+  double sum = 0;
+  for (int i = 0; i < hits_.count; ++i) {
+    const double d = glm::dot(hits_.normal[i], x - hits_.point[i]);
+    sum += d * d;
+  }
+  return std::sqrt(sum / hits_.count);
+}
+
+}  // namespace riffler::marching

@@ -1,0 +1,36 @@
+// Where one vertex goes: the point that fits the tangent planes of a cycle's hits (dual contouring; Ju, Losasso,
+// Schaefer and Warren, "Dual Contouring of Hermite Data", SIGGRAPH 2002), in cell units.
+#pragma once
+
+#include <array>
+
+#include "geom/vec.hpp"
+
+namespace riffler::marching {
+
+/// The hits of one cycle: points and unit normals.
+struct Tangents {
+  int count = 0;
+  std::array<Vec3, 12> point, normal;
+};
+
+/// Squared distances to the tangent planes: E(x) = xᵀAx − 2bᵀx + const, averaged over the hits.
+class Qef {
+ public:
+  explicit Qef(const Tangents& tangents);
+
+  const Vec3& mean() const { return mean_; }
+  /// The fit: half way to the tangent planes where the hits' normals agree, the least squares point elsewhere.
+  Vec3 solve() const;
+  /// The least squares point in a box.
+  Vec3 solve_in(const Box3& box) const;
+  /// Root mean square distance of x to the tangent planes.
+  double residual(const Vec3& x) const;
+
+ private:
+  const Tangents& hits_;
+  Vec3 mean_{0, 0, 0}, mean_normal_{0, 0, 0}, b_{0, 0, 0};
+  Mat3 a_{0.0};
+};
+
+}  // namespace riffler::marching
