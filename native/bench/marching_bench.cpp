@@ -1,0 +1,142 @@
+// B200 → mesh: a 100 × 60 × 30 mm block after 200 moves of a ball of 6 mm diameter, as a tri-dexel and as a z volume.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "geom/parallel.hpp"
+#include "marching/surface.hpp"
+#include "marching/to_mesh.hpp"
+
+namespace riffler {
+namespace {
+
+constexpr double kRadius = 3;
+
+Vec3 centre(int n) {
+  const double a = n / 200.0;
+  return {10 + 80 * a, 30 + 15 * std::sin(12 * a), 30 - 2 * a};
+}
+
+/// Where the line p + s d meets the ball's sweep from a to b; empty where it does not.
+Interval capsule(const Vec3& p, const Vec3& d, const Vec3& a, const Vec3& b) {
+  Interval out;
+  const auto ball = [&](const Vec3& c) {
+    const double middle = glm::dot(c - p, d);
+    const Vec3 off = p + middle * d - c;
+    const double rest = kRadius * kRadius - glm::dot(off, off);
+    if (rest > 0) out.include(middle - std::sqrt(rest)), out.include(middle + std::sqrt(rest));
+  };
+  ball(a), ball(b);
+  const double length = glm::length(b - a);
+  const Vec3 axis = (b - a) / length;
+  const Vec3 dn = d - axis * glm::dot(d, axis), o = (p - a) - axis * glm::dot(p - a, axis);
+  const double qa = glm::dot(dn, dn), qb = glm::dot(dn, o), rest = qb * qb - qa * (glm::dot(o, o) - kRadius * kRadius);
+  if (qa > 0 && rest > 0)
+    for (const double sign : {-1.0, 1.0}) {
+      const double s = (-qb + sign * std::sqrt(rest)) / qa, along = glm::dot(p + s * d - a, axis);
+      if (along >= 0 && along <= length) out.include(s);
+    }
+  return out;
+}
+
+/// The block's span on one ray less all moves, with normals.
+void cut_ray(const Vec3& p, const Vec3& d, const Span& block, TileBuilder& out) {
+  struct Cut {
+    Interval s;
+    int move;
+  };
+  std::vector<Cut> cuts;
+  for (int n = 0; n < 200; ++n) {
+    const Interval s = capsule(p, d, centre(n), centre(n + 1));
+    if (!s.empty() && s.far > block.near && s.near < block.far) cuts.push_back({s, n});
+  }
+  std::sort(cuts.begin(), cuts.end(), [](const Cut& x, const Cut& y) { return x.s.near < y.s.near; });
+  const auto inward = [&](double s, int n) {  // out of the material, into the ball
+    const Vec3 q = p + s * d, a = centre(n), b = centre(n + 1);
+    const double t = std::clamp(glm::dot(q - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
+    return PackedNormal::pack(a + t * (b - a) - q);
+  };
+  double from = block.near;
+  PackedNormal from_normal = PackedNormal::pack(-d);
+  for (const Cut& c : cuts) {
+    if (c.s.near > from) out.add({from, c.s.near}, {from_normal, inward(c.s.near, c.move)});
+    if (c.s.far > from) from = c.s.far, from_normal = inward(from, c.move);
+  }
+  if (from < block.far) out.add({from, block.far}, {from_normal, PackedNormal::pack(d)});
+}
+
+Volume carved_block(double pitch, const char* directions) {
+  Volume volume = Volume::block({{Vec3(0.0), Vec3(100, 60, 30)}, pitch, directions});
+  for (Grid& grid : volume.grids())
+    parallel_for(grid.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const int a = static_cast<int>(t) / grid.tiles_v(), b = static_cast<int>(t) % grid.tiles_v();
+        TileBuilder builder(grid.has_normals());
+        for (int r = 0; r < kTileRays; ++r) {
+          const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
+          if (i < grid.nu() && j < grid.nv())
+            cut_ray(to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0)), to_world(grid.axis(), Vec3(0, 0, 1)),
+                    {grid.box().lower.z, grid.box().upper.z}, builder);
+          builder.next_ray();
+        }
+        grid.set_tile(t, builder.finish());
+      }
+    });
+  volume.touch();
+  return volume;
+}
+
+const char* directions_of(const benchmark::State& state) {
+  return state.range(1) == 3 ? "xyz" : "z";
+}
+double pitch_of(const benchmark::State& state) {
+  return static_cast<double>(state.range(0)) / 1000;
+}
+
+void whole(benchmark::State& state) {
+  const Volume volume = carved_block(pitch_of(state), directions_of(state));
+  std::size_t triangles = 0;
+  for (auto _ : state) triangles = to_mesh(volume).triangles.size();
+  state.counters["triangles"] = static_cast<double>(triangles);
+  state.counters["triangles/s"] =
+      benchmark::Counter(static_cast<double>(triangles), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// One stage at a time, so that the profile is a measurement.
+void stage(benchmark::State& state) {
+  using namespace marching;
+  const Volume volume = carved_block(pitch_of(state), directions_of(state));
+  const int timed = static_cast<int>(state.range(2));
+  const char* const names[] = {"signs", "counts", "hits", "vertices", "candidates", "diagonals", "folds"};
+  state.SetLabel(names[timed]);
+  for (auto _ : state) {
+    const auto only = [&](int n, const auto& work) {
+      if (n == timed) state.ResumeTiming();
+      auto result = work();
+      if (n == timed) state.PauseTiming();
+      return result;
+    };
+    state.PauseTiming();
+    const Lattice lattice(volume);
+    const SignField signs = only(0, [&] { return signs_of(volume, lattice, {}); });
+    const Counts counts = only(1, [&] { return Counts(lattice, signs, {}); });
+    const std::vector<Hit> hits = only(2, [&] { return hits_of(volume, lattice, signs, counts, {}); });
+    Surface surface{lattice, signs, counts, hits, FloatGrid(lattice), {}, {}, {}};
+    only(3, [&] { return place_vertices(surface, {}), 0; });
+    only(4, [&] { return choose_candidates(surface), 0; });
+    only(5, [&] { return choose_diagonals(surface, {}), 0; });
+    only(6, [&] { return unfold(surface), 0; });
+    state.counters["special"] = static_cast<double>(surface.specials.size());
+    state.counters["vertices"] = static_cast<double>(surface.mesh.vertices.size());
+    state.ResumeTiming();
+  }
+}
+
+// Pitch in µm, directions.
+BENCHMARK(whole)->ArgsProduct({{500, 250, 100}, {3, 1}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(stage)->ArgsProduct({{100}, {3}, {0, 1, 2, 3, 4, 5, 6}})->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace riffler
