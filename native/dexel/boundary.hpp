@@ -1,0 +1,16 @@
+// Where the surface of a mesh ends: the directed edges that no neighbour takes back.
+#pragma once
+
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace riffler {
+
+/// The boundary of the mesh as closed walks: walk k visits the vertices loops[k][0], loops[k][1], … and returns to the
+/// first. Every directed edge stands as often as triangles run through it that way less those that run against it, so
+/// a closed mesh has none, and with surfaces that close the walks the mesh is closed. Vertices with equal coordinates
+/// count as one. O(n) for closed meshes.
+std::vector<std::vector<int>> boundary_loops(const Mesh& mesh);
+
+}  // namespace riffler

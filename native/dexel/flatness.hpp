@@ -1,0 +1,11 @@
+// Meshes that bound no volume.
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace riffler {
+
+/// Whether all vertices that triangles use lie within `tolerance` (mm) of one plane.
+bool is_flat(const Mesh& mesh, double tolerance);
+
+}  // namespace riffler

@@ -1,0 +1,302 @@
+#include "dexel/from_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "dexel/boundary.hpp"
+#include "dexel/crossings.hpp"
+#include "dexel/flatness.hpp"
+#include "dexel/openings.hpp"
+#include "geom/parallel.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// Spans and gaps this short vanish, cells.
+constexpr double kThinnest = 1e-9;
+/// The same next to an opening, whose place is a root that was searched for.
+constexpr double kThinnestOpening = 1e-6;
+
+/// The source of an end at the box's side, and of passages that were repaired.
+constexpr std::uint32_t kBox = 0xffffffffU;
+
+/// A column's span while it is put together: where it begins and ends, and what gives the normals there. A source
+/// faces out of the material where `outward`, otherwise its reverse does.
+struct End {
+  double z;
+  std::uint32_t source;
+  bool outward;
+};
+
+/// Fills one grid from the crossings of its columns.
+class Filler {
+ public:
+  Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress);
+
+  /// Entries of triangles in bands: the triangles tested.
+  std::size_t triangles_tested() const { return bands_.size(); }
+  void run(const Progress& progress);
+
+ private:
+  struct Scratch {
+    std::vector<BandCrossing> unsorted;
+    std::vector<Crossing> sorted, repaired;
+    std::vector<std::uint32_t> begin;
+  };
+
+  int rows_per_band() const;
+  void tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders) const;
+  void add_passages(int first, int last, std::vector<BandCrossing>& out) const;
+  void fill(std::span<const Crossing> crossings, TileBuilder& builder) const;
+  bool repair(int row, int column, std::span<const Crossing> crossings, std::vector<Crossing>& out) const;
+  void emit(End near, End far, TileBuilder& builder) const;
+  PackedNormal normal(const End& end) const;
+  double thinnest(const End& a, const End& b) const {
+    return grid_.pitch() * (((a.source | b.source) & kOpening) != 0 ? kThinnestOpening : kThinnest);
+  }
+
+  const Mesh& mesh_;
+  const std::vector<std::vector<int>>& loops_;
+  Grid& grid_;
+  Projection projection_;
+  std::vector<Passage> passages_;
+  Bands bands_;
+};
+
+Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress)
+    : mesh_(mesh),
+      loops_(loops),
+      grid_(grid),
+      projection_(mesh, grid),
+      passages_(loops.empty() ? std::vector<Passage>{} : find_passages(mesh, loops, projection_, grid, progress)),
+      bands_(mesh, projection_, rows_per_band()) {}
+
+/// A divisor of the tile's side such that a band's crossings stay in the cache.
+int Filler::rows_per_band() const {
+  int rows = kTileSide;
+  while (rows > 1 && rows * grid_.nv() > 16384) rows /= 2;
+  return rows;
+}
+
+void Filler::run(const Progress& progress) {
+  parallel_for(
+      static_cast<std::size_t>(grid_.tiles_u()), 1,
+      [&](std::size_t begin, std::size_t end) {
+        Scratch scratch;
+        std::vector<TileBuilder> builders(static_cast<std::size_t>(grid_.tiles_v()), TileBuilder(grid_.has_normals()));
+        for (std::size_t k = begin; k < end; ++k) tile_row(static_cast<int>(k), scratch, builders);
+      },
+      progress);
+}
+
+void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders) const {
+  const int first_row = tile_u * kTileSide, end_row = std::min(grid_.nu(), first_row + kTileSide), nv = grid_.nv();
+  for (int first = first_row; first < end_row; first += bands_.rows()) {
+    const int last = std::min(end_row, first + bands_.rows());
+    scratch.unsorted.clear();
+    for (const std::uint32_t t : bands_.band(first / bands_.rows()))
+      projection_.cross(mesh_.triangles[t], t, first, last, scratch.unsorted);
+    add_passages(first, last, scratch.unsorted);
+    const std::size_t columns = static_cast<std::size_t>(last - first) * static_cast<std::size_t>(nv);
+    sort_by_column(scratch.unsorted, columns, scratch.sorted, scratch.begin);
+
+    std::size_t column = 0;
+    for (int row = first; row < last; ++row) {
+      for (int j = 0; j < nv; ++j, ++column) {
+        TileBuilder& builder = builders[static_cast<std::size_t>(j / kTileSide)];
+        std::span<const Crossing> crossings{scratch.sorted.data() + scratch.begin[column],
+                                            scratch.sorted.data() + scratch.begin[column + 1]};
+        if (!loops_.empty() && repair(row, j, crossings, scratch.repaired)) crossings = scratch.repaired;
+        if (!crossings.empty()) fill(crossings, builder);
+        builder.next_ray();
+      }
+      // Rays beyond the grid.
+      for (int j = nv; j % kTileSide != 0; ++j) builders.back().next_ray();
+    }
+  }
+  for (int k = 0; k < grid_.tiles_v(); ++k) {
+    TileBuilder& builder = builders[static_cast<std::size_t>(k)];
+    std::shared_ptr<Tile> tile = builder.finish();
+    if (!tile->spans.empty()) grid_.set_tile(grid_.tile_index(tile_u, k), std::move(tile));
+  }
+}
+
+void Filler::add_passages(int first, int last, std::vector<BandCrossing>& out) const {
+  const auto by_row = [](const Passage& p, int row) { return p.row < row; };
+  const auto begin = std::lower_bound(passages_.begin(), passages_.end(), first, by_row);
+  const auto end = std::lower_bound(begin, passages_.end(), last, by_row);
+  for (auto p = begin; p != end; ++p) {
+    const auto source = kOpening | static_cast<std::uint32_t>(p - passages_.begin());
+    const auto column = static_cast<std::uint32_t>(p->row - first) * static_cast<std::uint32_t>(grid_.nv());
+    out.push_back({{p->z, source, p->sign}, column + static_cast<std::uint32_t>(p->column)});
+  }
+}
+
+/// Spans where the running sum of the signs is not zero.
+void Filler::fill(std::span<const Crossing> crossings, TileBuilder& builder) const {
+  End near{}, far{};  // of the span that waits for the next one: a gap between them may vanish
+  bool waiting = false;
+  End from{};  // where the present span began
+  int sum = 0;
+  for (const Crossing& c : crossings) {
+    const int before = sum;
+    sum += c.sign;
+    if (before == 0) {
+      from = {c.z, c.source, sum > 0};
+      if (!waiting) continue;
+      if (from.z - far.z <= thinnest(from, far))
+        from = near;
+      else
+        emit(near, far, builder);
+      waiting = false;
+    } else if (sum == 0) {
+      const End to{c.z, c.source, before > 0};
+      if (!(to.z - from.z > thinnest(from, to))) continue;
+      near = from, far = to, waiting = true;
+    }
+  }
+  if (waiting) emit(near, far, builder);
+}
+
+/// Clips a span to the box and appends it.
+void Filler::emit(End near, End far, TileBuilder& builder) const {
+  const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
+  if (near.z < lower) near = {lower, kBox, false};
+  if (far.z > upper) far = {upper, kBox, true};
+  if (!(far.z - near.z > kThinnest * grid_.pitch())) return;
+  SpanNormals normals;
+  if (grid_.has_normals()) normals = {normal(near), normal(far)};
+  builder.add({near.z, far.z}, normals);
+}
+
+PackedNormal Filler::normal(const End& end) const {
+  Vec3 n(0, 0, 1);  // the box, and passages that were repaired
+  if ((end.source & kOpening) == 0) {
+    const Vec3i& t = mesh_.triangles[end.source];
+    const Vec3 &a = mesh_.vertices[t.x], &b = mesh_.vertices[t.y], &c = mesh_.vertices[t.z];
+    n = glm::cross(b - a, c - a);
+    if (!(glm::dot(n, n) > 0)) n = to_world(grid_.axis(), Vec3(0, 0, 1));
+  } else if (end.source != kBox) {
+    n = to_world(grid_.axis(), -passages_[end.source & ~kOpening].gradient);
+  } else {
+    n = to_world(grid_.axis(), n);
+  }
+  const double length = glm::length(n);
+  if (!(length > 0)) return PackedNormal::pack(to_world(grid_.axis(), Vec3(0, 0, end.outward ? 1 : -1)));
+  return PackedNormal::pack((end.outward ? 1 : -1) / length * n);
+}
+
+/// Crossings and passages of a column sum to zero. Where rounding near an edge of the boundary lost or doubled a
+/// passage they do not: then the passages are searched for anew with the winding number itself, between samples at
+/// all places where something was found.
+bool Filler::repair(int row, int column, std::span<const Crossing> crossings, std::vector<Crossing>& out) const {
+  int sum = 0;
+  for (const Crossing& c : crossings) sum += c.sign;
+  if (sum == 0) return false;
+  const double h = grid_.pitch();
+  const auto rounded = [&](double z) {
+    return static_cast<int>(std::lround(boundary_winding(loops_, projection_, h, row, column, z)));
+  };
+  std::vector<double> samples;
+  for (std::size_t k = 0; k + 1 < crossings.size(); ++k) samples.push_back(0.5 * (crossings[k].z + crossings[k + 1].z));
+  samples.insert(samples.begin(), crossings.front().z - h);
+  samples.push_back(crossings.back().z + h);
+
+  out.clear();
+  for (const Crossing& c : crossings)
+    if ((c.source & kOpening) == 0) out.push_back(c);
+  const auto step = [&](double z, int change) {
+    for (; change > 0; --change) out.push_back({z, kBox, 1});
+    for (; change < 0; ++change) out.push_back({z, kBox, -1});
+  };
+  int before = rounded(samples.front());
+  step(samples.front(), before);
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    const int after = rounded(samples[k]);
+    double z0 = samples[k - 1], z1 = samples[k];
+    while (after != before && z1 - z0 > kThinnestOpening * h) {
+      const double z = 0.5 * (z0 + z1);
+      if (z <= z0 || z >= z1) break;
+      (rounded(z) == before ? z0 : z1) = z;
+    }
+    step(0.5 * (z0 + z1), after - before);
+    before = after;
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Crossing& a, const Crossing& b) { return a.z < b.z; });
+  sum = 0;
+  for (const Crossing& c : out) sum += c.sign;
+  step(out.empty() ? 0 : out.back().z, -sum);
+  return true;
+}
+
+/// Progress of one part of a longer call.
+Progress part(const Progress& progress, double begin, double end) {
+  if (!progress) return {};
+  return [&progress, begin, end](double share) { return progress(begin + share * (end - begin)); };
+}
+
+double most(const Vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+void fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress) {
+  Stats stats;
+  const double grids = static_cast<double>(result.grids().size());
+  double done = 0;
+  for (Grid& grid : result.grids()) {
+    const double middle = done + (loops.empty() ? 0.1 : 0.7) / grids;
+    Filler filler(mesh, loops, grid, part(progress, done, middle));
+    filler.run(part(progress, middle, done += 1 / grids));
+    stats.triangles_tested += filler.triangles_tested();
+  }
+  result.touch();
+  result.count(stats);
+}
+
+/// What rounding of the mesh's coordinates may feign, mm³.
+double feigned_volume(const Box3& box) {
+  const double size = most(box.size()), far = std::max(most(box.lower), most(box.upper));
+  return std::max(1e-13 * size * size * size, 64 * std::ldexp(far, -52) * size * size);
+}
+
+double most_volume(const Volume& volume) {
+  double v = 0;
+  for (const Grid& grid : volume.grids()) v = std::max(v, grid.volume());
+  return v;
+}
+
+/// Whether a mesh of which the frame's rays met hardly anything has a volume all the same: a thin wall between rays, or
+/// a part outside of the box.
+bool has_volume(const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Box3& box) {
+  const double size = most(box.size()), least = feigned_volume(box);
+  if (is_flat(mesh, std::ldexp(size, -22))) return false;
+  if (loops.empty() && std::abs(volume(mesh)) > least) return true;
+  Volume probe(Frame{box.grown(size / 64), size / 64, "xyz"});
+  fill(probe, mesh, loops, {});
+  return most_volume(probe) > least;
+}
+
+}  // namespace
+
+Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress) {
+  validate(mesh);
+  if (mesh.empty()) throw std::invalid_argument("the mesh has no triangles, so it has no volume");
+  Volume result(frame);
+  report(progress, 0);
+  const Box3 box = bounds(mesh);
+  const std::vector<std::vector<int>> loops = boundary_loops(mesh);
+  // Coordinates may have been rounded to single precision on their way here.
+  const double rounding =
+      std::max(std::ldexp(most(box.size()), -22), std::ldexp(std::max(most(box.lower), most(box.upper)), -24));
+  if (!loops.empty() && is_flat(mesh, rounding))
+    throw std::invalid_argument("the mesh is a flat sheet: it has no volume");
+  fill(result, mesh, loops, progress);
+  if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(mesh, loops, box))
+    throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
+  report(progress, 1);
+  return result;
+}
+
+}  // namespace riffler
