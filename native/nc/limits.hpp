@@ -1,0 +1,13 @@
+// Numbers that programs and NC code may hold: what is beyond is a mistake. The reader refuses it, the writer does not
+// write it, and no sum of two of them leaves the range in which doubles keep the printed decimals.
+#pragma once
+
+namespace riffler {
+
+inline constexpr double kMaxLength = 1e6;      // mm: a kilometre, with 1e-10 mm to spare in a double
+inline constexpr double kMaxAngle = 1e8;       // deg: rotary axes may count turns
+inline constexpr double kMaxFeed = 1e9;        // mm/min, or 1/min under G93
+inline constexpr double kMaxSpindle = 1e7;     // rev/min
+inline constexpr int kMaxNumber = 99'999'999;  // tools, offsets, block numbers
+
+}  // namespace riffler

@@ -1,0 +1,36 @@
+// Named options of posts and machines, as callers give them.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace riffler {
+
+using OptionValue = std::variant<bool, double, std::string, std::vector<double>>;
+using Options = std::map<std::string, OptionValue>;
+
+/// Takes options out one by one; what is left at the end was not known to anybody.
+class OptionReader {
+ public:
+  /// `owner` stands in messages: "machine tcp", "post tcp".
+  OptionReader(Options options, std::string owner) : options_(std::move(options)), owner_(std::move(owner)) {}
+
+  const std::string& owner() const { return owner_; }
+
+  /// The number `name`, or nothing where it was not given; std::invalid_argument unless it is positive and finite.
+  std::optional<double> positive(const std::string& name);
+
+  /// Throws std::invalid_argument naming an option that nobody took, and those that are known.
+  void done() const;
+
+ private:
+  Options options_;
+  std::string owner_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace riffler

@@ -1,0 +1,165 @@
+#include "session/journal_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "geom/error.hpp"
+#include "geom/io.hpp"
+#include "session/journal_records.hpp"
+
+namespace riffler {
+
+using namespace journal_format;
+
+Journal parse_journal(View bytes, const std::string& name) {
+  Journal journal;
+  for (std::size_t at = check_header(bytes, name); at < bytes.size();) {
+    const View rest = bytes.subspan(at);
+    const std::optional<Record> record = whole_record(rest);
+    const std::string where = "byte " + std::to_string(at);
+    if (!record) {
+      if (record_follows(rest)) throw FormatError(name, where, "a damaged record");
+      journal.cut_at = at;
+      break;
+    }
+    try {
+      apply_record(*record, journal);
+    } catch (const std::invalid_argument& e) {
+      throw FormatError(name, where, e.what());
+    }
+    at += record->size;
+  }
+  return journal;
+}
+
+Journal read_journal(const std::filesystem::path& path) {
+  return parse_journal(read_file(path), path.filename().string());
+}
+
+std::vector<std::uint8_t> to_bytes(const Journal& journal) {
+  Bytes out = journal_header();
+  const auto add = [&](const Bytes& bytes) { out.insert(out.end(), bytes.begin(), bytes.end()); };
+  for (const auto& [key, value] : journal.notes()) add(note_record(key, value));
+  if (journal.stock()) add(stock_record(*journal.stock()));
+  for (const auto& [number, json] : journal.tools()) add(tool_record(number, json));
+  for (const JournalStroke& stroke : journal.strokes()) add(stroke_record(stroke));
+  return out;
+}
+
+void write_journal(const Journal& journal, const std::filesystem::path& path) {
+  write_file(path, to_bytes(journal));
+}
+
+// --- Appending ---
+
+namespace {
+
+[[noreturn]] void fail_system(const std::string& name, const char* what) {
+  throw std::runtime_error(name + ": " + what + ": " + std::strerror(errno));
+}
+
+/// A file descriptor until it is given away.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
+  int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_;
+};
+
+void write_at(int fd, View bytes, std::uint64_t at, const std::string& name) {
+  while (!bytes.empty()) {
+    const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail_system(name, "cannot be written");
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+    at += static_cast<std::uint64_t>(n);
+  }
+}
+
+}  // namespace
+
+JournalWriter::JournalWriter(const std::filesystem::path& path) : name_(path.filename().string()) {
+  Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
+  if (file.get() < 0) fail_system(name_, "cannot be opened for writing");
+  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by somebody else");
+  struct stat status{};
+  if (fstat(file.get(), &status) != 0) fail_system(name_, "cannot be read");
+  if (status.st_size == 0) {
+    const Bytes begin = journal_header();
+    write_at(file.get(), begin, 0, name_);
+    size_ = begin.size();
+  } else {
+    const Bytes bytes = read_file(path);
+    journal_ = parse_journal(bytes, name_);
+    size_ = journal_.cut_at.value_or(bytes.size());
+    if (journal_.cut_at && ftruncate(file.get(), static_cast<off_t>(size_)) != 0)
+      fail_system(name_, "its cut tail cannot be removed");
+  }
+  fd_ = file.release();
+}
+
+JournalWriter::~JournalWriter() {
+  if (fd_ >= 0) close(fd_);
+}
+
+void JournalWriter::append(const std::vector<std::uint8_t>& bytes) {
+  try {
+    write_at(fd_, bytes, size_, name_);
+  } catch (...) {
+    // Half a record is a cut tail, which the next record overwrites or this removes.
+    if (ftruncate(fd_, static_cast<off_t>(size_)) != 0) errno = 0;
+    throw;
+  }
+  size_ += bytes.size();
+}
+
+void JournalWriter::set_stock(const JournalStock& stock) {
+  journal_.check_stock(stock);
+  append(stock_record(stock));
+  journal_.set_stock(stock);
+}
+
+void JournalWriter::add_tool(int number, const std::string& json) {
+  journal_.check_tool(number, json);
+  append(tool_record(number, json));
+  journal_.add_tool(number, json);
+}
+
+void JournalWriter::add_note(const std::string& key, const std::string& value) {
+  append(note_record(key, value));
+  journal_.add_note(key, value);
+}
+
+void JournalWriter::add_stroke(const JournalStroke& stroke) {
+  journal_.check_stroke(stroke);
+  append(stroke_record(stroke));
+  journal_.add_stroke(stroke);
+}
+
+void JournalWriter::extend_stroke(std::span<const Pose> poses, std::span<const double> times) {
+  journal_.check_extension(poses, times);
+  append(more_record(poses, times));
+  journal_.extend_stroke(poses, times);
+}
+
+void JournalWriter::sync() {
+  if (fdatasync(fd_) != 0) fail_system(name_, "cannot be flushed to the disk");
+}
+
+}  // namespace riffler
