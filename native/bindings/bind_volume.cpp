@@ -69,14 +69,6 @@ py::array_t<double> normals(SharedVolume& self, const std::string& direction) {
   return out;
 }
 
-std::vector<Pose> to_poses(const Doubles& array) {
-  const std::size_t n = check_rows(array, 6, "poses");
-  std::vector<Pose> poses(n);
-  const double* p = array.data();
-  for (std::size_t i = 0; i < n; ++i, p += 6) poses[i] = {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
-  return poses;
-}
-
 std::vector<double> to_times(const py::object& dt, std::size_t moves) {
   if (dt.is_none()) return {};
   const Doubles array = py::cast<Doubles>(dt);
@@ -88,7 +80,7 @@ std::vector<double> to_times(const py::object& dt, std::size_t moves) {
 
 Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance, const py::object& dt,
                 double removal_constant, const py::object& progress) {
-  const std::vector<Pose> path = to_poses(poses);
+  const std::vector<Pose> path = to_poses(poses, "poses");
   const CarveOptions options{tolerance, to_times(dt, path.empty() ? 0 : path.size() - 1), removal_constant,
                              to_progress(progress)};
   Writing writing(self);

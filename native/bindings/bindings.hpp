@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "geom/pose.hpp"
 #include "geom/progress.hpp"
 #include "geom/vec.hpp"
 
@@ -34,6 +35,9 @@ Vec3 to_vec3(const py::object& object, const char* name);
 py::array_t<double> from_vec3(const Vec3& v);
 /// (n, 3) copy.
 py::array_t<double> from_vec3s(const std::vector<Vec3>& v);
+
+/// (n, 6): tip xyz, axis xyz; checked as by check_rows.
+std::vector<Pose> to_poses(const Doubles& array, const char* name);
 
 /// Hands a vector's storage to numpy without a copy; shape (rows, columns), or (rows,) for columns = 0.
 template <class T, class V>

@@ -45,6 +45,14 @@ py::array_t<double> from_vec3s(const std::vector<Vec3>& v) {
   return take<double>(std::vector<Vec3>(v), 3);
 }
 
+std::vector<Pose> to_poses(const Doubles& array, const char* name) {
+  const std::size_t n = check_rows(array, 6, name);
+  std::vector<Pose> poses(n);
+  const double* p = array.data();
+  for (std::size_t i = 0; i < n; ++i, p += 6) poses[i] = {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
+  return poses;
+}
+
 Progress to_progress(const py::object& callable) {
   // The function object must be released under the GIL, wherever the last copy of the Progress dies.
   std::shared_ptr<py::object> held;
