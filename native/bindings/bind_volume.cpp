@@ -3,6 +3,8 @@
 #include "bindings/shared_volume.hpp"
 #include "dexel/boolean.hpp"
 #include "dexel/file.hpp"
+#include "dexel/from_mesh.hpp"
+#include "marching/to_mesh.hpp"
 #include "sweep/carve.hpp"
 
 namespace riffler {
@@ -22,6 +24,36 @@ std::shared_ptr<SharedVolume> block(const py::object& lower, const py::object& u
                                     const std::string& directions) {
   const Frame frame{{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions};
   return share(Volume::block(frame));
+}
+
+/// The box of a volume from a mesh: what is given, else the mesh's own. Said here, where the words "flat" and "lower"
+/// mean something to the caller, what Frame would refuse without them.
+Box3 box_around(const Mesh& mesh, const py::object& lower, const py::object& upper) {
+  validate(mesh);
+  if (mesh.empty()) throw py::value_error("mesh has no triangles, so no volume");
+  Box3 box = bounds(mesh);
+  for (int k = 0; k < 3 && (lower.is_none() || upper.is_none()); ++k)
+    if (!(box.lower[k] < box.upper[k]))
+      throw py::value_error(std::string("mesh is flat in ") + "xyz"[k] + ", so it has no volume");
+  if (!lower.is_none()) box.lower = to_vec3(lower, "lower");
+  if (!upper.is_none()) box.upper = to_vec3(upper, "upper");
+  return box;
+}
+
+std::shared_ptr<SharedVolume> volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch,
+                                               const std::string& directions, const py::object& lower,
+                                               const py::object& upper, const py::object& progress) {
+  const Frame frame{box_around(*mesh, lower, upper), pitch, directions};
+  const Progress listener = to_progress(progress);
+  const py::gil_scoped_release release;
+  return share(from_mesh(*mesh, frame, listener));
+}
+
+std::shared_ptr<Mesh> volume_to_mesh(SharedVolume& self, const py::object& progress) {
+  const Progress listener = to_progress(progress);
+  const Volume state = Reading(self).volume.snapshot();
+  const py::gil_scoped_release release;
+  return std::make_shared<Mesh>(to_mesh(state, listener));
 }
 
 const Grid& grid_of(const Volume& volume, const std::string& direction) {
@@ -113,6 +145,24 @@ std::shared_ptr<SharedVolume> load_volume(const std::filesystem::path& path, con
   return share(load(path, listener));
 }
 
+py::bytes volume_to_bytes(SharedVolume& self) {
+  const Volume state = Reading(self).volume.snapshot();
+  std::vector<std::uint8_t> bytes;
+  {
+    const py::gil_scoped_release release;
+    bytes = to_bytes(state);
+  }
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::shared_ptr<SharedVolume> volume_from_bytes(const py::buffer& data, const std::string& name) {
+  const py::buffer_info info = data.request();
+  const std::span bytes(static_cast<const std::uint8_t*>(info.ptr),
+                        static_cast<std::size_t>(info.size * info.itemsize));
+  const py::gil_scoped_release release;
+  return share(from_bytes(bytes, name));
+}
+
 py::dict stats(SharedVolume& self) {
   Writing writing(self);
   const Stats s = writing.volume.take_stats();
@@ -162,6 +212,14 @@ normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h
 (y, z), "y" rays (z, x). Lengths in mm.)")
       .def_static("block", &block, py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z",
                   "A box full of material. ValueError, before anything is allocated, if it does not fit in memory.")
+      .def_static("from_mesh", &volume_from_mesh, py::arg("mesh"), py::arg("pitch"), py::arg("directions") = "z",
+                  py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("progress") = py::none(),
+                  R"(The points whose absolute generalized winding number in ``mesh`` exceeds 1/2.
+
+Covers the mesh's box, or ``lower`` to ``upper`` (clipping what lies outside). Inside-out, overlapping, touching and open
+parts are fine; a mesh without volume is a ValueError.)")
+      .def_static("from_bytes", &volume_from_bytes, py::arg("data"), py::arg("name") = "volume",
+                  "The volume whose to_bytes() these are; ``name`` stands in messages.")
       .def_property_readonly("pitch", [](SharedVolume& v) { return v.volume.frame().pitch; })
       .def_property_readonly("directions", [](SharedVolume& v) { return v.volume.frame().directions; })
       .def_property_readonly("lower", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.lower); })
@@ -217,6 +275,11 @@ False cancels, raises Cancelled and leaves the volume as it was.)")
            "Writes a .rvol file, whole or not at all. Equal volumes are equal files.")
       .def_static("load", &load_volume, py::arg("path"), py::arg("progress") = py::none(),
                   "Reads a .rvol file; FormatError where it is damaged or not one.")
+      .def("to_bytes", &volume_to_bytes, "The bytes of the .rvol file.")
+      .def("to_mesh", &volume_to_mesh, py::arg("progress") = py::none(),
+           "The surface: closed, outward, two-manifold, and still so in a binary STL.")
+      .def(py::pickle([](SharedVolume& v) { return volume_to_bytes(v); },
+                      [](const py::bytes& b) { return volume_from_bytes(py::buffer(b), "pickle"); }))
       .def("stats", &stats, "Operation counters since the last call of stats().")
       .def("__repr__", &describe);
 }
