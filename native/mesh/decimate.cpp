@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/float32.hpp"
 #include "mesh/collapse.hpp"
 #include "mesh/half_edge.hpp"
 #include "mesh/quadric.hpp"
@@ -26,9 +27,9 @@ using OpenMesh::VertexHandle;
 /// in the file either, and quadrics keep their digits far from the origin.
 Mesh rounded(const Mesh& mesh) {
   const Box3 box = bounds(mesh);
-  const Vec3 centre(Vec3f(0.5 * box.lower + 0.5 * box.upper));
+  const Vec3 centre = to_float32(0.5 * box.lower + 0.5 * box.upper);
   Mesh result = mesh;
-  for (Vec3& v : result.vertices) v = Vec3(Vec3f(v)) - centre;
+  for (Vec3& v : result.vertices) v = to_float32(v) - centre;
   return result;
 }
 
@@ -134,7 +135,7 @@ class Queue {
 /// What is left of the tolerance for the rounded surface, so that the unrounded one keeps to it.
 double left_after_rounding(double tolerance, const Mesh& mesh) {
   double largest = 0;
-  for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(Vec3(Vec3f(v)) - v));
+  for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(to_float32(v) - v));
   return std::max(0.0, tolerance - 2 * largest);
 }
 
@@ -166,7 +167,7 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   Collapse collapse(half_mesh);
   std::size_t left = start;
   for (std::size_t step = 0; left > target && !queue.empty(); ++step) {
-    if (step % 4096 == 0) report(progress, 0.2 + 0.8 * static_cast<double>(start - left) / static_cast<double>(goal));
+    if (step % 256 == 0) report(progress, 0.2 + 0.8 * static_cast<double>(start - left) / static_cast<double>(goal));
     if (!collapse.prepare(queue.front()) || (distance && !distance->allow(collapse))) {
       queue.reject();
       continue;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "geom/error.hpp"
+#include "geom/float32.hpp"
 #include "mesh/scan.hpp"
 #include "mesh/weld.hpp"
 
@@ -321,7 +322,7 @@ class BodyReader {
 };
 
 bool exact_in_float(const Mesh& mesh) {
-  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& v) { return Vec3(Vec3f(v)) == v; });
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& v) { return to_float32(v) == v; });
 }
 
 template <class T>

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "geom/error.hpp"
+#include "geom/float32.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/scan.hpp"
 #include "mesh/weld.hpp"
@@ -113,12 +114,14 @@ bool looks_like_ascii(std::span<const std::uint8_t> bytes) {
 }
 
 std::array<float, 12> record(const Mesh& mesh, const Vec3i& t) {
-  std::array<Vec3f, 3> p;
-  for (int k = 0; k < 3; ++k) p[k] = Vec3f(mesh.vertices[t[k]]) + 0.0F;  // -0 becomes 0
-  const Vec3 a(p[0]), normal = glm::cross(Vec3(p[1]) - a, Vec3(p[2]) - a);
+  std::array<Vec3, 4> rows;  // normal, corners
+  for (int k = 0; k < 3; ++k) rows[k + 1] = to_float32(mesh.vertices[t[k]]);
+  const Vec3 normal = glm::cross(rows[2] - rows[1], rows[3] - rows[1]);
   const double length = glm::length(normal);
-  const Vec3f n = length > 0 && std::isfinite(length) ? Vec3f(normal / length) : Vec3f(0);
-  return {n.x, n.y, n.z, p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z};
+  rows[0] = length > 0 && std::isfinite(length) ? normal / length : Vec3(0);
+  std::array<float, 12> values;
+  for (int k = 0; k < 12; ++k) values[k] = static_cast<float>(rows[k / 3][k % 3] + 0);  // -0 becomes 0
+  return values;
 }
 
 }  // namespace

@@ -1,0 +1,107 @@
+#include "mesh/closest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+
+#include "mesh/shapes.hpp"
+
+namespace riffler {
+namespace {
+
+double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double l2 = glm::dot(b - a, b - a);
+  const double t = l2 > 0 ? std::fmin(1, std::fmax(0, glm::dot(p - a, b - a) / l2)) : 0;
+  return glm::length(p - (a + t * (b - a)));
+}
+
+/// From the barycentric coordinates of the foot of the perpendicular, by Cramer's rule, or else from the three edges.
+double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a, w = p - a;
+  const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v), wu = glm::dot(w, u), wv = glm::dot(w, v);
+  const double det = uu * vv - uv * uv;
+  if (det > 1e-14 * uu * vv) {
+    const double s = (wu * vv - wv * uv) / det, t = (wv * uu - wu * uv) / det;
+    if (s >= 0 && t >= 0 && s + t <= 1) return glm::length(w - s * u - t * v);
+  }
+  return std::fmin(segment_distance(p, a, b), std::fmin(segment_distance(p, b, c), segment_distance(p, c, a)));
+}
+
+double slow_distance(const Vec3& p, const Mesh& mesh) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Vec3i& t : mesh.triangles)
+    best = std::fmin(best, triangle_distance(p, mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]));
+  return best;
+}
+
+TEST(Closest, AgreesWithEveryTriangleTried) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> coordinate(-20, 20);
+  Mesh soup;
+  for (int i = 0; i < 600; ++i) soup.vertices.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+  for (int i = 0; i + 2 < 600; i += 2) soup.triangles.emplace_back(i, i + 1, i + 2);
+  soup.triangles.emplace_back(5, 5, 5), soup.triangles.emplace_back(7, 7, 90);  // a point, a segment
+  for (const Mesh& mesh : {soup, torus_mesh(10, 4, 30, 20), box_mesh({0, 0, 0}, {1, 2, 3})}) {
+    const Closest closest(mesh);
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
+      const double truth = slow_distance(p, mesh);
+      const Closest::Hit hit = closest(p);
+      EXPECT_NEAR(hit.distance, truth, 1e-12);
+      EXPECT_NEAR(glm::length(p - hit.point), truth, 1e-12);
+      EXPECT_NEAR(closest.distance_to(hit.triangle, p), truth, 1e-12);
+      EXPECT_TRUE(closest.within(p, truth + 1e-9));
+      EXPECT_FALSE(closest.within(p, truth - 1e-9));
+      EXPECT_EQ(closest(p, truth - 1e-9).triangle, -1);
+    }
+  }
+}
+
+TEST(Closest, KeepsItsDigitsFarFromTheOrigin) {
+  const Vec3 by(1e5, -2e5, 3e5);
+  const Mesh sphere = sphere_mesh(10, 3);
+  const std::vector<double> near = deviation(moved(sphere, {0.3, 0.2, 0.1}), sphere);
+  const std::vector<double> far = deviation(moved(sphere, by + Vec3(0.3, 0.2, 0.1)), moved(sphere, by));
+  for (std::size_t i = 0; i < near.size(); ++i) EXPECT_NEAR(near[i], far[i], 2e-10);
+}
+
+TEST(Closest, TellsTheSideOfSharpEdgesAndCorners) {
+  const Mesh box = box_mesh({0, 0, 0}, {1, 2, 3});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> coordinate(-1, 4);
+  Mesh cloud;
+  for (int i = 0; i < 2000; ++i)
+    cloud.vertices.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+  const std::vector<double> d = deviation(cloud, box, true);
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    // The signed distance of a box, from its faces.
+    const Vec3 q = glm::abs(cloud.vertices[i] - Vec3(0.5, 1, 1.5)) - Vec3(0.5, 1, 1.5);
+    const double truth = glm::length(glm::max(q, Vec3(0))) + std::fmin(0, std::fmax(q.x, std::fmax(q.y, q.z)));
+    EXPECT_NEAR(d[i], truth, 1e-12);
+  }
+}
+
+TEST(Closest, DeviationOfAMeshFromItselfIsZero) {
+  const Mesh torus = torus_mesh(10, 4, 40, 30);
+  for (const double d : deviation(torus, torus)) EXPECT_EQ(d, 0);
+}
+
+TEST(Closest, DeviationIsTheSameForAnyNumberOfThreads) {
+  const Mesh a = torus_mesh(10, 4, 60, 40), b = torus_mesh(10, 4.1, 50, 50);
+  setenv("RIFFLER_THREADS", "1", 1);
+  const std::vector<double> one = deviation(a, b, true);
+  setenv("RIFFLER_THREADS", "5", 1);
+  const std::vector<double> five = deviation(a, b, true);
+  unsetenv("RIFFLER_THREADS");
+  EXPECT_EQ(one, five);
+}
+
+TEST(Closest, RefusesAnEmptyMesh) {
+  EXPECT_THROW(Closest({}), std::invalid_argument);
+  EXPECT_THROW(deviation(sphere_mesh(1, 1), {}), std::invalid_argument);
+  EXPECT_TRUE(deviation({}, sphere_mesh(1, 1)).empty());
+}
+
+}  // namespace
+}  // namespace riffler

@@ -1,0 +1,200 @@
+#include "mesh/decimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <set>
+
+#include "geom/float32.hpp"
+#include "mesh/audit.hpp"
+#include "mesh/closest.hpp"
+#include "mesh/shapes.hpp"
+#include "mesh/stl.hpp"
+
+namespace riffler {
+namespace {
+
+/// Largest distance of points of `from`, dense on each of its triangles, from `to`.
+double one_way(const Mesh& from, const Mesh& to) {
+  Mesh points;
+  for (const Vec3i& t : from.triangles) {
+    const Vec3 &a = from.vertices[t.x], &b = from.vertices[t.y], &c = from.vertices[t.z];
+    const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
+    const int n = std::clamp(static_cast<int>(longest / 0.15), 3, 24);
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j)
+        points.vertices.push_back((a * (n - i - j * 1.0) + b * (i * 1.0) + c * (j * 1.0)) / (n * 1.0));
+  }
+  const std::vector<double> d = deviation(points, to);
+  return *std::max_element(d.begin(), d.end());
+}
+
+void expect_sound(const Mesh& mesh) {
+  for (const Mesh& m : {mesh, from_stl(to_stl(mesh), "part")}) {
+    const Audit a = audit(m);
+    EXPECT_TRUE(a.watertight());
+    EXPECT_EQ(a.degenerate + a.duplicates + a.folds, 0U);
+    EXPECT_EQ(m.vertices.size(), mesh.vertices.size());  // welding joined none
+  }
+}
+
+Mesh rough(Mesh mesh, double height) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> step(-height, height);
+  for (Vec3& v : mesh.vertices) v += Vec3(step(random), step(random), step(random));
+  return mesh;
+}
+
+TEST(Decimate, StaysWithinTheToleranceInBothDirections) {
+  struct Case {
+    Mesh mesh;
+    std::size_t most;  // triangles left at a tolerance of 0.05
+  };
+  const auto wave = [](double x, double y) { return std::sin(x) * std::cos(1.3 * y); };
+  const Case cases[] = {{sphere_mesh(10, 5), 2000},
+                        {torus_mesh(10, 4, 120, 60), 2500},
+                        {rough(torus_mesh(10, 4, 120, 60), 0.02), 8000},
+                        {rough(subdivided(box_mesh({0, 0, 0}, {10, 8, 6}), 4), 0.03), 1500},
+                        {sheet_mesh(60, 12, wave), 3000}};
+  for (const Case& c : cases) {
+    const bool closed = audit(c.mesh).watertight() && audit(c.mesh).open_edges == 0;
+    std::size_t before = c.mesh.triangles.size();
+    for (const double tolerance : {0.002, 0.05, 0.5}) {
+      const Mesh result = decimate(c.mesh, {{}, tolerance});
+      EXPECT_LE(one_way(c.mesh, result), tolerance);
+      EXPECT_LE(one_way(result, c.mesh), tolerance);
+      EXPECT_LE(result.triangles.size(), before);
+      before = result.triangles.size();
+      if (tolerance == 0.05) {
+        EXPECT_LT(result.triangles.size(), c.most);
+      }
+      if (closed) expect_sound(result);
+    }
+  }
+}
+
+TEST(Decimate, ABoxBecomesTwelveTriangles) {
+  const Mesh mesh = subdivided(box_mesh({1, 2, 3}, {41, 33, 27}), 5);
+  const Mesh result = decimate(mesh, {{}, 1e-6});
+  EXPECT_EQ(result.triangles.size(), 12U);
+  EXPECT_DOUBLE_EQ(volume(result), 40.0 * 31 * 24);
+  expect_sound(result);
+}
+
+TEST(Decimate, ABoxFarAwayBecomesTwelveTriangles) {
+  const Mesh mesh = subdivided(box_mesh({1e5, 2e5, -1e5}, {100040, 200032, -99976}), 4);
+  const Mesh result = decimate(mesh, {{}, 1e-3});
+  EXPECT_EQ(result.triangles.size(), 12U);
+  EXPECT_DOUBLE_EQ(volume(result), 40.0 * 32 * 24);
+}
+
+TEST(Decimate, ABoxTurnedAtRandomKeepsItsEdges) {
+  const Vec3 x = glm::normalize(Vec3(1, 2, 3)), y = glm::normalize(glm::cross(x, Vec3(0.3, -1, 2)));
+  const Mat3 turn(x, y, glm::cross(x, y));
+  Mesh mesh = subdivided(box_mesh({0, 0, 0}, {40, 31, 24}), 4);
+  for (Vec3& v : mesh.vertices) v = to_float32(turn * v);
+  const Mesh result = decimate(mesh, {{}, 0.001});
+  EXPECT_EQ(result.triangles.size(), 12U);
+  EXPECT_LE(one_way(mesh, result), 0.001);
+  EXPECT_LE(one_way(result, mesh), 0.001);
+}
+
+TEST(Decimate, ReachesACount) {
+  const Mesh mesh = sphere_mesh(10, 5);
+  for (const std::size_t n : {4000, 1000, 100}) {
+    const Mesh result = decimate(mesh, {n, {}});
+    EXPECT_LE(result.triangles.size(), n);
+    EXPECT_GE(result.triangles.size(), n - 1);
+    expect_sound(result);
+    // An inscribed sphere of n even triangles misses 4 π / √3 n of the radius (its triangles' centres); quadrics place
+    // them about evenly.
+    EXPECT_LT(one_way(mesh, result), 3 * 10 * 7.26 / static_cast<double>(n));
+  }
+}
+
+TEST(Decimate, WhicheverLimitComesFirst) {
+  const Mesh mesh = sphere_mesh(10, 4);
+  EXPECT_EQ(decimate(mesh, {1500, 0.5}).triangles.size(), 1500U);
+  const Mesh result = decimate(mesh, {4, 0.1});
+  EXPECT_GT(result.triangles.size(), 100U);
+  EXPECT_LE(one_way(mesh, result), 0.1);
+}
+
+TEST(Decimate, SmallestBodiesStayBodies) {
+  for (const Mesh& mesh : {sphere_mesh(1, 0), box_mesh({0, 0, 0}, {1, 1, 1}), sphere_mesh(1, 3)}) {
+    const Mesh result = decimate(mesh, {0, {}});
+    expect_sound(result);
+    EXPECT_GE(result.triangles.size(), 4U);
+    EXPECT_GT(volume(result), 0);
+  }
+}
+
+TEST(Decimate, EveryComponentStays) {
+  const Mesh small = sphere_mesh(0.5, 3);
+  const Mesh mesh = both(sphere_mesh(10, 4), moved(small, {30, 0, 0}));
+  const Mesh result = decimate(mesh, {{}, 0.2});
+  EXPECT_EQ(audit(result).components, 2U);
+  EXPECT_LE(one_way(mesh, result), 0.2);
+}
+
+TEST(Decimate, VerticesAreSomeOfTheOldOnes) {
+  const Mesh mesh = sphere_mesh(10.0 / 3, 4);
+  std::set<std::array<double, 3>> old;
+  for (const Vec3& v : mesh.vertices) old.insert({v.x, v.y, v.z});
+  for (const Vec3& v : decimate(mesh, {300, {}}).vertices) EXPECT_TRUE(old.contains({v.x, v.y, v.z}));
+}
+
+TEST(Decimate, ABorderKeepsToTheTolerance) {
+  const Mesh mesh = sheet_mesh(40, 10, [](double x, double y) { return 0.1 * std::sin(2 * x) + 0.05 * y; });
+  const Mesh result = decimate(mesh, {{}, 0.02});
+  EXPECT_LT(result.triangles.size(), mesh.triangles.size() / 4);
+  const Audit a = audit(result);
+  EXPECT_EQ(a.nonmanifold_edges + a.nonmanifold_vertices, 0U);
+  EXPECT_EQ(a.components, 1U);
+  const Box3 box = bounds(result);
+  EXPECT_EQ(Vec2(box.lower.x, box.lower.y), Vec2(0));
+  EXPECT_EQ(Vec2(box.upper.x, box.upper.y), Vec2(10));
+}
+
+TEST(Decimate, NonManifoldInputIsNotMadeWorse) {
+  const Mesh one = subdivided(box_mesh({0, 0, 0}, {4, 4, 4}), 3);
+  const Mesh mesh = from_stl(to_stl(both(one, moved(one, {4, 4, 0}))), "part");  // they touch along an edge
+  const Audit before = audit(mesh);
+  ASSERT_EQ(before.nonmanifold_edges, 8U);
+  const Mesh result = decimate(mesh, {{}, 0.01});
+  const Audit after = audit(result);
+  EXPECT_EQ(after.nonmanifold_edges, 8U);  // the ends of such edges stay
+  EXPECT_EQ(after.open_edges, 0U);
+  EXPECT_LT(result.triangles.size(), mesh.triangles.size() / 4);
+  EXPECT_DOUBLE_EQ(after.volume, 128);
+}
+
+TEST(Decimate, OddInputs) {
+  EXPECT_TRUE(decimate({}, {10, {}}).empty());
+  Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(decimate(mesh, {12, {}}).triangles, mesh.triangles);
+  mesh.triangles.emplace_back(0, 0, 1), mesh.triangles.push_back(mesh.triangles[0]);
+  EXPECT_NO_THROW(audit(decimate(mesh, {{}, 0.1})));
+  EXPECT_NO_THROW(audit(decimate(mesh, {4, {}})));
+  Mesh lone;
+  lone.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  lone.triangles = {{0, 1, 2}};
+  EXPECT_EQ(decimate(lone, {0, 10.0}).triangles.size(), 1U);
+}
+
+TEST(Decimate, RefusesBadLimits) {
+  const Mesh mesh = sphere_mesh(1, 1);
+  EXPECT_THROW(decimate(mesh, {}), std::invalid_argument);
+  EXPECT_THROW(decimate(mesh, {{}, -1.0}), std::invalid_argument);
+  EXPECT_THROW(decimate(mesh, {{}, std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(decimate(mesh, {{}, std::numeric_limits<double>::infinity()}), std::invalid_argument);
+}
+
+TEST(Decimate, CanBeCancelled) {
+  EXPECT_THROW(decimate(sphere_mesh(10, 5), {100, {}}, [](double share) { return share < 0.5; }), Cancelled);
+}
+
+}  // namespace
+}  // namespace riffler
