@@ -30,6 +30,10 @@ struct End {
   bool outward;
 };
 
+double most(const Vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
 /// Fills one grid from the crossings of its columns.
 class Filler {
  public:
@@ -59,6 +63,7 @@ class Filler {
 
   const Mesh& mesh_;
   const std::vector<std::vector<int>>& loops_;
+  Box3 box_;
   Grid& grid_;
   Projection projection_;
   std::vector<Passage> passages_;
@@ -68,6 +73,7 @@ class Filler {
 Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress)
     : mesh_(mesh),
       loops_(loops),
+      box_(bounds(mesh)),
       grid_(grid),
       projection_(mesh, grid),
       passages_(loops.empty() ? std::vector<Passage>{} : find_passages(mesh, loops, projection_, grid, progress)),
@@ -201,8 +207,11 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
   };
   std::vector<double> samples;
   for (std::size_t k = 0; k + 1 < crossings.size(); ++k) samples.push_back(0.5 * (crossings[k].z + crossings[k + 1].z));
-  samples.insert(samples.begin(), crossings.front().z - h);
-  samples.push_back(crossings.back().z + h);
+  const double first = crossings.front().z, last = crossings.back().z, reach = 2 * most(box_.size()) + h;
+  for (double step = h; step < reach; step *= 2) {
+    samples.insert(samples.begin(), first - step);
+    samples.push_back(last + step);
+  }
 
   out.clear();
   for (const Crossing& c : crossings)
@@ -235,10 +244,6 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
 Progress part(const Progress& progress, double begin, double end) {
   if (!progress) return {};
   return [&progress, begin, end](double share) { return progress(begin + share * (end - begin)); };
-}
-
-double most(const Vec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
 void fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress) {

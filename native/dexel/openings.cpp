@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 
@@ -13,10 +14,11 @@ namespace riffler {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kLeaf = 4;                 // columns and cells of a leaf's sides
-constexpr int kTask = 32;                // of a task's
-constexpr double kShortest = 1.0 / 512;  // cells: a piece of a column near an edge is not halved further
-constexpr double kRoot = 1e-9;           // cells: where the search along a column ends
+constexpr int kLeaf = 4;                             // columns and cells of a leaf's sides
+constexpr int kTask = 32;                            // of a task's
+constexpr double kShortest = 1.0 / (1 << 20);        // cells: a piece of a column at an edge is not halved further
+constexpr double kRoot = 1e-9;                       // cells: where the search along a column ends
+constexpr double kLevel = 1e-6, kLevelBound = 2e-3;  // of K: measured and proven deviation from ½ that counts as none
 
 /// Columns [i0, i1) × [j0, j1) from z0 to z1, in cells.
 struct Block {
@@ -47,7 +49,10 @@ void halves(const Block& b, int side, const Body& body) {
 /// Searches blocks for passages.
 class Search {
  public:
-  Search(const BoundaryTree& tree, std::vector<Passage>& out) : tree_(tree), out_(out) {}
+  using Rounded = std::function<int(int row, int column, double z)>;
+
+  Search(const BoundaryTree& tree, const Rounded& rounded, std::vector<Passage>& out)
+      : tree_(tree), rounded_(rounded), out_(out) {}
 
   /// Whether K may pass ½ in the block: second-order bound about its centre.
   bool may_pass(const Block& block) {
@@ -95,12 +100,17 @@ class Search {
     const double curvature = field_.curvature(z, half);
     if (std::abs(value.phase) > std::abs(value.slope) * half + 0.5 * curvature * half * half + kSlack * half) return;
     if (std::abs(value.slope) > 2 * curvature * half) return newton(z0, z1, value);
-    if (half > kShortest) {
+    const double variation = field_.variation(z, half, value.slope);
+    if (std::abs(value.phase) > variation + kSlack * half) return;
+    // A column in the plane of a flat opening, where K is ½ throughout: either side will do.
+    const bool level = std::abs(value.phase) + std::abs(value.slope) * half < kLevel && variation < kLevelBound;
+    if (half > kShortest && !level) {
       segment(z0, z), segment(z, z1);
       return;
     }
-    const double below = field_.at(z0).phase, above = field_.at(z1).phase;
-    if ((below < 0) != (above < 0) && std::abs(below) + std::abs(above) < 0.5) add(bisect(z0, z1, below), below < 0);
+    // At an edge the same decisions as for crossings tell on which side of it the column passes.
+    const int change = rounded_(row_, column_, z1) - rounded_(row_, column_, z0);
+    for (int k = 0; k < std::abs(change); ++k) add(z, change > 0);
   }
 
   /// The one root of a phase whose slope varies by less than half of itself.
@@ -118,18 +128,6 @@ class Search {
     if (z >= z0 - room && z <= z1 + room) add(z, rising);
   }
 
-  double bisect(double z0, double z1, double below) {
-    while (z1 - z0 > kRoot * (1 + std::abs(z0))) {
-      const double z = 0.5 * (z0 + z1);
-      if (z <= z0 || z >= z1) break;
-      if ((field_.at(z).phase < 0) == (below < 0))
-        z0 = z;
-      else
-        z1 = z;
-    }
-    return 0.5 * (z0 + z1);
-  }
-
   void add(double z, bool rising) {
     Passage passage{row_, column_, rising ? 1 : -1, z, Vec3(0)};
     field_.at(Vec3(row_, column_, z), passage.gradient);
@@ -137,6 +135,7 @@ class Search {
   }
 
   const BoundaryTree& tree_;
+  const Rounded& rounded_;  // K rounded to an integer, by boundary_winding
   std::vector<Passage>& out_;
   Field field_;
   double phase_ = 0, remainder_ = 0;
@@ -183,7 +182,10 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   // Down to tasks on one thread, then task by task on all.
   std::vector<Block> tasks, pending{{0, grid.nu(), 0, grid.nv(), bottom, top}};
   std::vector<Passage> passages;
-  Search top_level(tree, passages);
+  const Search::Rounded rounded = [&](int row, int column, double z) {
+    return static_cast<int>(std::lround(boundary_winding(loops, projection, pitch, row, column, base + z * pitch)));
+  };
+  Search top_level(tree, rounded, passages);
   while (!pending.empty()) {
     const Block block = pending.back();
     pending.pop_back();
@@ -197,7 +199,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   parallel_for(
       tasks.size(), 1,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) Search(tree, found[k]).block(tasks[k]);
+        for (std::size_t k = begin; k < end; ++k) Search(tree, rounded, found[k]).block(tasks[k]);
       },
       progress);
   for (const std::vector<Passage>& part : found) passages.insert(passages.end(), part.begin(), part.end());
@@ -212,10 +214,10 @@ double boundary_winding(const std::vector<std::vector<int>>& loops, const Projec
   for (const std::vector<int>& loop : loops)
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Projection::Vertex &from = projection.vertex(loop[k]), &to = projection.vertex(loop[(k + 1) % loop.size()]);
-      // The ray stands infinitesimally off the lattice, as in Projection: (ε², ε).
-      constexpr double kAside = 1.0 / (1LL << 40);
-      const Vec3 a(from.u - row, from.v - column - kAside, (from.z - z) / pitch);
-      const Vec3 b(to.u - row, to.v - column - kAside, (to.z - z) / pitch);
+      // The ray stands off the lattice as in Projection, by (ε², ε): so little that no vertex is between.
+      constexpr double kAside = 1.0 / (1LL << 34), kLess = 1.0 / (1LL << 40);
+      const Vec3 a(from.u - row - kLess, from.v - column - kAside, (from.z - z) / pitch);
+      const Vec3 b(to.u - row - kLess, to.v - column - kAside, (to.z - z) / pitch);
       const double aa = a.x * a.x + a.y * a.y, bb = b.x * b.x + b.y * b.y;
       const double length_a = std::sqrt(aa + a.z * a.z), length_b = std::sqrt(bb + b.z * b.z);
       const double t_a = a.z < 0 ? aa / (length_a - a.z) : length_a + a.z;

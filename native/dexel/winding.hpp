@@ -35,6 +35,10 @@ class Field {
 
   /// Upper bound of the norm of K's second derivatives within `half` of z on the column set; infinity on an edge.
   double curvature(double z, double half) const;
+  /// How far K within `half` of z on the column set may be from K(z), given dK/dz there. Unlike `curvature` it stays
+  /// useful beside edges: one edge's share of K never turns back along a column, for the sign of
+  /// dK/dz = (a × b)_z (|a| + |b|) / (4π |a| |b| (|a| |b| + a·b)) is that of a constant.
+  double variation(double z, double half, double slope) const;
 
  private:
   friend class BoundaryTree;

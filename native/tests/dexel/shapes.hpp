@@ -1,0 +1,166 @@
+// Meshes and references that the tests of mesh → volume share. Nothing here uses the code under test.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "dexel/volume.hpp"
+#include "mesh/mesh.hpp"
+
+namespace riffler::shapes {
+
+inline Mesh box(const Vec3& lower, const Vec3& upper) {
+  Mesh m;
+  for (int k = 0; k < 8; ++k)
+    m.vertices.emplace_back(k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z);
+  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return m;
+}
+
+/// A box without its lid (the two triangles at the upper z).
+inline Mesh open_box(const Vec3& lower, const Vec3& upper) {
+  Mesh m = box(lower, upper);
+  m.triangles.erase(m.triangles.begin() + 2, m.triangles.begin() + 4);
+  return m;
+}
+
+/// Sphere of `rings` × 2 `rings` facets about `centre`, vertices on the radius.
+inline Mesh sphere(const Vec3& centre, double radius, int rings) {
+  Mesh m;
+  m.vertices.push_back(centre + Vec3(0, 0, radius));
+  for (int i = 1; i < rings; ++i)
+    for (int j = 0; j < 2 * rings; ++j) {
+      const double a = std::numbers::pi * i / rings, b = std::numbers::pi * j / rings;
+      m.vertices.push_back(centre + radius * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
+    }
+  m.vertices.push_back(centre - Vec3(0, 0, radius));
+  const int last = static_cast<int>(m.vertices.size()) - 1;
+  const auto id = [&](int i, int j) {
+    return i == 0 ? 0 : i == rings ? last : 1 + (i - 1) * 2 * rings + j % (2 * rings);
+  };
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < 2 * rings; ++j) {
+      if (i > 0) m.triangles.emplace_back(id(i, j), id(i + 1, j), id(i, j + 1));
+      if (i < rings - 1) m.triangles.emplace_back(id(i, j + 1), id(i + 1, j), id(i + 1, j + 1));
+    }
+  return m;
+}
+
+inline Mesh flipped(Mesh m) {
+  for (Vec3i& t : m.triangles) std::swap(t.y, t.z);
+  return m;
+}
+
+inline Mesh joined(Mesh a, const Mesh& b) {
+  const int n = static_cast<int>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const Vec3i& t : b.triangles) a.triangles.push_back(t + Vec3i(n));
+  return a;
+}
+
+/// Every triangle with vertices of its own.
+inline Mesh unwelded(const Mesh& m) {
+  Mesh out;
+  for (const Vec3i& t : m.triangles) {
+    const int n = static_cast<int>(out.vertices.size());
+    for (int k = 0; k < 3; ++k) out.vertices.push_back(m.vertices[t[k]]);
+    out.triangles.emplace_back(n, n + 1, n + 2);
+  }
+  return out;
+}
+
+inline Mesh moved(Mesh m, const Mat3& turn, const Vec3& shift) {
+  for (Vec3& p : m.vertices) p = turn * p + shift;
+  return m;
+}
+
+inline Mat3 rotation(const Vec3& axis, double angle) {
+  const Vec3 u = glm::normalize(axis);
+  const double c = std::cos(angle), s = std::sin(angle);
+  Mat3 r(0);
+  for (int k = 0; k < 3; ++k) {
+    Vec3 e(0);
+    e[k] = 1;
+    r[k] = c * e + s * glm::cross(u, e) + (1 - c) * glm::dot(u, e) * u;
+  }
+  return r;
+}
+
+inline Box3 box_of(const Mesh& m) {
+  Box3 b;
+  for (const Vec3& p : m.vertices) b.add(p);
+  return b;
+}
+
+/// The divergence theorem in long double about a vertex: a closed mesh's signed volume.
+inline double signed_volume(const Mesh& m) {
+  const Vec3 o = m.vertices.at(0);
+  long double six = 0;
+  for (const Vec3i& t : m.triangles)
+    six += glm::dot(m.vertices[t.x] - o, glm::cross(m.vertices[t.y] - o, m.vertices[t.z] - o));
+  return static_cast<double>(six / 6);
+}
+
+/// Generalized winding number: the sum of the solid angles of all triangles over 4π (Jacobson et al., "Robust
+/// Inside-Outside Segmentation Using Generalized Winding Numbers", SIGGRAPH 2013, equation 6).
+inline double winding_number(const Mesh& m, const Vec3& p) {
+  double sum = 0;
+  for (const Vec3i& t : m.triangles) {
+    const Vec3 a = m.vertices[t.x] - p, b = m.vertices[t.y] - p, c = m.vertices[t.z] - p;
+    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+    sum += std::atan2(glm::dot(a, glm::cross(b, c)),
+                      la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+  }
+  return sum / (2 * std::numbers::pi);
+}
+
+inline bool inside(const Grid& grid, int i, int j, double z) {
+  for (const Span& s : grid.ray(i, j))
+    if (z > s.near && z < s.far) return true;
+  return false;
+}
+
+inline std::filesystem::path model_path(const std::string& name) {
+  return std::filesystem::path(__FILE__).parent_path() / "../../../../shared/models" / (name + ".stl");
+}
+
+/// A binary STL, equal vertices welded; empty where the file is absent.
+inline Mesh read_model(const std::string& name) {
+  std::ifstream file(model_path(name), std::ios::binary);
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
+  Mesh m;
+  std::map<std::array<float, 3>, int> ids;
+  for (std::size_t at = 84; at + 50 <= bytes.size(); at += 50) {
+    std::array<std::array<float, 3>, 3> corners;
+    std::memcpy(corners.data(), bytes.data() + at + 12, 36);
+    Vec3i t;
+    for (int k = 0; k < 3; ++k) {
+      const auto [place, fresh] = ids.try_emplace(corners[k], static_cast<int>(m.vertices.size()));
+      if (fresh) m.vertices.emplace_back(corners[k][0], corners[k][1], corners[k][2]);
+      t[k] = place->second;
+    }
+    m.triangles.push_back(t);
+  }
+  return m;
+}
+
+/// A frame of `cells` along the longest side of the mesh's box, grown by `around` cells.
+inline Frame frame_of(const Mesh& m, int cells, const std::string& directions, double around = 0) {
+  const Box3 b = box_of(m);
+  const Vec3 size = b.size();
+  const double pitch = std::max({size.x, size.y, size.z}) / cells;
+  return {b.grown(around * pitch), pitch, directions};
+}
+
+}  // namespace riffler::shapes
