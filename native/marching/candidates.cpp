@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 
 #include "geom/parallel.hpp"
@@ -29,24 +30,38 @@ void test_combinations(Surface& surface, std::size_t n) {
 
 }  // namespace
 
-std::vector<std::uint32_t> quads_marked(const Surface& surface, std::uint8_t mark) {
-  constexpr std::size_t grain = 1 << 14;
-  std::vector<std::vector<std::uint32_t>> found((surface.quads() + grain - 1) / grain);
-  parallel_for(surface.quads(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
+Columns columns_near(const Surface& surface, const std::vector<Vec3i>& cells, int rings) {
+  const int ni = surface.lattice.cells(0), nj = surface.lattice.cells(1);
+  std::vector<bool> wanted(static_cast<std::size_t>(ni) * nj);
+  Columns columns;
+  for (const Vec3i& cell : cells)
+    for (int i = std::max(0, cell.x - rings); i <= std::min(ni - 1, cell.x + 1 + rings); ++i)
+      for (int j = std::max(0, cell.y - rings); j <= std::min(nj - 1, cell.y + 1 + rings); ++j) {
+        const std::size_t n = static_cast<std::size_t>(i) * nj + j;
+        if (!wanted[n]) columns.push_back({i, j});
+        wanted[n] = true;
+      }
+  std::sort(columns.begin(), columns.end());
+  return columns;
+}
+
+std::vector<std::uint32_t> quads_marked(const Surface& surface, const Columns& columns, std::uint8_t mark) {
+  std::vector<std::uint32_t> found;
+  for (const auto& [i, j] : columns)
+    for (std::size_t n = surface.counts.edge(i, j, 0); n < surface.counts.edge_after(i, j); ++n) {
       const auto c = surface.corners(n);
       const std::vector<std::uint8_t>& m = surface.marks;
-      if ((m[c[0]] | m[c[1]] | m[c[2]] | m[c[3]]) & mark) found[begin / grain].push_back(static_cast<std::uint32_t>(n));
+      if ((m[c[0]] | m[c[1]] | m[c[2]] | m[c[3]]) & mark) found.push_back(static_cast<std::uint32_t>(n));
     }
-  });
-  std::vector<std::uint32_t> all;
-  for (const auto& chunk : found) all.insert(all.end(), chunk.begin(), chunk.end());
-  return all;
+  return found;
 }
 
 void choose_candidates(Surface& surface) {
   if (surface.specials.empty()) return;
-  const std::vector<std::uint32_t> quads = quads_marked(surface, kCandidate);
+  std::vector<Vec3i> cells;
+  for (const Special& s : surface.specials)
+    if (surface.marks[s.vertex] & kCandidate) cells.push_back(s.cell);
+  const std::vector<std::uint32_t> quads = quads_marked(surface, columns_near(surface, cells, 0), kCandidate);
   parallel_for(quads.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) test_combinations(surface, quads[n]);
   });

@@ -26,6 +26,8 @@ class Counts {
   std::size_t vertices() const { return plane_vertex_.back(); }
   /// Number of the first edge in a column along an axis.
   std::size_t edge(int i, int j, int axis) const { return plane_edge_[i] + column_[offset(i, j)][axis]; }
+  /// Number of the first edge after a column.
+  std::size_t edge_after(int i, int j) const { return j + 1 < columns_ ? edge(i, j + 1, 0) : plane_edge_[i + 1]; }
   /// Number of the first vertex in the cells of plane i.
   std::size_t vertex(int i) const { return plane_vertex_[i]; }
   /// The edge of a number: by bisection, for the few that need it.

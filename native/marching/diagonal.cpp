@@ -6,6 +6,11 @@ namespace riffler::marching {
 
 namespace {
 
+/// v[axis] for an axis known at run time only; glm's operator branches.
+double component(const Vec3& v, int axis) {
+  return (&v.x)[axis];
+}
+
 /// The quad seen along its edge, from outside: two coordinates across, the height along.
 struct Projection {
   Vec2 p[4];
@@ -16,8 +21,9 @@ struct Projection {
     const int b = (q.axis + 1) % 3, c = (q.axis + 2) % 3;
     for (int n = 0; n < 4; ++n) {
       // Seen from the other side left and right change places.
-      p[n] = {q.side * (q.corner[n][b] - q.corner[0][b]), q.corner[n][c] - q.corner[0][c]};
-      height[n] = q.corner[n][q.axis] - q.corner[0][q.axis];
+      p[n] = {q.side * (component(q.corner[n], b) - component(q.corner[0], b)),
+              component(q.corner[n], c) - component(q.corner[0], c)};
+      height[n] = component(q.corner[n], q.axis) - component(q.corner[0], q.axis);
     }
     area012 = twice_area(0, 1, 2), area023 = twice_area(0, 2, 3);
     area123 = twice_area(1, 2, 3), area130 = twice_area(1, 3, 0);
@@ -51,8 +57,9 @@ int choose_diagonal(const Quad& quad, const Vec3& hit, double tie) {
   const double apart = s.height[1] * s.area023 + s.height[3] * s.area012 - s.height[2] * s.area130;
   if (std::abs(apart) > tie * (s.area012 + s.area023)) {
     const int b = (quad.axis + 1) % 3, c = (quad.axis + 2) % 3;
-    const Vec2 o{quad.side * (hit[b] - quad.corner[0][b]), hit[c] - quad.corner[0][c]};
-    const double target = hit[quad.axis] - quad.corner[0][quad.axis];
+    const Vec2 o{quad.side * (component(hit, b) - component(quad.corner[0], b)),
+                 component(hit, c) - component(quad.corner[0], c)};
+    const double target = component(hit, quad.axis) - component(quad.corner[0], quad.axis);
     const double at_first =
         Projection::cross(s.p[2], o) < 0 ? s.height_at(o, 0, 1, 2, s.area012) : s.height_at(o, 0, 2, 3, s.area023);
     const double at_second = Projection::cross(s.p[3] - s.p[1], o - s.p[1]) < 0 ? s.height_at(o, 1, 2, 3, s.area123)

@@ -37,10 +37,11 @@ Side side_of(const std::array<std::int32_t, 4>& c, std::uint32_t n, int s) {
   return {std::min(a, b), std::max(a, b), 2 * n + (s >= 2)};
 }
 
-/// Ends of the edges at which two triangles fold, among the edges of quads with a marked corner; ascending.
-std::vector<std::int32_t> folded_vertices(Surface& surface, std::uint8_t mark) {
+/// Ends of the edges at which two triangles fold, among the edges of quads with a marked corner; ascending. `cells` are
+/// the cells of all marked vertices.
+std::vector<std::int32_t> folded_vertices(Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark) {
   std::vector<std::int32_t> ends;
-  const std::vector<std::uint32_t> quads = quads_marked(surface, mark);
+  const std::vector<std::uint32_t> quads = quads_marked(surface, columns_near(surface, cells, 0), mark);
   for (const std::uint32_t n : quads) {
     const auto c = surface.corners(n);
     for (const std::int32_t v : c) surface.marks[v] |= kNear;
@@ -48,7 +49,7 @@ std::vector<std::int32_t> folded_vertices(Surface& surface, std::uint8_t mark) {
   }
   // Quads on the other side of such an edge have both its ends near.
   std::vector<Side> sides;
-  for (const std::uint32_t n : quads_marked(surface, kNear)) {
+  for (const std::uint32_t n : quads_marked(surface, columns_near(surface, cells, 1), kNear)) {
     const auto c = surface.corners(n);
     for (int s = 0; s < 4; ++s)
       if (surface.marks[c[s]] & surface.marks[c[(s + 1) & 3]] & kNear) sides.push_back(side_of(c, n, s));
@@ -74,6 +75,11 @@ bool coincides(const Mesh& mesh, std::int32_t vertex, const Vec3& place) {
   return false;
 }
 
+Vec3i cell_of(Surface& surface, std::int32_t vertex) {
+  if (surface.marks[vertex] & kSpecial) return surface.special(vertex).cell;
+  return surface.grid.cell_of(surface.mesh.vertices[vertex]);
+}
+
 /// Moves a vertex a share of the way to its anchor; one that stands at its candidate goes to its safe place first.
 void pull(Surface& surface, std::int32_t vertex, double share) {
   Vec3& place = surface.mesh.vertices[vertex];
@@ -83,7 +89,7 @@ void pull(Surface& surface, std::int32_t vertex, double share) {
     place = special->other;
     return;
   }
-  const Vec3i cell = special ? special->cell : grid.cell_of(place);
+  const Vec3i cell = cell_of(surface, vertex);
   const Vec3 anchor = special ? special->anchor : Vec3(0.5);
   const Vec3 from = glm::clamp(grid.to_cell(cell, place), 0.0, 1.0);
   Vec3 to = grid.inside(cell, from + share * (anchor - from));
@@ -96,19 +102,21 @@ void pull(Surface& surface, std::int32_t vertex, double share) {
 }
 
 /// Splits the quads round moved vertices anew. Where a neighbour's candidate no longer leaves a diagonal, it goes back
-/// to its safe place too; with safe places alone there always is one.
-void split_again(Surface& surface) {
-  for (bool again = true; again;) {
-    again = false;
-    for (const std::uint32_t n : quads_marked(surface, kMoved)) {
+/// to its safe place too, and joins the moved ones; with safe places alone there always is a diagonal.
+void split_again(Surface& surface, std::vector<std::int32_t>& moved, std::vector<Vec3i>& cells) {
+  for (std::size_t done = 0; done < moved.size();) {
+    for (; done < moved.size(); ++done) {
+      surface.marks[moved[done]] |= kMoved;
+      cells.push_back(cell_of(surface, moved[done]));
+    }
+    for (const std::uint32_t n : quads_marked(surface, columns_near(surface, cells, 0), kMoved)) {
       if (surface.split(n, surface.counts.locate(surface.signs, n))) continue;
       for (const std::int32_t v : surface.corners(n)) {
         if (!(surface.marks[v] & kSpecial)) continue;
         const Vec3& safe = surface.special(v).other;
         if (surface.mesh.vertices[v] == safe) continue;
         surface.mesh.vertices[v] = safe;
-        surface.marks[v] |= kMoved;
-        again = true;
+        moved.push_back(v);
       }
     }
   }
@@ -117,17 +125,17 @@ void split_again(Surface& surface) {
 }  // namespace
 
 void unfold(Surface& surface) {
-  if (surface.specials.empty()) return;
+  std::vector<Vec3i> cells;
+  for (const Special& s : surface.specials) cells.push_back(s.cell);
+  std::vector<std::int32_t> moved = folded_vertices(surface, cells, kSpecial);
   double share = 0.04;
-  std::vector<std::int32_t> moved = folded_vertices(surface, kSpecial);
   for (int round = 0; round < kRounds && !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
-    for (const std::int32_t v : moved) {
-      pull(surface, v, share);
-      surface.marks[v] |= kMoved;
-    }
-    split_again(surface);
-    moved = folded_vertices(surface, kMoved);
-    for (std::uint8_t& m : surface.marks) m &= static_cast<std::uint8_t>(~kMoved);
+    for (const std::int32_t v : moved) pull(surface, v, share);
+    cells.clear();
+    split_again(surface, moved, cells);
+    std::vector<std::int32_t> next = folded_vertices(surface, cells, kMoved);
+    for (const std::int32_t v : moved) surface.marks[v] &= static_cast<std::uint8_t>(~kMoved);
+    moved = std::move(next);
   }
 }
 

@@ -49,7 +49,7 @@ class AxisHits {
  public:
   AxisHits(const Grid* grid, const Lattice& lattice, int axis) : grid_(grid), lattice_(lattice), axis_(axis) {}
 
-  Hit operator()(const LatticeEdge& edge) const {
+  Hit operator()(const LatticeEdge& edge) {
     if (!grid_) return axis_hit(0.5, edge, false);
     const auto [u, v] = ray_of(edge);
     const std::span<const Span> spans = grid_->ray(u, v);
@@ -60,7 +60,9 @@ class AxisHits {
     const double t = (place_of(spans[n], !edge.rising) - low) / h;
     if (!grid_->has_normals()) return axis_hit(t, edge, false);
     const SpanNormals& normals = grid_->ray_normals(u, v)[n];
-    const Vec3 normal = (edge.rising ? normals.near : normals.far).unpack();
+    const PackedNormal packed = edge.rising ? normals.near : normals.far;
+    if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();  // flat faces have one for all
+    const Vec3& normal = last_;
     if ((edge.rising ? -normal[axis_] : normal[axis_]) <= 0) return axis_hit(std::clamp(t, 0.0, 1.0), edge, true);
     return {static_cast<float>(t),
             {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)}};
@@ -82,6 +84,8 @@ class AxisHits {
   const Grid* grid_;
   const Lattice& lattice_;
   int axis_;
+  PackedNormal last_packed_{};
+  Vec3 last_ = PackedNormal{}.unpack();
 };
 
 }  // namespace
@@ -89,13 +93,14 @@ class AxisHits {
 std::vector<Hit> hits_of(const Volume& volume, const Lattice& lattice, const SignField& signs, const Counts& counts,
                          const Progress& progress) {
   const bool three = volume.grids().size() == 3;
-  const AxisHits along[3] = {{three ? volume.grid(Axis::X) : nullptr, lattice, 0},
-                             {three ? volume.grid(Axis::Y) : nullptr, lattice, 1},
-                             {&volume.reference(), lattice, 2}};
+  const AxisHits hits_along[3] = {{three ? volume.grid(Axis::X) : nullptr, lattice, 0},
+                                  {three ? volume.grid(Axis::Y) : nullptr, lattice, 1},
+                                  {&volume.reference(), lattice, 2}};
   std::vector<Hit> hits(counts.edges());
   parallel_for(
       static_cast<std::size_t>(lattice.cells(0)), 4,
       [&](std::size_t begin, std::size_t end) {
+        AxisHits along[3] = {hits_along[0], hits_along[1], hits_along[2]};
         for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
           Hit* out = hits.data() + counts.edge(i, 0, 0);
           for (int j = 0; j < lattice.cells(1); ++j)

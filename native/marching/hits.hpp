@@ -16,7 +16,7 @@ struct Hit {
   float place;
   std::array<float, 3> normal;  // unit, out of the material, in the lattice's axes
 
-  static constexpr float kWeak = 8;
+  static constexpr float kWeak = 16;
   bool weak() const { return place < -kWeak / 2; }
   double t() const { return weak() ? place + kWeak : place; }
 };

@@ -66,32 +66,44 @@ void transpose(std::uint64_t* rows) {
     }
 }
 
-/// Bits of rays that run across the columns: a slab of rays (one for each K) is written row by row and turned, so that
-/// `turned(n)` is the column of lattice plane n along the rays.
-class Slab {
+/// The bits of a few slabs of rays that run across the columns: in each slab one ray for every K. They are written row
+/// by row and turned, so that `column(slab, plane)` is the column of lattice plane `plane` along the rays.
+class Slabs {
  public:
-  Slab(int planes, int words)
+  Slabs(std::size_t count, int planes, int words)
       : words_(words),
         row_words_((planes + 63) / 64),
         rows_(static_cast<std::size_t>(words) * 64 * row_words_),
-        turned_(static_cast<std::size_t>(row_words_) * 64 * words) {}
+        turned_(count * static_cast<std::size_t>(row_words_) * 64 * words) {}
 
   void clear() { std::fill(rows_.begin(), rows_.end(), 0); }
   std::uint64_t* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * row_words_; }
-  const std::uint64_t* turned(int plane) const { return turned_.data() + static_cast<std::size_t>(plane) * words_; }
+  const std::uint64_t* column(std::size_t slab, int plane) const { return turned_.data() + place(slab, plane); }
 
-  void turn() {
+  /// Turns the rows into the columns of one slab.
+  void turn(std::size_t slab) {
     std::array<std::uint64_t, 64> block;
     for (int w = 0; w < words_; ++w)
       for (int r = 0; r < row_words_; ++r) {
-        std::uint64_t any = 0;
-        for (int b = 0; b < 64; ++b) any |= block[b] = rows_[static_cast<std::size_t>(64 * w + b) * row_words_ + r];
-        if (any) transpose(block.data());
-        for (int b = 0; b < 64; ++b) turned_[static_cast<std::size_t>(64 * r + b) * words_ + w] = block[b];
+        std::uint64_t any = 0, all = ~std::uint64_t{0};
+        for (int b = 0; b < 64; ++b) {
+          block[b] = rows_[static_cast<std::size_t>(64 * w + b) * row_words_ + r];
+          any |= block[b], all &= block[b];
+        }
+        std::uint64_t* const out = turned_.data() + place(slab, 64 * r) + w;
+        if (any != all) {
+          transpose(block.data());
+          for (int b = 0; b < 64; ++b) out[static_cast<std::size_t>(b) * words_] = block[b];
+        } else {  // 64 equal rows
+          for (int b = 0; b < 64; ++b) out[static_cast<std::size_t>(b) * words_] = -(any >> b & 1);
+        }
       }
   }
 
  private:
+  std::size_t place(std::size_t slab, int plane) const {
+    return (slab * row_words_ * 64 + plane) * static_cast<std::size_t>(words_);
+  }
   int words_, row_words_;
   std::vector<std::uint64_t> rows_, turned_;
 };
@@ -122,12 +134,13 @@ void signs_along_y(const Grid& grid, const Lattice& lattice, SignField& out, con
   parallel_for(
       static_cast<std::size_t>(lattice.rays(0)), kSlabs,
       [&](std::size_t begin, std::size_t end) {
-        Slab slab(lattice.points(1), out.words());
+        Slabs slabs(1, lattice.points(1), out.words());
         for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
-          slab.clear();
-          for (int k = 0; k < lattice.rays(2); ++k) bits(grid.ray(k, i), slab.row(k + 1));
-          slab.turn();
-          for (int j = 1; j <= lattice.rays(1); ++j) std::copy_n(slab.turned(j), out.words(), out.column(i + 1, j));
+          slabs.clear();
+          for (int k = 0; k < lattice.rays(2); ++k) bits(grid.ray(k, i), slabs.row(k + 1));
+          slabs.turn(0);
+          std::copy_n(slabs.column(0, 1), static_cast<std::size_t>(out.words()) * lattice.rays(1),
+                      out.column(i + 1, 1));
         }
       },
       progress);
@@ -140,17 +153,19 @@ void vote_along_x(const Grid& grid, const Lattice& lattice, const SignField& y, 
   parallel_for(
       static_cast<std::size_t>(lattice.rays(1)), kSlabs,
       [&](std::size_t begin, std::size_t end) {
-        Slab slab(lattice.points(0), z.words());
-        for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
-          slab.clear();
-          for (int k = 0; k < lattice.rays(2); ++k) bits(grid.ray(j, k), slab.row(k + 1));
-          slab.turn();
-          for (int i = 1; i <= lattice.rays(0); ++i) {
-            const std::uint64_t *a = slab.turned(i), *b = y.column(i, j + 1);
-            std::uint64_t* c = z.column(i, j + 1);
+        Slabs slabs(end - begin, lattice.points(0), z.words());
+        for (std::size_t j = begin; j < end; ++j) {
+          slabs.clear();
+          for (int k = 0; k < lattice.rays(2); ++k) bits(grid.ray(static_cast<int>(j), k), slabs.row(k + 1));
+          slabs.turn(j - begin);
+        }
+        // The columns of a chunk's slabs lie side by side: one run through the planes for all of them.
+        for (int i = 1; i <= lattice.rays(0); ++i)
+          for (std::size_t j = begin; j < end; ++j) {
+            const std::uint64_t *a = slabs.column(j - begin, i), *b = y.column(i, static_cast<int>(j) + 1);
+            std::uint64_t* c = z.column(i, static_cast<int>(j) + 1);
             for (int w = 0; w < z.words(); ++w) c[w] = (a[w] & b[w]) | (c[w] & (a[w] | b[w]));
           }
-        }
       },
       progress);
 }

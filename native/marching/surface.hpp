@@ -41,10 +41,8 @@ struct Surface {
 
   std::size_t quads() const { return mesh.triangles.size() / 2; }
   void set_corner(std::size_t quad, int n, std::int32_t vertex) {
-    if (n < 3)
-      mesh.triangles[2 * quad][n] = vertex;
-    else
-      mesh.triangles[2 * quad + 1].z = vertex;
+    Vec3i& triangle = mesh.triangles[2 * quad + (n == 3)];
+    (&triangle.x)[n - (n == 3)] = vertex;  // glm's operator branches
   }
   std::array<std::int32_t, 4> corners(std::size_t quad) const {
     const Vec3i &a = mesh.triangles[2 * quad], &b = mesh.triangles[2 * quad + 1];
@@ -57,8 +55,12 @@ struct Surface {
   Special& special(std::int32_t vertex);
 };
 
-/// Quads with a corner that has one of the marks, ascending.
-std::vector<std::uint32_t> quads_marked(const Surface& surface, std::uint8_t mark);
+/// Columns of cells (i, j), each once, in order.
+using Columns = std::vector<std::array<int, 2>>;
+/// The columns whose edges can be edges of the given cells, or of cells next to them too (`rings` = 1).
+Columns columns_near(const Surface& surface, const std::vector<Vec3i>& cells, int rings);
+/// Quads of these columns with a corner that has one of the marks, ascending.
+std::vector<std::uint32_t> quads_marked(const Surface& surface, const Columns& columns, std::uint8_t mark);
 
 /// Places every vertex and enters it into the quads round its edges. Marks are 0, kSpecial or kSpecial | kCandidate.
 void place_vertices(Surface& surface, const Progress& progress);

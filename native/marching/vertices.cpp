@@ -118,22 +118,26 @@ class Plane {
 
   void add_cycle(const Vec3i& cell, const CellCase& entry, int c) {
     const int begin = entry.begin[c], end = entry.begin[c + 1];
-    double along[3] = {0, 0, 0}, normal[3] = {0, 0, 0};
-    bool weak = false;
+    // One sum an axis, of places and normals side by side (floats do: what matters here is a mean of a few).
+    float sum[3][4] = {};
     for (int n = begin; n < end; ++n) {
       const CellEdge& edge = kEdges[entry.edge[n]];
       const std::size_t quad = edge_[entry.edge[n]];
       const bool rising = !(entry.code >> edge.low & 1);
       surface_.set_corner(quad, rising ? (4 - edge.slot) & 3 : edge.slot, vertex_);
       const Hit& hit = surface_.hits[quad];
-      weak |= hit.weak();
-      along[edge.axis] += hit.t();
-      for (int a = 0; a < 3; ++a) normal[a] += hit.normal[a];
+      float* const s = sum[edge.axis];
+      s[0] += hit.place, s[1] += hit.normal[0], s[2] += hit.normal[1], s[3] += hit.normal[2];
     }
     const double count = end - begin;
+    const double along[3] = {sum[0][0], sum[1][0], sum[2][0]};
+    double normal[3];
+    for (int a = 0; a < 3; ++a) normal[a] = static_cast<double>(sum[0][a + 1]) + sum[1][a + 1] + sum[2][a + 1];
+    // At most four edges an axis, places from −½ to 1½: only a weak one makes a sum so small.
+    const bool weak = std::min({along[0], along[1], along[2]}) < -Hit::kWeak / 2;
     const double agreement = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
     const auto& from = entry.from[c];
-    const Vec3 mean{(from[0] + along[0]) / count, (from[1] + along[1]) / count, (from[2] + along[2]) / count};
+    const Vec3 mean = Vec3(from[0] + along[0], from[1] + along[1], from[2] + along[2]) / count;
     if (!weak && entry.cycles == 1 && agreement > kFlat * count * count && contains({Vec3(0.0), Vec3(1.0)}, mean))
         [[likely]]
       surface_.mesh.vertices[vertex_] = grid_.inside(cell, mean);
