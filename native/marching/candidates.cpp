@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 
 #include "geom/parallel.hpp"
 #include "marching/surface.hpp"
@@ -8,24 +7,47 @@ namespace riffler::marching {
 
 namespace {
 
-/// Rejects the candidates that could leave this quad without a valid diagonal, whatever the others decide.
-void test_combinations(Surface& surface, std::size_t n) {
-  const LatticeEdge edge = surface.counts.locate(surface.signs, n);
-  const auto corner = surface.corners(n);
-  Quad quad = surface.quad(n, edge);
-  const std::array<Vec3, 4> safe = quad.corner;
-  std::array<Vec3, 4> candidate = safe;
-  unsigned open = 0;
-  for (int c = 0; c < 4; ++c)
-    if (std::atomic_ref(surface.marks[corner[c]]).load(std::memory_order_relaxed) & kCandidate)
-      open |= 1u << c, candidate[c] = surface.special(corner[c]).other;
-  unsigned rejected = 0;
-  for (unsigned taken = open; taken; taken = (taken - 1) & open) {
-    for (int c = 0; c < 4; ++c) quad.corner[c] = taken >> c & 1 ? candidate[c] : safe[c];
-    if (!valid_diagonals(quad).any()) rejected |= taken;
+/// The quads round the vertices that have a candidate.
+class Surroundings {
+ public:
+  explicit Surroundings(const Surface& surface, const std::vector<Vec3i>& cells)
+      : quads_(quads_marked(surface, columns_near(surface, cells, 0), kCandidate)), edges_(quads_.size()) {
+    for (std::uint32_t n = 0; n < quads_.size(); ++n) {
+      edges_[n] = surface.counts.locate(surface.signs, quads_[n]);
+      for (const std::int32_t v : surface.corners(quads_[n]))
+        if (surface.marks[v] & kCandidate) uses_.push_back({v, n});
+    }
+    std::sort(uses_.begin(), uses_.end());
   }
-  for (int c = 0; c < 4; ++c)
-    if (rejected >> c & 1) std::atomic_ref(surface.marks[corner[c]]).fetch_or(kRejected, std::memory_order_relaxed);
+
+  /// True if every quad round the vertex has a valid diagonal as its corners stand now.
+  bool valid(const Surface& surface, std::int32_t vertex) const {
+    for (auto u = std::lower_bound(uses_.begin(), uses_.end(), Use{vertex, 0}); u != uses_.end() && (*u)[0] == vertex;
+         ++u) {
+      const auto n = static_cast<std::size_t>((*u)[1]);
+      if (!valid_diagonals(surface.quad(quads_[n], edges_[n])).any()) return false;
+    }
+    return true;
+  }
+
+ private:
+  using Use = std::array<std::int64_t, 2>;  // vertex, index into quads_
+  std::vector<std::uint32_t> quads_;
+  std::vector<LatticeEdge> edges_;
+  std::vector<Use> uses_;
+};
+
+/// Moves a vertex from its safe place as far towards its candidate as its quads let it.
+void advance(Surface& surface, const Surroundings& around, Special& special) {
+  const FloatGrid& grid = surface.grid;
+  Vec3& place = surface.mesh.vertices[special.vertex];
+  const Vec3 safe = place, from = grid.to_cell(special.cell, safe), to = grid.to_cell(special.cell, special.other);
+  for (double share = 1; share > 0; share -= 0.125) {
+    place = share == 1 ? special.other : grid.near(special.cell, from + share * (to - from));
+    if (around.valid(surface, special.vertex)) break;
+    place = safe;
+  }
+  special.other = safe;
 }
 
 }  // namespace
@@ -57,22 +79,21 @@ std::vector<std::uint32_t> quads_marked(const Surface& surface, const Columns& c
 }
 
 void choose_candidates(Surface& surface) {
-  if (surface.specials.empty()) return;
+  // Cells whose indices have equal parities share no quad: eight groups, one after the other, whose members do not see
+  // each other. The result depends neither on an order within a group nor on threads, and on near cells only.
+  std::array<std::vector<Special*>, 8> groups;
   std::vector<Vec3i> cells;
-  for (const Special& s : surface.specials)
-    if (surface.marks[s.vertex] & kCandidate) cells.push_back(s.cell);
-  const std::vector<std::uint32_t> quads = quads_marked(surface, columns_near(surface, cells, 0), kCandidate);
-  parallel_for(quads.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) test_combinations(surface, quads[n]);
-  });
   for (Special& s : surface.specials) {
-    std::uint8_t& mark = surface.marks[s.vertex];
-    if (mark & kRejected)
-      s.other = surface.mesh.vertices[s.vertex];
-    else
-      std::swap(surface.mesh.vertices[s.vertex], s.other);
-    mark = kSpecial;
+    if (!(surface.marks[s.vertex] & kCandidate)) continue;
+    groups[(s.cell.x & 1) | (s.cell.y & 1) << 1 | (s.cell.z & 1) << 2].push_back(&s);
+    cells.push_back(s.cell);
   }
+  const Surroundings around(surface, cells);
+  for (const auto& group : groups)
+    parallel_for(group.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) advance(surface, around, *group[n]);
+    });
+  for (Special& s : surface.specials) surface.marks[s.vertex] = kSpecial;
 }
 
 }  // namespace riffler::marching

@@ -54,6 +54,11 @@ Vec3 FloatGrid::outside(const Vec3i& cell, const Vec3& p, int opened) const {
   return out * step_;
 }
 
+Vec3 FloatGrid::near(const Vec3i& cell, const Vec3& p) const {
+  const bool in = p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1 && p.z >= 0 && p.z <= 1;
+  return in ? inside(cell, p) : outside(cell, p, 63);
+}
+
 Vec3 FloatGrid::to_cell(const Vec3i& cell, const Vec3& v) const {
   Vec3 p;
   for (int a = 0; a < 3; ++a) p[a] = (v[a] / step_ - range_[a][cell[a]].base) / steps_per_cell_;

@@ -20,6 +20,8 @@ class FloatGrid {
   /// Nearest place for a vertex outside its cell: at least four steps off each wall whose bit in `opened` (2 axis +
   /// side) is not set, no limit at the others.
   Vec3 outside(const Vec3i& cell, const Vec3& p, int opened) const;
+  /// `inside` or, for a point outside the cell, `outside` without walls.
+  Vec3 near(const Vec3i& cell, const Vec3& p) const;
   /// How far vertices may leave their cell, in cells: 0 where the float32 steps are too coarse for it.
   double opening() const { return opening_; }
   double step() const { return step_; }

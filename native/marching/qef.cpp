@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSmooth = 0.985;  // |mean normal|² above which the surface is taken for smooth
 constexpr double kDamping = 0.01;  // λ of the stepwise solution: directions that no plane fixes stay near the mean
-constexpr double kAnchor = 1e-3;   // weight of the distance to the mean in the box
+constexpr double kAnchor = 1e-2;   // weight of the distance to the mean in the box
 
 /// Solves the rows and columns of a x = r that `free` names, for a symmetric positive definite `a`; x holds the others.
 void solve_free(const Mat3& a, const Vec3& r, int free, Vec3& x) {

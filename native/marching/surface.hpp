@@ -22,7 +22,6 @@ struct Special {
 enum VertexMark : std::uint8_t {
   kSpecial = 1,    // has a Special
   kCandidate = 2,  // has a candidate that is not decided yet
-  kRejected = 4,   // its candidate leaves a quad without a valid diagonal
   kNear = 8,       // corner of a quad under scrutiny
   kMoved = 16,     // moved in the last round of `unfold`
 };
@@ -65,8 +64,8 @@ std::vector<std::uint32_t> quads_marked(const Surface& surface, const Columns& c
 /// Places every vertex and enters it into the quads round its edges. Marks are 0, kSpecial or kSpecial | kCandidate.
 void place_vertices(Surface& surface, const Progress& progress);
 
-/// Decides between candidates and safe places: a candidate is taken where every combination with its neighbours'
-/// choices leaves its quads a valid diagonal.
+/// Moves vertices from their safe places to their candidates, or part of the way, as long as all quads keep a valid
+/// diagonal.
 void choose_candidates(Surface& surface);
 
 /// Gives every quad a diagonal whose triangles both face outward: their projections along the edge are positive. Of two

@@ -37,13 +37,13 @@ bool contains(const Box3& box, const Vec3& p) {
   return glm::all(glm::greaterThanEqual(p, box.lower)) && glm::all(glm::lessThanEqual(p, box.upper));
 }
 
-/// The best place in a box for a fit x that may lie outside it.
-Vec3 fit_in(const Qef& qef, const Vec3& x, Box3 box) {
+/// The best place in a box for a fit x that may lie outside it; off the bounds it clearly violates by `inset`.
+Vec3 fit_in(const Qef& qef, const Vec3& x, Box3 box, double inset) {
   const Vec3 clamped = glm::clamp(x, box.lower, box.upper), excess = glm::abs(x - clamped);
   if (std::max({excess.x, excess.y, excess.z}) <= kOnWall) return clamped;
   for (int a = 0; a < 3; ++a) {
-    if (x[a] > box.upper[a] + kClearlyOut) box.upper[a] -= kInset;
-    if (x[a] < box.lower[a] - kClearlyOut) box.lower[a] += kInset;
+    if (x[a] > box.upper[a] + kClearlyOut) box.upper[a] -= inset;
+    if (x[a] < box.lower[a] - kClearlyOut) box.lower[a] += inset;
   }
   return qef.solve_in(box);
 }
@@ -173,11 +173,11 @@ class Plane {
     const double opening = stay ? 0 : grid_.opening();
     // Beyond a face that no edge of the cycle lies on, the vertex still keeps to its quadrant round every edge.
     const int opened = opening > 0 ? ~cycle.faces & 63 : 0;
-    const Vec3 safe = place(grid_, cycle.cell, fit_in(qef, x, opened_box(opening, opened)), opened);
+    const Vec3 safe = place(grid_, cycle.cell, fit_in(qef, x, opened_box(opening, opened), kInset), opened);
     Vec3& vertex = surface_.mesh.vertices[vertex_] = safe;
     Vec3 candidate = safe;
     if (opening > 0 && !contains(opened_box(opening, opened), x))
-      candidate = place(grid_, cycle.cell, fit_in(qef, x, opened_box(opening, 63)), 63);
+      candidate = place(grid_, cycle.cell, fit_in(qef, x, opened_box(opening, 63), 0), 63);
     if (!cycle.alone) candidate = vertex = apart_from_siblings(cycle.cell, vertex);
     surface_.marks[vertex_] =
         static_cast<std::uint8_t>(candidate == safe || !cycle.alone ? kSpecial : kSpecial | kCandidate);
