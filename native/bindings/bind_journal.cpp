@@ -1,7 +1,200 @@
+// riffler.Journal, riffler.JournalWriter
 #include "bindings/bindings.hpp"
+#include "session/journal.hpp"
+#include "session/journal_file.hpp"
 
 namespace riffler {
 
-void bind_journal(py::module_&) {}
+namespace {
+
+using SharedJournal = std::shared_ptr<Journal>;
+
+/// One stroke of a journal, which it keeps alive.
+struct StrokeView {
+  SharedJournal journal;
+  std::size_t index;
+
+  const JournalStroke& get() const { return journal->strokes()[index]; }
+};
+
+std::vector<double> to_times(const py::object& times) {
+  if (times.is_none()) return {};
+  const auto array = Doubles::ensure(times);
+  if (!array || array.ndim() != 1) {
+    PyErr_Clear();
+    throw py::value_error("times must have the shape (n,)");
+  }
+  return {array.data(), array.data() + array.size()};
+}
+
+JournalStroke to_stroke(int tool, const Doubles& poses, const py::object& times, double tolerance,
+                        const std::string& name) {
+  JournalStroke stroke{tool, tolerance, name, to_poses(poses, "poses"), to_times(times)};
+  if (!times.is_none() && stroke.times.size() != stroke.poses.size())
+    throw py::value_error("times must be as many as poses");
+  return stroke;
+}
+
+JournalStock to_stock(const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
+                      const std::string& snapshot) {
+  return {{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions, snapshot};
+}
+
+py::object json() {
+  return py::module_::import("json");
+}
+
+/// A Tool, its dict, or JSON text of it → JSON text in one form.
+std::string to_json(const py::object& tool) {
+  py::object dict = tool;
+  if (py::isinstance<Tool>(tool)) dict = tool.attr("to_dict")();
+  if (py::isinstance<py::str>(tool)) dict = json().attr("loads")(tool);
+  if (!py::isinstance<py::dict>(dict)) throw py::value_error("tool must be a Tool, its dict or JSON text of it");
+  return py::cast<std::string>(json().attr("dumps")(dict));
+}
+
+py::dict tools(const Journal& journal) {
+  py::dict out;
+  for (const auto& [number, text] : journal.tools()) out[py::int_(number)] = json().attr("loads")(text);
+  return out;
+}
+
+py::object stock(const Journal& journal) {
+  if (!journal.stock()) return py::none();
+  const JournalStock& s = *journal.stock();
+  py::dict out;
+  out["lower"] = from_vec3(s.box.lower);
+  out["upper"] = from_vec3(s.box.upper);
+  out["pitch"] = s.pitch;
+  out["directions"] = s.directions;
+  out["snapshot"] = s.snapshot;
+  return out;
+}
+
+py::dict notes(const Journal& journal) {
+  py::dict out;
+  for (const auto& [key, value] : journal.notes()) out[py::str(key)] = value;
+  return out;
+}
+
+py::list strokes(const SharedJournal& journal) {
+  py::list out;
+  for (std::size_t k = 0; k < journal->strokes().size(); ++k) out.append(StrokeView{journal, k});
+  return out;
+}
+
+py::array_t<double> poses(const StrokeView& stroke) {
+  return take<double>(std::vector<Pose>(stroke.get().poses), 6);
+}
+
+Program program(const Journal& journal, const std::optional<double>& feed, double spindle,
+                const std::optional<double>& safe_height, double clearance) {
+  std::map<int, Tool> by_number;
+  const py::object from_dict = py::type::of<Tool>().attr("from_dict");
+  for (const auto& [number, text] : journal.tools())
+    by_number.emplace(number, py::cast<Tool>(from_dict(json().attr("loads")(text))));
+  return to_program(journal, std::move(by_number), {feed, spindle, {safe_height, clearance, {}}});
+}
+
+/// The functions that Journal and JournalWriter share.
+template <class Class>
+void add_records(Class& c) {
+  using T = typename Class::type;
+  c.def(
+       "set_stock",
+       [](T& self, const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
+          const std::string& snapshot) { self.set_stock(to_stock(lower, upper, pitch, directions, snapshot)); },
+       py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z", py::arg("snapshot") = "",
+       "The frame of the stock, and the file name of its snapshot where it is not a full block. Once.")
+      .def(
+          "add_tool", [](T& self, int number, const py::object& tool) { self.add_tool(number, to_json(tool)); },
+          py::arg("number"), py::arg("tool"),
+          "A Tool, its dict or JSON text. The same number again is allowed for the same tool only.")
+      .def(
+          "add_note", [](T& self, const std::string& key, const std::string& value) { self.add_note(key, value); },
+          py::arg("key"), py::arg("value"), "Provenance.")
+      .def(
+          "add_stroke",
+          [](T& self, int tool, const Doubles& poses, const py::object& times, double tolerance,
+             const std::string& name) { self.add_stroke(to_stroke(tool, poses, times, tolerance, name)); },
+          py::arg("tool"), py::arg("poses"), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
+          py::arg("name") = "",
+          "A stroke with a tool that was added: poses (n, 6), n ≥ 1, times (n,) s that never fall, or None.")
+      .def(
+          "extend_stroke",
+          [](T& self, const Doubles& poses, const py::object& times) {
+            self.extend_stroke(to_poses(poses, "poses"), to_times(times));
+          },
+          py::arg("poses"), py::arg("times") = py::none(), "More rows for the last stroke.");
+}
+
+}  // namespace
+
+void bind_journal(py::module_& m) {
+  py::class_<StrokeView>(m, "JournalStroke", "One stroke of a Journal.")
+      .def_property_readonly("poses", &poses, "(n, 6) copy.")
+      .def_property_readonly(
+          "times",
+          [](const StrokeView& s) -> py::object {
+            if (s.get().times.empty()) return py::none();
+            return take<double>(std::vector<double>(s.get().times));
+          },
+          "(n,) s, or None.")
+      .def_property_readonly("tool", [](const StrokeView& s) { return s.get().tool; })
+      .def_property_readonly(
+          "tolerance", [](const StrokeView& s) { return s.get().tolerance; }, "mm")
+      .def_property_readonly("name", [](const StrokeView& s) { return s.get().name; })
+      .def("__len__", [](const StrokeView& s) { return s.get().poses.size(); });
+
+  py::class_<Journal, SharedJournal> journal(m, "Journal", R"(What a session did: stock, tools, strokes as poses, notes.
+
+Replaying the strokes on the stock gives the session again. Files end in .rjournal.)");
+  journal.def(py::init<>())
+      .def_static(
+          "read",
+          [](const std::filesystem::path& path) {
+            const py::gil_scoped_release release;
+            return read_journal(path);
+          },
+          py::arg("path"),
+          R"(Reads a file. One that a crash has cut gives all whole records, and ``cut_at`` says where it was cut; a
+damaged record that others follow is a FormatError naming the byte.)")
+      .def(
+          "write",
+          [](const Journal& self, const std::filesystem::path& path) {
+            const Journal copy = self;  // another thread may go on recording
+            const py::gil_scoped_release release;
+            write_journal(copy, path);
+          },
+          py::arg("path"), "Writes the whole journal; the file is whole or not there.")
+      .def_property_readonly("stock", &stock, "dict: lower, upper, pitch, directions, snapshot; or None.")
+      .def_property_readonly("tools", &tools, "dict: number to the tool's dict.")
+      .def_property_readonly("strokes", &strokes, "list of JournalStroke.")
+      .def_property_readonly("notes", &notes, "dict of strings; of a key given twice the later value.")
+      .def_readonly("cut_at", &Journal::cut_at, "Byte at which the file had been cut, or None.")
+      .def("program", &program, py::arg("feed") = py::none(), py::arg("spindle") = 0.0, py::kw_only(),
+           py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
+           R"(The strokes as a Program, each one cut as in Program.from_cl. ``feed`` in mm/min; None: from the times,
+held within 1 to 100 000 mm/min. The stock counts as occupied.)")
+      .def("__repr__", [](const Journal& self) {
+        const std::size_t n = self.strokes().size();
+        return "<riffler.Journal: " + std::to_string(n) + (n == 1 ? " stroke>" : " strokes>");
+      });
+  add_records(journal);
+
+  py::class_<JournalWriter> writer(m, "JournalWriter", R"(Appends to a journal file, record by record.
+
+Goes on with a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
+system before the call returns. Context manager.)");
+  writer.def(py::init<const std::filesystem::path&>(), py::arg("path"))
+      .def("sync", &JournalWriter::sync, py::call_guard<py::gil_scoped_release>(), "Waits until the disk has it.")
+      .def("close", &JournalWriter::close, "Ends writing; calls after it raise RuntimeError.")
+      .def_property_readonly(
+          "journal", [](const JournalWriter& self) { return std::make_shared<Journal>(self.journal()); },
+          "A copy of everything in the file.")
+      .def("__enter__", [](py::object self) { return self; })
+      .def("__exit__", [](JournalWriter& self, const py::args&) { self.close(); });
+  add_records(writer);
+}
 
 }  // namespace riffler

@@ -1,7 +1,296 @@
+// riffler.Program, riffler.machines
+#include <cmath>
+
 #include "bindings/bindings.hpp"
+#include "nc/cutter_path.hpp"
+#include "nc/limits.hpp"
+#include "nc/machine.hpp"
+#include "nc/program.hpp"
+#include "nc/reader.hpp"
+#include "nc/writer.hpp"
 
 namespace riffler {
 
-void bind_program(py::module_&) {}
+namespace {
+
+Doubles to_doubles(const py::handle& object, const std::string& name) {
+  auto array = Doubles::ensure(object);
+  if (!array) {
+    PyErr_Clear();
+    throw py::value_error(name + " must be numbers");
+  }
+  return array;
+}
+
+/// One number for all rows, or one per row. A single number stays single where `spread` is false.
+std::vector<double> to_column(const py::handle& object, std::size_t rows, const std::string& name, bool spread = true) {
+  const Doubles array = to_doubles(object, name);
+  if (array.ndim() == 0) return std::vector<double>(spread ? rows : 1, *array.data());
+  if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != rows)
+    throw py::value_error(name + " must be one number or have the shape (" + std::to_string(rows) + ",)");
+  return {array.data(), array.data() + rows};
+}
+
+int to_int(double value, const std::string& name, std::size_t row) {
+  if (!(value >= 0 && value <= kMaxNumber && value == std::floor(value)))
+    throw py::value_error(name + ", row " + std::to_string(row) + ": must be a whole number from 0 to " +
+                          std::to_string(kMaxNumber));
+  return static_cast<int>(value);
+}
+
+std::map<int, Tool> to_tools(const py::object& object) {
+  std::map<int, Tool> out;
+  if (object.is_none()) return out;
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("tools must be a dict: number to Tool");
+  for (const auto& [key, value] : py::cast<py::dict>(object)) {
+    if (!py::isinstance<py::int_>(key) || !py::isinstance<Tool>(value))
+      throw py::value_error("tools must be a dict: number to Tool");
+    const double number = py::cast<double>(key);
+    if (number < 1) throw py::value_error("tools: numbers begin at 1");
+    out.emplace(to_int(number, "tools", out.size()), py::cast<const Tool&>(value));
+  }
+  return out;
+}
+
+Provenance to_provenance(const py::object& object) {
+  Provenance out;
+  if (object.is_none()) return out;
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("provenance must be a dict of strings");
+  for (const auto& [key, value] : py::cast<py::dict>(object))
+    out.emplace_back(py::cast<std::string>(py::str(key)), py::cast<std::string>(py::str(value)));
+  return out;
+}
+
+Options to_options(const py::object& object) {
+  Options out;
+  if (object.is_none()) return out;
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("options must be a dict");
+  for (const auto& [key, value] : py::cast<py::dict>(object)) {
+    const std::string name = py::cast<std::string>(py::str(key));
+    if (py::isinstance<py::bool_>(value)) {
+      out[name] = py::cast<bool>(value);
+    } else if (py::isinstance<py::str>(value)) {
+      out[name] = py::cast<std::string>(value);
+    } else {
+      const Doubles array = to_doubles(value, "option " + name);
+      if (array.ndim() > 1)
+        throw py::value_error("option " + name + " must be a number, a list of them, a bool or a str");
+      if (array.ndim() == 0)
+        out[name] = *array.data();
+      else
+        out[name] = std::vector<double>(array.data(), array.data() + array.size());
+    }
+  }
+  return out;
+}
+
+Program make_program(const Doubles& poses, const py::object& feed, const py::object& rapid, const py::object& tool,
+                     const py::object& line, const py::object& spindle, const py::object& tools,
+                     const py::object& provenance) {
+  const std::vector<Pose> rows = to_poses(poses, "poses");
+  const std::size_t n = rows.size();
+  const auto column = [&](const py::object& object, const char* name) { return to_column(object, n, name); };
+  const std::vector<double> feeds = column(feed, "feed"), rapids = column(rapid, "rapid"),
+                            numbers = column(tool, "tool"), lines = column(line, "line"),
+                            speeds = column(spindle, "spindle");
+  Program program;
+  program.reserve(n);
+  for (std::size_t row = 0; row < n; ++row)
+    program.append({rows[row], feeds[row], speeds[row], to_int(numbers[row], "tool", row),
+                    to_int(lines[row], "line", row), rapids[row] != 0});
+  program.tools = to_tools(tools);
+  program.provenance = to_provenance(provenance);
+  return program;
+}
+
+/// The tool's number for every path: one tool for all or one each; equal tools share a number. A dict keeps its
+/// numbers.
+std::vector<int> number_tools(const py::object& object, std::size_t paths, std::map<int, Tool>& tools) {
+  if (object.is_none()) return std::vector<int>(paths, 1);
+  std::vector<py::object> list;
+  for (const py::handle& tool : object) {
+    if (!py::isinstance<Tool>(tool)) throw py::value_error("tools must be a list of Tool");
+    list.push_back(py::reinterpret_borrow<py::object>(tool));
+  }
+  if (list.size() != 1 && list.size() != paths)
+    throw py::value_error("tools must be one for all arrays or one for each: " + std::to_string(paths) + ", not " +
+                          std::to_string(list.size()));
+  std::vector<py::object> different;
+  std::vector<int> numbers;
+  for (const py::object& tool : list) {
+    std::size_t k = 0;
+    while (k < different.size() && !different[k].equal(tool)) ++k;
+    if (k == different.size()) {
+      different.push_back(tool);
+      tools.emplace(static_cast<int>(k) + 1, py::cast<const Tool&>(tool));
+    }
+    numbers.push_back(static_cast<int>(k) + 1);
+  }
+  if (numbers.size() < paths) numbers.assign(paths, 1);
+  return numbers;
+}
+
+/// The value for path `k`: `object` itself, or its k-th entry where it is a list or tuple.
+py::object for_path(const py::object& object, std::size_t k, std::size_t paths, const char* name) {
+  if (!py::isinstance<py::list>(object) && !py::isinstance<py::tuple>(object)) return object;
+  const auto list = py::cast<py::sequence>(object);
+  if (list.size() != paths) throw py::value_error(std::string(name) + " must be one for all arrays or one for each");
+  return list[k];
+}
+
+Program from_cl(const py::iterable& cl, const py::object& tools, const py::object& feed, const py::object& spindle,
+                const std::optional<double>& safe_height, double clearance, const py::object& occupied,
+                const py::object& provenance) {
+  std::vector<py::object> arrays;
+  for (const py::handle& array : cl) arrays.push_back(py::reinterpret_borrow<py::object>(array));
+  std::map<int, Tool> by_number;
+  const std::vector<int> numbers = number_tools(tools, arrays.size(), by_number);
+  std::vector<CutterPath> paths;
+  for (std::size_t k = 0; k < arrays.size(); ++k) {
+    const std::string name = "cl[" + std::to_string(k) + "]";
+    CutterPath path;
+    path.poses = to_poses(to_doubles(arrays[k], name), name.c_str());
+    path.feed = to_column(for_path(feed, k, arrays.size(), "feed"), path.poses.size(), "feed", false);
+    path.spindle = to_column(for_path(spindle, k, arrays.size(), "spindle"), 1, "spindle")[0];
+    path.tool = numbers[k];
+    paths.push_back(std::move(path));
+  }
+  Clearance room{safe_height, clearance, {}};
+  if (!occupied.is_none()) {
+    const auto box = py::cast<std::pair<py::object, py::object>>(occupied);
+    room.occupied = {to_vec3(box.first, "occupied lower"), to_vec3(box.second, "occupied upper")};
+  }
+  Program program = program_from_paths(paths, std::move(by_number), room);
+  program.provenance = to_provenance(provenance);
+  return program;
+}
+
+/// A read-only view of a column of the program that `self` holds.
+template <class T, class V>
+py::array view(const py::object& self, const std::vector<V>& column, py::ssize_t wide = 0) {
+  const auto n = static_cast<py::ssize_t>(column.size());
+  const std::vector<py::ssize_t> shape = wide ? std::vector<py::ssize_t>{n, wide} : std::vector<py::ssize_t>{n};
+  py::array out(py::dtype::of<T>(), shape, reinterpret_cast<const T*>(column.data()), self);
+  out.attr("setflags")(py::arg("write") = false);
+  return out;
+}
+
+static_assert(sizeof(Pose) == 6 * sizeof(double));
+
+template <class V>
+auto column_getter(const std::vector<V>& (Program::*column)() const) {
+  return [column](const py::object& self) { return view<V>(self, (py::cast<const Program&>(self).*column)()); };
+}
+
+py::array poses(const py::object& self) {
+  return view<double>(self, py::cast<const Program&>(self).poses(), 6);
+}
+
+py::list cuts(const py::object& self) {
+  py::list out;
+  const py::array all = poses(self);
+  for (const ToolRun& run : py::cast<const Program&>(self).runs())
+    out.append(py::make_tuple(
+        run.tool, all[py::slice(static_cast<py::ssize_t>(run.begin), static_cast<py::ssize_t>(run.end), 1)]));
+  return out;
+}
+
+py::dict tools_of(const Program& program) {
+  py::dict out;
+  for (const auto& [number, tool] : program.tools) out[py::int_(number)] = tool;
+  return out;
+}
+
+py::dict machine_list() {
+  py::dict out;
+  for (const MachineEntry& entry : machines()) out[py::str(std::string(entry.name))] = std::string(entry.description);
+  return out;
+}
+
+std::string repr(const Program& program) {
+  std::string text = "<riffler.Program: " + std::to_string(program.size()) + " rows, ";
+  const std::size_t runs = program.runs().size();
+  return text + std::to_string(runs) + (runs == 1 ? " tool run>" : " tool runs>");
+}
+
+}  // namespace
+
+void bind_program(py::module_& m) {
+  m.def("machines", &machine_list,
+        "Machines that programs are written for and read from: name to description. A post has its machine's name.");
+
+  py::class_<Program>(m, "Program", R"(Where the tool goes, how fast and with which tool; immutable.
+
+One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate.
+``tools`` is a dict of the tools whose shape is known, by number; ``provenance`` a dict of strings that the header
+comment of the NC code repeats. Lengths in mm, feed in mm/min at the tip, spindle in rev/min.)")
+      .def(py::init(&make_program), py::arg("poses"), py::arg("feed"), py::arg("rapid") = false, py::arg("tool") = 1,
+           py::arg("line") = 0, py::arg("spindle") = 0.0, py::arg("tools") = py::none(),
+           py::arg("provenance") = py::none(),
+           R"(From columns: poses (n, 6), everything else one value for all rows or (n,).
+
+ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves.)")
+      .def_static("from_cl", &from_cl, py::arg("cl"), py::arg("tools"), py::arg("feed"), py::arg("spindle") = 0.0,
+                  py::kw_only(), py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
+                  py::arg("occupied") = py::none(), py::arg("provenance") = py::none(),
+                  R"(From cutter locations: every (n, 6) array is one cut.
+
+Its rows become feed moves in order, none merged. Before it a rapid at safe height to above its first point, along the
+tool's axis, and the feed in; after it a rapid out along the axis. ``tools``: one for all arrays or one for each
+(None: tool 1 of unknown shape). ``feed`` (mm/min at the tip) and ``spindle`` (rev/min, negative counter-clockwise): one
+for all, or a list of one for each array; a feed may be an array of one per row.
+``safe_height``: z (mm) above everything; by default ``clearance`` (mm) above all tips and ``occupied``, a pair of
+corners around stock, part and fixtures.)")
+      .def_static(
+          "read",
+          [](const std::filesystem::path& path, const std::string& machine, const py::object& options) {
+            const ReadOptions how{machine, to_options(options)};
+            const py::gil_scoped_release release;
+            return read_nc(path, how);
+          },
+          py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(),
+          R"(Reads NC code (RS-274); ``machine`` is a name of machines().
+
+Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for arcs; ``axis_tolerance`` (rad): where it is
+given, feed blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row.
+FormatError names file and line; nothing that is not understood is skipped.)")
+      .def(
+          "write",
+          [](const Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,
+             double axis_tolerance, const py::object& options) {
+            const WriteOptions how{post, tolerance, axis_tolerance, to_options(options)};
+            const py::gil_scoped_release release;
+            write_nc(self, path, how);
+          },
+          py::arg("path"), py::arg("post") = "tcp", py::arg("tolerance") = 0.01, py::arg("axis_tolerance") = 0.00175,
+          py::arg("options") = py::none(),
+          R"(Writes NC code; ``post`` is a name of machines(). The file is whole or not there.
+
+Every row is the end of a block; more blocks come between two rows where machine axes that move linearly would take the
+tip more than ``tolerance`` (mm) off the straight line or the axis more than ``axis_tolerance`` (rad) off the great
+circle. The same program gives the same bytes.)")
+      .def_property_readonly("poses", &poses, "(n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.")
+      .def_property_readonly("feed", column_getter(&Program::feed), "(n,) mm/min at the tip; 0 for rapids.")
+      .def_property_readonly(
+          "rapid", [](const py::object& self) { return view<bool>(self, py::cast<const Program&>(self).rapid()); },
+          "(n,) bool.")
+      .def_property_readonly("tool", column_getter(&Program::tool), "(n,) int32 tool numbers; 0: none.")
+      .def_property_readonly("line", column_getter(&Program::line), "(n,) int32 source lines from 1; 0: no source.")
+      .def_property_readonly("spindle", column_getter(&Program::spindle),
+                             "(n,) rev/min; negative counter-clockwise, 0 stopped.")
+      .def_property_readonly("tools", &tools_of, "dict: number to Tool, of the tools whose shape is known.")
+      .def_property_readonly(
+          "provenance",
+          [](const Program& self) {
+            py::dict out;
+            for (const auto& [key, value] : self.provenance) out[py::str(key)] = value;
+            return out;
+          },
+          "dict of strings.")
+      .def("cuts", &cuts,
+           "For replay: a list of (tool number, poses (k, 6)), one per run of rows with one tool, rapids included.")
+      .def("__len__", &Program::size)
+      .def("__repr__", &repr);
+}
 
 }  // namespace riffler

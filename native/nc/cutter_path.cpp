@@ -12,7 +12,7 @@ namespace {
 /// Up to this tilt the tool goes along its axis right up to safe height: at most twice the height.
 constexpr double kSteepEnough = 0.5;  // cos 60°
 
-/// How far the tool reaches below its tip when its axis is tilted, and sideways: mm, ≥ 0.
+/// The cylinder about the axis that holds a tool; nothing is known of an unknown tool.
 struct Reach {
   double length = 0, radius = 0;
 
@@ -25,22 +25,18 @@ struct Reach {
         radius = std::max({radius, f.r0, f.r1});
       }
   }
-
-  double below(const Vec3& axis) const {
-    return std::max(0.0, -axis.z * length) + radius * std::sqrt(std::max(0.0, 1 - axis.z * axis.z));
-  }
 };
 
 struct Space {
-  Box3 box;     ///< all tips and what is occupied, grown by the clearance
-  double safe;  ///< z
+  Box3 box;    ///< all tips and what is occupied, grown by the clearance
+  double top;  ///< z of the tip in rapids from cut to cut
 };
 
 /// Where the tip goes from `pose` to safe height with the axis kept: first along the axis out of the space, last the
 /// point at safe height.
 std::vector<Pose> way_out(const Pose& pose, const Reach& reach, const Space& space) {
   const Vec3& o = pose.axis;
-  const double top = space.safe + reach.below(o);
+  const double top = space.top;
   const double up = o.z > 0 ? (top - pose.tip.z) / o.z : std::numeric_limits<double>::infinity();
   if (o.z >= kSteepEnough) return {{pose.tip + up * o, o}};
 
@@ -48,7 +44,7 @@ std::vector<Pose> way_out(const Pose& pose, const Reach& reach, const Space& spa
   double side = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 2; ++k)
     if (o[k] != 0) side = std::min(side, ((o[k] > 0 ? box.upper[k] : box.lower[k]) - pose.tip[k]) / o[k]);
-  if (up <= side) return {{pose.tip + up * o, o}};
+  if (up <= side && o.z > 0) return {{pose.tip + up * o, o}};
 
   std::vector<Pose> way;
   const double down = o.z < 0 ? (box.lower.z - pose.tip.z) / o.z : std::numeric_limits<double>::infinity();
@@ -75,7 +71,24 @@ const Tool* find(const std::map<int, Tool>& tools, int number) {
   return it == tools.end() ? nullptr : &it->second;
 }
 
-Space space_of(std::span<const CutterPath> paths, const Clearance& clearance) {
+/// What a tool may hang below its tip while it turns from any end of a cut to any other: nothing where all stand
+/// upright, its radius where some are tilted, its length where one points downwards.
+double hang(std::span<const CutterPath> paths, const std::map<int, Tool>& tools) {
+  bool tilted = false, downwards = false;
+  for (const CutterPath& path : paths)
+    for (const Pose* end : {&path.poses.front(), &path.poses.back()}) {
+      tilted |= end->axis.x != 0 || end->axis.y != 0;
+      downwards |= end->axis.z < 0;
+    }
+  double out = 0;
+  for (const CutterPath& path : paths) {
+    const Reach reach(find(tools, path.tool));
+    out = std::max(out, (tilted || downwards ? reach.radius : 0) + (downwards ? reach.length : 0));
+  }
+  return out;
+}
+
+Space space_of(std::span<const CutterPath> paths, const std::map<int, Tool>& tools, const Clearance& clearance) {
   if (!(std::isfinite(clearance.distance) && clearance.distance > 0))
     throw std::invalid_argument("clearance must be positive and finite");
   Box3 box;
@@ -86,7 +99,7 @@ Space space_of(std::span<const CutterPath> paths, const Clearance& clearance) {
   if (!box.empty() && !(std::isfinite(safe) && safe > box.upper.z))
     throw std::invalid_argument("safe_height must be above every tip and what is occupied: more than " +
                                 std::to_string(box.upper.z) + " mm");
-  return {box.grown(clearance.distance), safe};
+  return {box.grown(clearance.distance), safe + hang(paths, tools)};
 }
 
 /// The paths with their axes normalised and one feed per row.
@@ -111,7 +124,7 @@ std::vector<CutterPath> checked(std::span<const CutterPath> paths) {
 
 Program program_from_paths(std::span<const CutterPath> given, std::map<int, Tool> tools, const Clearance& clearance) {
   const std::vector<CutterPath> paths = checked(given);
-  const Space space = space_of(paths, clearance);
+  const Space space = space_of(paths, tools, clearance);
   Program program;
   for (const CutterPath& path : paths) {
     const Reach reach(find(tools, path.tool));

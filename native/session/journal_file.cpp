@@ -73,7 +73,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
+    if (fd_ >= 0) ::close(fd_);
   }
   int get() const { return fd_; }
   int release() { return std::exchange(fd_, -1); }
@@ -115,10 +115,15 @@ JournalWriter::JournalWriter(const std::filesystem::path& path) : name_(path.fil
 }
 
 JournalWriter::~JournalWriter() {
-  if (fd_ >= 0) close(fd_);
+  close();
+}
+
+void JournalWriter::close() {
+  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
 }
 
 void JournalWriter::append(const std::vector<std::uint8_t>& bytes) {
+  if (fd_ < 0) throw std::runtime_error(name_ + ": closed");
   try {
     write_at(fd_, bytes, size_, name_);
   } catch (...) {
@@ -159,6 +164,7 @@ void JournalWriter::extend_stroke(std::span<const Pose> poses, std::span<const d
 }
 
 void JournalWriter::sync() {
+  if (fd_ < 0) throw std::runtime_error(name_ + ": closed");
   if (fdatasync(fd_) != 0) fail_system(name_, "cannot be flushed to the disk");
 }
 

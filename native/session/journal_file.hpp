@@ -46,6 +46,8 @@ class JournalWriter {
   void extend_stroke(std::span<const Pose> poses, std::span<const double> times);
 
   void sync();
+  /// Ends writing; a call after it throws std::runtime_error.
+  void close();
   /// Everything in the file.
   const Journal& journal() const { return journal_; }
 
