@@ -1,0 +1,150 @@
+"""Journals from Python: to the bit and back, cut anywhere, replayed."""
+
+import json
+
+import numpy as np
+import pytest
+
+import riffler
+
+BALL = riffler.Tool.ball(6, 30).named("ball é")
+
+
+def stroke(n, seed=0):
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0, 1, n)
+    axis = np.column_stack([0.2 * np.sin(t), 0.1 * np.cos(t), np.ones(n)])
+    axis /= np.linalg.norm(axis, axis=1)[:, None]
+    tips = np.column_stack([10 + 30 * t, 20 + 5 * np.sin(9 * t), 28 - t]) + rng.normal(size=(n, 3)) * 1e-3
+    return np.column_stack([tips, axis]), np.cumsum(rng.uniform(1e-3, 2e-3, n))
+
+
+@pytest.fixture
+def journal():
+    j = riffler.Journal()
+    j.set_stock((0, 0, 0), (50, 40, 30), 0.5, directions="xyz", snapshot="stock.rvol")
+    j.add_tool(1, BALL)
+    j.add_tool(2, riffler.Tool.flat(4, 20).to_dict())
+    j.add_note("artist", "Ünal")
+    for k in range(3):
+        poses, times = stroke(50 + k, k)
+        j.add_stroke(1 + k % 2, poses, times, tolerance=0.02, name=f"stroke {k}")
+    return j
+
+
+def test_file_keeps_everything_to_the_bit(journal, tmp_path):
+    file = tmp_path / "a.rjournal"
+    journal.write(file)
+    j = riffler.Journal.read(file)
+    assert j.cut_at is None and repr(j) == "<riffler.Journal: 3 strokes>"
+    assert j.notes == {"artist": "Ünal"}
+    assert j.tools == {1: BALL.to_dict(), 2: riffler.Tool.flat(4, 20).to_dict()}
+    assert j.stock["pitch"] == 0.5 and j.stock["directions"] == "xyz" and j.stock["snapshot"] == "stock.rvol"
+    assert j.stock["lower"].tolist() == [0, 0, 0] and j.stock["upper"].tolist() == [50, 40, 30]
+    for k, s in enumerate(j.strokes):
+        poses, times = stroke(50 + k, k)
+        assert (s.tool, s.tolerance, s.name, len(s)) == (1 + k % 2, 0.02, f"stroke {k}", 50 + k)
+        assert s.poses.tobytes() == poses.tobytes() and s.times.tobytes() == times.tobytes()
+    first = file.read_bytes()
+    j.write(file)
+    assert file.read_bytes() == first
+
+
+def test_cut_file_gives_whole_strokes_and_says_where(journal, tmp_path):
+    file = tmp_path / "a.rjournal"
+    journal.write(file)
+    whole = file.read_bytes()
+    for size in range(len(whole) - 1, 16, -37):
+        file.write_bytes(whole[:size])
+        j = riffler.Journal.read(file)
+        assert len(j.strokes) < 3
+        assert j.cut_at is None or j.cut_at < size
+        for s, t in zip(j.strokes, journal.strokes, strict=False):
+            assert s.poses.tobytes() == t.poses.tobytes()
+    damaged = bytearray(whole)
+    damaged[40] ^= 1
+    file.write_bytes(damaged)
+    with pytest.raises(riffler.FormatError, match=r"^a\.rjournal, byte 16: "):
+        riffler.Journal.read(file)
+    file.write_bytes(b"not a journal at all")
+    with pytest.raises(riffler.FormatError, match="byte 0"):
+        riffler.Journal.read(file)
+
+
+def test_writer_goes_on_where_a_crash_cut(tmp_path):
+    file = tmp_path / "a.rjournal"
+    poses, times = stroke(30)
+    with riffler.JournalWriter(file) as w:
+        w.set_stock((0, 0, 0), (50, 40, 30), 0.5)
+        w.add_tool(1, json.dumps(BALL.to_dict()))
+        w.add_stroke(1, poses[:10], times[:10])
+        w.extend_stroke(poses[10:], times[10:])
+        w.sync()
+        assert len(riffler.Journal.read(file).strokes[0]) == 30, "there before the writer is closed"
+        with pytest.raises(RuntimeError):
+            riffler.JournalWriter(file)
+    with pytest.raises(RuntimeError, match="closed"):
+        w.add_note("a", "b")
+    file.write_bytes(file.read_bytes()[:-5])
+    with riffler.JournalWriter(file) as w:
+        assert len(w.journal.strokes[0]) == 10
+        w.add_stroke(1, poses)
+    j = riffler.Journal.read(file)
+    assert j.cut_at is None and [len(s) for s in j.strokes] == [10, 30] and j.strokes[1].times is None
+
+
+def test_replay_gives_the_session_again(journal, tmp_path):
+    file = tmp_path / "a.rjournal"
+
+    def replay(j):
+        v = riffler.Volume.block(j.stock["lower"], j.stock["upper"], j.stock["pitch"], directions=j.stock["directions"])
+        for s in j.strokes:
+            v.carve(riffler.Tool.from_dict(j.tools[s.tool]), s.poses, tolerance=s.tolerance)
+        return v
+
+    journal.write(file)
+    first, again = replay(journal), replay(riffler.Journal.read(file))
+    assert first.volume < 50 * 40 * 30
+    for direction in "xyz":
+        for a, b in zip(first.intervals(direction), again.intervals(direction), strict=True):
+            assert a.tobytes() == b.tobytes()
+
+
+def test_program_has_the_strokes_with_their_tools_and_feeds(journal):
+    p = journal.program(spindle=9000)
+    assert p.tools == {1: BALL, 2: riffler.Tool.flat(4, 20)} and p.provenance == {"artist": "Ünal"}
+    assert len(p) == sum(len(s) + 2 for s in journal.strokes)
+    assert (p.spindle == 9000).all() and [number for number, _ in p.cuts()] == [1, 2, 1]
+    poses, times = stroke(50)
+    np.testing.assert_allclose(p.poses[1:51], poses, rtol=0, atol=1e-15)
+    wanted = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1) / np.diff(times) * 60
+    np.testing.assert_allclose(p.feed[2:51], wanted, rtol=1e-9)
+    assert p.poses[0, 2] >= 40, "above the stock"
+    assert set(journal.program(feed=500).feed) == {0, 500}
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda j: j.set_stock((0, 0, 0), (1, 1, 1), 1), "stock"),
+        (lambda j: j.add_tool(1, "{}"), "tool 1 is another tool already"),
+        (lambda j: j.add_tool(3, "no json"), "Expecting value"),
+        (lambda j: j.add_tool(3, 5), "tool must be"),
+        (lambda j: j.add_stroke(9, stroke(3)[0]), "tool 9 is not in the journal"),
+        (lambda j: j.add_stroke(1, np.zeros((0, 6))), "at least one pose"),
+        (lambda j: j.add_stroke(1, np.zeros((2, 5))), "poses must have the shape"),
+        (lambda j: j.add_stroke(1, np.zeros((2, 6))), "poses, row 0"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], [1, 2]), "times must be as many"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], []), "times must be as many"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], [1, 2, np.nan]), "times, row 2"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], [1, 3, 2]), "times, row 2"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], tolerance=0), "tolerance"),
+        (lambda j: j.extend_stroke(stroke(3)[0]), "times must be as many"),
+    ],
+)
+def test_what_is_wrong_is_named_and_changes_nothing(journal, tmp_path, call, message):
+    journal.write(tmp_path / "before")
+    with pytest.raises(ValueError, match=message):
+        call(journal)
+    journal.write(tmp_path / "after")
+    assert (tmp_path / "before").read_bytes() == (tmp_path / "after").read_bytes()
