@@ -68,7 +68,8 @@ def main(argv: list[str] | None = None) -> int:
         sys.stdout.flush()
         return status
     except (KeyboardInterrupt, Cancelled):
-        console.error("interrupted, nothing was written")
+        done = f"after {console.written} was written" if console.written else "nothing was written"
+        console.error(f"interrupted, {done}")
         return 130
     except BrokenPipeError:
         # Whoever read our output has seen enough; keep the interpreter from complaining about it at exit.

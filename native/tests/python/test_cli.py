@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 import riffler
 from riffler.command import console, doctor, tools
 
@@ -372,6 +373,22 @@ def test_ctrl_c_leaves_nothing_behind(folder):
 
 
 # ---- the parts that a process cannot show
+
+
+def test_ctrl_c_while_writing_leaves_the_old_file(tmp_path):
+    out, said = tmp_path / "part.stl", console.Console(json_output=True)
+    out.write_text("old")
+    with pytest.raises(KeyboardInterrupt), said.writing(out) as beside:
+        beside.write_text("new")  # a native writer is through before Python sees the signal
+        raise KeyboardInterrupt
+    assert out.read_text() == "old" and said.written is None
+    with pytest.raises(RuntimeError, match=r"^part\.stl: disk full$"), said.writing(out) as beside:
+        raise RuntimeError(f"{beside.name}: disk full")
+    with said.writing(out) as beside:
+        assert beside.suffix == out.suffix
+        beside.write_text("new")
+    assert out.read_text() == "new" and said.written == "part.stl"
+    assert [p.name for p in tmp_path.iterdir()] == ["part.stl"]
 
 
 def test_devices_are_named_and_say_why_they_do_not_open(tmp_path, monkeypatch):

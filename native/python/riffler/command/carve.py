@@ -14,7 +14,7 @@ from .. import Program, Tool, Volume
 from . import tools
 from .arguments import MESHES, ORIGINS, VOLUMES, add_directions, add_pitch, box, input_file, is_box, length, output_file
 from .console import Console, number, times
-from .shapes import from_mesh, rays, write_mesh
+from .shapes import from_mesh, rays, write_mesh, write_volume
 
 HELP = "carve stock with an NC program"
 __doc__ += "\n" + tools.FORMS
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
     )
-    parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see below; may be repeated")
+    parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
     parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274")
     parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
@@ -57,8 +57,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
     triangles = None
     if out.suffix.lower() in VOLUMES:
-        with console.step("write") as progress:
-            volume.save(out, progress=progress)
+        write_volume(volume, out, console)
     else:
         with console.step("mesh") as progress:
             mesh = volume.to_mesh(progress=progress)

@@ -9,7 +9,7 @@ import argparse
 
 from .arguments import MESHES, VOLUMES, add_directions, add_pitch, input_file, length, output_file
 from .console import Console, number, times
-from .shapes import from_mesh, rays
+from .shapes import from_mesh, rays, write_volume
 
 HELP = "turn a mesh into a dexel volume"
 
@@ -26,8 +26,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     path = input_file(arguments.mesh, MESHES)
     out = output_file(arguments.out, VOLUMES)
     volume = from_mesh(path, pitch, arguments.directions or "xyz", console, "convert")
-    with console.step("write") as progress:
-        volume.save(out, progress=progress)
+    write_volume(volume, out, console)
     data = {
         "out": str(out),
         "pitch": volume.pitch,

@@ -21,9 +21,14 @@ def from_mesh(path: Path, pitch: float, directions: str, console: Console, step:
 
 def write_mesh(mesh: Mesh, path: Path, console: Console) -> int:
     """Writes the file and returns the number of triangles."""
-    with console.step("write"):
-        mesh.write(path)
+    with console.step("write"), console.writing(path) as beside:
+        mesh.write(beside)
     return len(mesh.triangles)
+
+
+def write_volume(volume: Volume, path: Path, console: Console) -> None:
+    with console.step("write") as progress, console.writing(path) as beside:
+        volume.save(beside, progress=progress)
 
 
 def rays(volume: Volume) -> int:
