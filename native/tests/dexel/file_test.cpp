@@ -264,7 +264,7 @@ TEST(File, SurvivesThousandsOfDamagedFiles) {
   }
   EXPECT_GT(refused, 4000);
   EXPECT_GT(read, 10);
-  EXPECT_LT(peak_megabytes() - before, 200);
+  EXPECT_LT(peak_megabytes() - before, 400);  // the address sanitizer keeps 256 of what was freed
 }
 
 TEST(File, IsWholeOrNotThere) {
