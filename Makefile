@@ -60,8 +60,7 @@ format:  ## Bring all sources into style
 
 sanitize:  ## Run the C++ tests under the address and undefined-behaviour sanitizers
 	@$(ready) cpp-tests
-	$(python) tools/preset.py asan riffler_tests
-	build/asan/native/tests/riffler_tests --gtest_brief=1
+	$(python) tools/preset.py asan --test
 
 docs:  ## Check links and examples, collect the documents and the API reference: out/docs
 	@$(ready)

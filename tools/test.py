@@ -8,13 +8,12 @@ from __future__ import annotations
 import sys
 import time
 
-from preset import build_preset
-from shell import PYTHON, ROOT, StepError, main, run, say
+from preset import test_preset
+from shell import PYTHON, StepError, main, run, say
 
 
 def cpp() -> None:
-    build_preset("release", "riffler_tests")
-    run(ROOT / "build" / "release" / "native" / "tests" / "riffler_tests", "--gtest_brief=1")
+    test_preset("release")
 
 
 def python() -> None:
