@@ -1,0 +1,89 @@
+"""Why the native core does not load, and how to mend it, in words for the person in front of the machine."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass
+class Machine:
+    """What decides whether a binary wheel fits."""
+
+    system: str  # "Linux", "Windows", "Darwin"
+    release: str
+    processor: str
+    python: str
+    blender: str
+
+    @classmethod
+    def current(cls, blender: str) -> Machine:
+        return cls(platform.system(), platform.release(), platform.machine(), platform.python_version(), blender)
+
+
+def built_for(folder: Path) -> list[str]:
+    """The extension modules that lie in a package folder: their names say which Python they were built for."""
+    return sorted(p.name for p in folder.glob("_core*") if p.suffix in (".so", ".pyd"))
+
+
+def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
+    """Steps that fit the error, the most likely one first."""
+    text = f"{type(error).__name__}: {error}"
+    tag = "cp" + "".join(machine.python.split(".")[:2])
+    steps = []
+    if "GLIBC" in text or "CXXABI" in text or "GLIBCXX" in text:
+        steps.append("The system's C library is older than the package needs: update the system, or build from source.")
+    elif "numpy" in text:
+        steps.append("numpy is missing or too old in this Python: install Blender from blender.org, which carries it.")
+    elif found and not any(tag in name or f"{machine.python[:4].replace('.', '')}-" in name for name in found):
+        steps.append(f"The package was built for another Python ({', '.join(found)}); this Blender has {machine.python}.")
+        steps.append("Install the Riffler zip made for this Blender version.")
+    elif "lacks" in text:
+        steps.append("Another package named riffler, or an older one, comes first on Python's path: remove it.")
+    elif isinstance(error, ModuleNotFoundError):
+        steps.append("The package is not there: install Riffler from its zip (the source folder has no native core).")
+    elif machine.system == "Darwin":
+        steps.append("macOS may hold the file in quarantine: allow it under System Settings, Privacy & Security.")
+    elif machine.system == "Windows":
+        steps.append("An older copy may still be in use, or a virus scanner holds the file: restart Blender.")
+    if machine.processor.lower() not in ("x86_64", "amd64"):
+        steps.append(f"Packages are made for x86-64; this machine is {machine.processor}: build from source.")
+    steps.append("Remove Riffler in Preferences, restart Blender, and install the zip again.")
+    return steps
+
+
+def report(error: BaseException, machine: Machine, folders: list[str] | None = None) -> dict:
+    """`why` (one line), `facts` and `steps` (lists of lines), `text` (all of it, for the clipboard)."""
+    searched = sys.path if folders is None else folders
+    found = [name for f in searched if f for name in built_for(Path(f) / "riffler")]
+    why = f"{type(error).__name__}: {error}"
+    facts = [
+        f"System: {machine.system} {machine.release}, {machine.processor}",
+        f"Blender: {machine.blender}",
+        f"Python: {machine.python}",
+        f"Native module found: {', '.join(found) if found else 'none'}",
+    ]
+    steps = mend(error, machine, found)
+    text = "\n".join(["Riffler: the native core did not load", why, *facts, "How to mend it:", *steps])
+    return {"why": why, "facts": facts, "steps": steps, "text": text}
+
+
+def wrap(text: str, width: int = 44) -> list[str]:
+    """Lines for a panel, which does not wrap; long words (paths) are cut."""
+    lines, line = [], ""
+    for word in text.split():
+        while len(word) > width:
+            room = width - len(line) - (1 if line else 0)
+            if room < 8:
+                lines.append(line)
+                line, room = "", width
+            line = f"{line} {word[:room]}".strip()
+            word = word[room:]
+        if line and len(line) + 1 + len(word) > width:
+            lines.append(line)
+            line = word
+        else:
+            line = f"{line} {word}".strip()
+    return lines + [line] if line else lines

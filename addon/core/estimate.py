@@ -1,0 +1,38 @@
+"""What a new stock will cost, before it is made."""
+
+from __future__ import annotations
+
+import math
+
+# What a ray with one interval takes at most; the native core's own figure (its budget is tested there).
+BYTES_PER_RAY = 24
+# Above this many rays the panel warns: a fresh volume of this size takes about 2.4 GB and seconds to show.
+MANY_RAYS = 100_000_000
+
+
+def ray_count(size, pitch: float, directions: str) -> int:
+    """Rays of a box of `size` (mm): n = max(1, round(extent / pitch)) per axis, as the volume counts them."""
+    if directions not in ("x", "y", "z", "xyz"):
+        raise ValueError(f"directions must be x, y, z or xyz, not {directions!r}")
+    if not (math.isfinite(pitch) and pitch > 0):
+        raise ValueError(f"pitch must be positive, not {pitch}")
+    if len(size) != 3 or not all(math.isfinite(s) and s > 0 for s in size):
+        raise ValueError(f"size must be three positive lengths, not {tuple(size)}")
+    # half up, as the core rounds: Python's round() goes to even
+    nx, ny, nz = (max(1, math.floor(s / pitch + 0.5)) for s in size)
+    across = {"x": ny * nz, "y": nz * nx, "z": nx * ny}
+    return sum(across[d] for d in directions)
+
+
+def stock_bytes(size, pitch: float, directions: str) -> int:
+    return BYTES_PER_RAY * ray_count(size, pitch, directions)
+
+
+def fitting_pitch(size, rays_across: int = 400) -> float:
+    """A pitch of one significant step (1, 2, 2.5 or 5 × 10ⁿ mm) that gives about `rays_across` along the longest side."""
+    wanted = max(float(s) for s in size) / rays_across
+    if not (math.isfinite(wanted) and wanted > 0):
+        raise ValueError(f"size must be three positive lengths, not {tuple(size)}")
+    decade = 10.0 ** math.floor(math.log10(wanted))
+    step = min((1, 2, 2.5, 5, 10), key=lambda s: abs(math.log(s * decade / wanted)))
+    return float(f"{step * decade:.3g}")

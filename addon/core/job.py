@@ -1,0 +1,104 @@
+"""A cut in steps: what a modal operator does on each tick, without the operator."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class Cut:
+    """One uninterrupted motion of one tool: what is carved, kept with the sculpt, and written as NC."""
+
+    tool: dict  # the form of riffler.Tool.to_dict
+    poses: np.ndarray  # (n, 6) tip and axis, mm, stock's frame
+
+    @property
+    def moves(self) -> int:
+        return len(self.poses) - 1
+
+
+class CutJob:
+    """Carves `cuts` from `volume` in slices. `step` until it returns True; `cancel` at any time before restores the
+    volume as it was; so does any error."""
+
+    def __init__(self, volume, cuts, make_tool, tolerance: float = 0.01, clock=time.perf_counter):
+        if not cuts or not all(c.moves > 0 for c in cuts):
+            raise ValueError("nothing to cut: a cut needs two poses")
+        self.volume = volume
+        self.cuts = list(cuts)
+        self.total = sum(c.moves for c in self.cuts)
+        self.done = 0
+        self.removed = 0.0
+        self._tools = [make_tool(c.tool) for c in self.cuts]
+        self._tolerance = tolerance
+        self._clock = clock
+        self._snapshot = volume.snapshot()
+        self._cut = self._move = 0
+        self._rate = 200.0  # moves per second; measured from the first slice on
+
+    @property
+    def fraction(self) -> float:
+        return self.done / self.total
+
+    @property
+    def finished(self) -> bool:
+        return self.done == self.total
+
+    def step(self, budget: float = 0.04) -> bool:
+        """Carves for about `budget` seconds (one slice of moves at least); True when all is cut."""
+        end = self._clock() + budget
+        while not self.finished:
+            left = end - self._clock()
+            if left <= 0:
+                break
+            self._slice(max(1, int(self._rate * min(left, budget))))
+        return self.finished
+
+    def run(self, report=None) -> None:
+        """All of it, in slices, so that `report(fraction)` is heard."""
+        while not self.step(0.25):
+            if report:
+                report(self.fraction)
+
+    def cancel(self) -> None:
+        self.volume.restore(self._snapshot)
+        self.done = self._cut = self._move = 0
+        self.removed = 0.0
+
+    def _slice(self, moves: int) -> None:
+        cut = self.cuts[self._cut]
+        last = min(self._move + moves, cut.moves)
+        begin = self._clock()
+        try:
+            result = self.volume.carve(
+                self._tools[self._cut], cut.poses[self._move : last + 1], tolerance=self._tolerance
+            )
+        except Exception:
+            self.cancel()
+            raise
+        spent = max(self._clock() - begin, 1e-6)
+        self.removed += float(result.removed.sum())
+        count = last - self._move
+        self._rate = 0.5 * self._rate + 0.5 * count / spent
+        self.done += count
+        self._move = last
+        if last == cut.moves:
+            self._cut, self._move = self._cut + 1, 0
+
+
+class RefreshClock:
+    """When the picture of a running cut is worth drawing again: never more than a `share` of the time, so that showing a
+    cut cannot make it much slower."""
+
+    def __init__(self, share: float = 0.25, least: float = 0.25, clock=time.perf_counter):
+        self._share, self._least, self._clock = share, least, clock
+        self._next = clock() + least
+
+    def due(self) -> bool:
+        return self._clock() >= self._next
+
+    def spent(self, seconds: float) -> None:
+        self._next = self._clock() + max(self._least, seconds / self._share - seconds)

@@ -1,0 +1,34 @@
+"""The import of the native core, which may fail on a user's machine, and why it did."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+
+# Names of the native package that the add-on uses: an older riffler on the path would otherwise fail in mid-work.
+NEEDED = ("Tool", "Volume", "Mesh", "Program", "Journal")
+
+
+def vendored() -> Path | None:
+    """Where the legacy zip (Blender before 4.2, which installs no wheels) carries the package."""
+    folder = Path(__file__).resolve().parent.parent / "_vendor"
+    return folder if (folder / "riffler").is_dir() else None
+
+
+def load():
+    """(module, None) or (None, the exception)."""
+    folder = vendored()
+    if folder and str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))
+    try:
+        module = importlib.import_module("riffler")
+        missing = [name for name in NEEDED if not hasattr(module, name)]
+        if missing:
+            where = getattr(module, "__file__", None) or list(getattr(module, "__path__", []))
+            raise ImportError(f"the package riffler at {where} lacks {', '.join(missing)}")
+    except Exception as error:  # a broken binary may raise anything; the panel shows it
+        for name in [n for n in sys.modules if n == "riffler" or n.startswith("riffler.")]:
+            del sys.modules[name]
+        return None, error
+    return module, None
