@@ -1,7 +1,7 @@
 """The sculpt's data inside the .blend: a packed image that the mesh points to.
 
-Of all datablocks that hold bytes, a packed image is the one that survives every version, undo, save and reopening without
-being doubled or cut short. The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and volume as
+Of all datablocks that hold bytes, a packed image is the one that survives every version, undo, save and reopening
+without being doubled or cut short. The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and volume as
 one thing, and it goes when the mesh goes. A copy of a mesh shares the image until one of the two is written.
 """
 
@@ -40,7 +40,7 @@ def content(mesh):
 
 
 def write(mesh, volume, cuts):
-    """Makes `volume` and `cuts` the mesh's content; returns the bytes kept. The volume must not be changed afterwards."""
+    """Makes `volume` and `cuts` the mesh's content; returns the bytes kept. The volume must not be changed after it."""
     block = record.encode(volumes.to_bytes(volume), cuts)
     key = record.content_id(block)
     image = mesh.riffler.store

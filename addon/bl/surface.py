@@ -2,16 +2,16 @@
 
 import numpy as np
 from mathutils import Vector
-from mathutils.bvhtree import BVHTree
 
 
-def nearest(points, vertices, triangles):
-    """Nearest points (n, 3) of a mesh and the face normals (n, 3) there; all in one frame."""
-    tree = BVHTree.FromPolygons(vertices.tolist(), triangles.tolist(), all_triangles=True)
+def nearest(ob, depsgraph, points, mm_per_unit):
+    """Nearest points (n, 3) of the sculpt as it is shown and the surface's normals (n, 3) there, in millimetres in its
+    own frame like `points`."""
+    evaluated = ob.evaluated_get(depsgraph)
     places, normals = np.empty_like(points), np.empty_like(points)
-    for k, p in enumerate(points):
-        place, normal, index, _ = tree.find_nearest(Vector(p))
-        if index is None:
+    for k, p in enumerate(points / mm_per_unit):
+        found, place, normal, _ = evaluated.closest_point_on_mesh(Vector(p))
+        if not found:
             raise ValueError("the sculpt has no surface left to follow")
         places[k], normals[k] = place, normal
-    return places, normals
+    return places * mm_per_unit, normals

@@ -7,6 +7,7 @@ tolerance is a distance on the stock whatever the objects' transforms are.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -50,13 +51,15 @@ def evaluate(spline: Spline, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
             points, tilt = np.vstack([points, points[:1]]), np.append(tilt, tilt[0])
     else:
         raise ValueError(f"a spline of type {spline.kind} cannot be cut along")
-    return _distinct(points, tilt)
+    keep = distinct(points)
+    return points[keep], tilt[keep]
 
 
-def _distinct(points, tilt):
+def distinct(points: np.ndarray) -> np.ndarray:
+    """(n,) bool: the points that are not where the one before is (within a picometre-scale 1e-9 mm)."""
     keep = np.ones(len(points), bool)
     keep[1:] = np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9
-    return points[keep], tilt[keep]
+    return keep
 
 
 def _bezier(spline, p, tilt, tolerance):
@@ -72,7 +75,9 @@ def _bezier(spline, p, tilt, tolerance):
         bend = 6 * max(np.linalg.norm(b[0] - 2 * b[1] + b[2]), np.linalg.norm(b[1] - 2 * b[2] + b[3]))
         steps = max(1, int(np.ceil(np.sqrt(bend / (8 * tolerance)))), int(np.ceil(abs(tilt[j] - tilt[i]) / 0.1)))
         if steps > MAX_POINTS:
-            raise ValueError(f"tolerance {tolerance} mm needs more than {MAX_POINTS} points on one segment of the curve")
+            raise ValueError(
+                f"tolerance {tolerance} mm needs more than {MAX_POINTS} points on one segment of the curve"
+            )
         t = np.arange(1, steps + 1)[:, None] / steps
         s = 1 - t
         out.append(s**3 * b[0] + 3 * s**2 * t * b[1] + 3 * s * t**2 * b[2] + t**3 * b[3])
@@ -85,10 +90,8 @@ def knots(count: int, order: int, cyclic: bool, endpoint: bool, bezier: bool) ->
     """The knot vector that Blender gives a NURBS spline of `count` points (periodic part included): uniform; clamped
     (`endpoint`); multiplicity order − 1 inside (`bezier`)."""
     inner = order - 1 if bezier else 1
-    if endpoint:
-        head = order - 1 if cyclic else order
-    else:
-        head = min(2, inner) if bezier else 1
+    free = min(2, inner) if bezier else 1
+    head = order - int(cyclic) if endpoint else free
     total = count + (2 * order - 1 if cyclic else order)
     tail = 2 * order - 1 if cyclic else (order if endpoint else 0)
     out = np.zeros(total)
@@ -145,7 +148,7 @@ def _nurbs(spline, p, tilt, tolerance):
         return b @ p[wrap], b @ tilt[wrap]
 
     inside = np.unique(knot[(knot >= lower) & (knot <= upper)])
-    u = np.unique(np.concatenate([np.linspace(a, b, 5) for a, b in zip(inside[:-1], inside[1:], strict=True)]))
+    u = np.unique(np.concatenate([np.linspace(a, b, 5) for a, b in pairwise(inside)]))
     x, angle = at(u)
     while True:
         middle = 0.5 * (u[:-1] + u[1:])

@@ -38,7 +38,9 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
     elif "numpy" in text:
         steps.append("numpy is missing or too old in this Python: install Blender from blender.org, which carries it.")
     elif found and not any(tag in name or f"{machine.python[:4].replace('.', '')}-" in name for name in found):
-        steps.append(f"The package was built for another Python ({', '.join(found)}); this Blender has {machine.python}.")
+        steps.append(
+            f"The package was built for another Python ({', '.join(found)}); this Blender has {machine.python}."
+        )
         steps.append("Install the Riffler zip made for this Blender version.")
     elif "lacks" in text:
         steps.append("Another package named riffler, or an older one, comes first on Python's path: remove it.")
@@ -86,4 +88,4 @@ def wrap(text: str, width: int = 44) -> list[str]:
             line = word
         else:
             line = f"{line} {word}".strip()
-    return lines + [line] if line else lines
+    return [*lines, line] if line else lines

@@ -29,7 +29,7 @@ def stock_bytes(size, pitch: float, directions: str) -> int:
 
 
 def fitting_pitch(size, rays_across: int = 400) -> float:
-    """A pitch of one significant step (1, 2, 2.5 or 5 × 10ⁿ mm) that gives about `rays_across` along the longest side."""
+    """A round pitch (1, 2, 2.5 or 5 × 10ⁿ mm) that gives about `rays_across` along the longest side."""
     wanted = max(float(s) for s in size) / rays_across
     if not (math.isfinite(wanted) and wanted > 0):
         raise ValueError(f"size must be three positive lengths, not {tuple(size)}")

@@ -90,8 +90,8 @@ class CutJob:
 
 
 class RefreshClock:
-    """When the picture of a running cut is worth drawing again: never more than a `share` of the time, so that showing a
-    cut cannot make it much slower."""
+    """When the picture of a running cut is worth drawing again: never more than a `share` of the time, so that showing
+    a cut cannot make it much slower."""
 
     def __init__(self, share: float = 0.25, least: float = 0.25, clock=time.perf_counter):
         self._share, self._least, self._clock = share, least, clock

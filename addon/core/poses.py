@@ -30,8 +30,8 @@ def tangents(points: np.ndarray) -> np.ndarray:
 
 
 def tilted_axes(points: np.ndarray, tilt: np.ndarray) -> np.ndarray:
-    """Axes square to the path: +Z of the stock made square to the tangent, then turned about the tangent by `tilt` (right
-    hand). Where the path itself stands upright the last axis before goes on."""
+    """Axes square to the path: +Z of the stock made square to the tangent, then turned about the tangent by `tilt`
+    (right hand). Where the path itself stands upright the last axis before goes on."""
     t = tangents(points)
     axes = np.empty_like(t)
     # An upright start leans on the next direction that is not upright, or on +X.
@@ -53,8 +53,8 @@ def _square(v, t):
 
 
 def smooth_axes(points: np.ndarray, axes: np.ndarray, window: float) -> np.ndarray:
-    """Mean of the axes over `window` (mm of path) around each point, by the trapezoidal rule on the running integral, so
-    unevenly spaced points weigh what they stand for. A closed path is averaged around its seam."""
+    """Mean of the axes over `window` (mm of path) around each point, by the trapezoidal rule on the running integral,
+    so unevenly spaced points weigh what they stand for. A closed path is averaged around its seam."""
     if len(points) < 3 or window <= 0:
         return axes
     chord = np.linalg.norm(np.diff(points, axis=0), axis=1)

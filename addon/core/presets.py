@@ -45,4 +45,3 @@ def tool_dict(kind: str, sizes: dict, name: str = "") -> dict:
     if name:
         tool["name"] = name
     return tool
-

@@ -39,7 +39,9 @@ def decode(block: bytes, identity: str | None = None) -> tuple[bytes, list[Cut]]
         raise ValueError("the sculpt's data in this .blend does not begin as Riffler's does")
     _, version, size = _HEAD.unpack_from(block)
     if version != VERSION:
-        raise ValueError(f"the sculpt's data has format {version}, and this Riffler reads {VERSION}: install a newer one")
+        raise ValueError(
+            f"the sculpt's data has format {version}, and this Riffler reads {VERSION}: install a newer one"
+        )
     try:
         header = json.loads(block[_HEAD.size : _HEAD.size + size])
         at = _HEAD.size + size

@@ -1,0 +1,48 @@
+"""Cuts from curves and recordings."""
+
+import riffler
+
+from ..bl import curves as bl_curves
+from ..bl import sculpts, surface
+from ..core import curves, poses
+from ..core.job import Cut
+
+
+def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
+    """One cut per spline of the curve object. ValueError where nothing can be cut."""
+    depsgraph = context.evaluated_depsgraph_get()
+    size = riffler.Tool.from_dict(tool).diameter
+    cuts = []
+    for spline in bl_curves.splines(curve, depsgraph, sculpts.from_object(ob, curve)):
+        points, tilt = curves.evaluate(spline, tolerance)
+        if len(points) < 2:
+            continue
+        if follow or axis == "NORMAL":
+            # The surface bends between the curve's points: look at it every pitch.
+            points, tilt = curves.refine(points, tilt, ob.data.riffler.pitch)
+            scale = sculpts.shown_mm_per_unit(ob.data)
+            places, normals = surface.nearest(ob, depsgraph, points, scale)
+        if follow:
+            distinct = curves.distinct(places)
+            points, tilt, normals = places[distinct], tilt[distinct], normals[distinct]
+            if len(points) < 2:
+                continue
+        if axis == "UP":
+            axes = poses.fixed_axes(len(points))
+        elif axis == "TILT":
+            axes = poses.tilted_axes(points, tilt)
+        else:  # facets and edges would jerk the tool: turn over about its own width
+            axes = poses.smooth_axes(points, normals, size)
+        cuts.append(Cut(tool, poses.make_poses(points, axes, depth)))
+    if not cuts:
+        raise ValueError(f"{curve.name} has no spline with two points")
+    return cuts
+
+
+def from_recording(path):
+    """The strokes of a recording (.rjournal) as cuts."""
+    journal = riffler.Journal.read(path)
+    cuts = [Cut(s.tool.to_dict(), s.poses) for s in journal.strokes if len(s.poses) > 1]
+    if not cuts:
+        raise ValueError("the recording has no stroke with two poses")
+    return cuts

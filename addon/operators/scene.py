@@ -1,0 +1,45 @@
+"""Settings of the scene: tool presets and millimetres."""
+
+import bpy
+
+from ..bl import sculpts, units
+from ..core import presets
+from . import shared
+
+
+class RIFFLER_OT_tool_preset(bpy.types.Operator):
+    """Take this tool"""
+
+    bl_idname = "riffler.tool_preset"
+    bl_label = "Tool Preset"
+    bl_options = {"INTERNAL", "UNDO"}
+
+    name: bpy.props.StringProperty()
+
+    def execute(self, context):
+        try:
+            context.scene.riffler.tool.take(presets.preset(self.name))
+        except ValueError as error:
+            return shared.fail(self, error)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_millimetres(bpy.types.Operator):
+    """Make one Blender unit one millimetre in this scene; sculpts keep their size in mm, other objects their units"""
+
+    bl_idname = "riffler.millimetres"
+    bl_label = "Scene in Millimetres"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        try:
+            meshes = {ob.data for ob in context.scene.objects if sculpts.is_sculpt(ob) and not ob.data.library}
+            units.set_millimetres(context.scene, bpy.data.screens)
+            for mesh in meshes:
+                sculpts.refill(mesh, units.mm_per_unit(context.scene))
+        except ValueError as error:
+            return shared.fail(self, error)
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_tool_preset, RIFFLER_OT_millimetres)

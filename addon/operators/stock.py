@@ -1,0 +1,139 @@
+"""New stock, and its picture made anew."""
+
+import bpy
+import numpy as np
+import riffler
+from mathutils import Matrix
+
+from .. import properties
+from ..bl import meshes, sculpts, units
+from ..core import estimate, poses
+from ..core import units as names
+from . import shared
+
+SOURCE_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+
+def source_object(context):
+    """The object that would become material, or None."""
+    ob = context.object
+    return ob if ob is not None and ob.type in SOURCE_TYPES else None
+
+
+def source_size(ob, scene):
+    """Its size along its own axes in millimetres, as it is shown."""
+    return tuple(float(d) * units.mm_per_unit(scene) for d in ob.dimensions)
+
+
+class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
+    """Make a block of material, or take the active object as material"""
+
+    bl_idname = "riffler.new_stock"
+    bl_label = "New Stock"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.mode != "OBJECT":
+            return shared.deny(cls, "Leave Edit Mode or Sculpt Mode first")
+        if context.window_manager.riffler.running:
+            return shared.deny(cls, "A cut is running: Esc cancels it")
+        return True
+
+    def invoke(self, context, event):
+        done = self.execute(context)
+        if done == {"FINISHED"} and context.area and context.area.type == "VIEW_3D":
+            region = next((r for r in context.area.regions if r.type == "WINDOW"), None)
+            if region:
+                with context.temp_override(region=region):
+                    bpy.ops.view3d.view_selected()
+        return done
+
+    def execute(self, context):
+        try:
+            ob = self._block(context) if self.source == "BLOCK" else self._from_object(context)
+        except (ValueError, MemoryError) as error:
+            return shared.fail(self, error)
+        size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
+        triangles = names.format_count(len(ob.data.polygons))
+        self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles} triangles")
+        return {"FINISHED"}
+
+    def _block(self, context):
+        size = np.array([names.clean(s) for s in self.size])
+        lower = {"CORNER": 0 * size, "TOP": -size * (0.5, 0.5, 1.0), "CENTRE": -0.5 * size}[self.origin]
+        volume = riffler.Volume.block(lower, lower + size, names.clean(self.pitch), self.directions)
+        return sculpts.new_object(context, "Stock", volume, Matrix.Translation(context.scene.cursor.location))
+
+    def _from_object(self, context):
+        source = source_object(context)
+        if source is None:
+            raise ValueError("select the object that is to be the material: a mesh, curve, text, surface or metaball")
+        co, triangles = meshes.read(source, context.evaluated_depsgraph_get())
+        if len(triangles) == 0:
+            raise ValueError(f"{source.name} has no faces")
+        # Scale and shear become part of the shape, so that a millimetre of the sculpt is one along every axis.
+        place, turn, _ = source.matrix_world.decompose()
+        frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
+        to_stock = meshes.matrix(frame.inverted() @ source.matrix_world)
+        to_stock[:3] *= units.mm_per_unit(context.scene)
+        vertices = poses.transform_points(to_stock, co)
+        if np.linalg.det(to_stock[:3, :3]) < 0:
+            triangles = np.ascontiguousarray(triangles[:, ::-1])
+        mesh = riffler.Mesh(vertices, triangles)
+        volume = riffler.Volume.from_mesh(mesh, names.clean(self.pitch), self.directions)
+        ob = sculpts.new_object(context, f"{source.name} Stock", volume, frame)
+        source.hide_set(True)
+        return ob
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "source")
+        if self.source == "BLOCK":
+            layout.prop(self, "size", text="Size (mm)")
+            layout.prop(self, "origin")
+        layout.prop(self, "pitch", text="Pitch (mm)")
+        layout.prop(self, "directions")
+
+
+class RIFFLER_OT_fit_pitch(bpy.types.Operator):
+    """Choose a pitch that suits the size: some 400 rays along the longest side"""
+
+    bl_idname = "riffler.fit_pitch"
+    bl_label = "Fit Pitch"
+    bl_options = {"INTERNAL", "UNDO"}
+
+    def execute(self, context):
+        stock = context.scene.riffler.stock
+        source = source_object(context)
+        if stock.source == "OBJECT" and source is None:
+            return shared.fail(self, ValueError("select the object that is to be the material"))
+        size = stock.size if stock.source == "BLOCK" else source_size(source, context.scene)
+        try:
+            stock.pitch = estimate.fitting_pitch(size)
+        except ValueError as error:
+            return shared.fail(self, error)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_rebuild(bpy.types.Operator):
+    """Show the stored volume again, in the scene's units; edits to the mesh are lost"""
+
+    bl_idname = "riffler.rebuild"
+    bl_label = "Rebuild Mesh"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return shared.sculpt_poll(cls, context)
+
+    def execute(self, context):
+        try:
+            sculpts.refill(sculpts.active(context).data, units.mm_per_unit(context.scene))
+        except ValueError as error:
+            return shared.fail(self, error)
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_new_stock, RIFFLER_OT_fit_pitch, RIFFLER_OT_rebuild)

@@ -1,0 +1,197 @@
+"""The sidebar's tab. Drawing reads properties only: no volume is touched."""
+
+import bpy
+
+from .. import properties
+from ..bl import sculpts, ui, units
+from ..core import estimate, presets
+from ..core import units as names
+from ..operators import cut, export, scene, stock
+
+
+class Sidebar:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Riffler"
+
+
+def lines(layout, *texts, icon="NONE"):
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for k, text in enumerate(texts):
+        column.label(text=text, icon=icon if k == 0 else ("BLANK1" if icon != "NONE" else "NONE"))
+
+
+class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_sculpt"
+    bl_label = "Sculpt"
+
+    def draw(self, context):
+        layout = self.layout
+        state = context.window_manager.riffler
+        if state.running:
+            ui.progress(layout, state.fraction, f"{100 * state.fraction:.0f} %")
+            lines(layout, state.text, "Esc cancels", icon="BLANK1")
+            return
+        ob = sculpts.active(context)
+        if ob is None:
+            lines(layout, "No sculpt is active.", "Make a new stock below.", icon="INFO")
+            return
+        self._facts(layout, ob)
+        self._warnings(layout, context, ob)
+
+    def _facts(self, layout, ob):
+        p = ob.data.riffler
+        size = [u - low for low, u in zip(p.lower, p.upper, strict=True)]
+        layout.label(text=ob.name, icon="MOD_SOLIDIFY")
+        rays = "tri-dexel" if p.directions == "xyz" else f"rays along {p.directions}"
+        lines(
+            layout,
+            f"Size: {names.format_size(size)}",
+            f"Pitch: {names.trim(p.pitch, 4)} mm, {rays}",
+            f"Material: {names.format_volume(p.material)}",
+            f"Cuts: {p.cuts} ({names.format_count(p.moves)} moves)",
+            f"Memory: {names.format_bytes(p.nbytes)}",
+        )
+
+    def _warnings(self, layout, context, ob):
+        mesh = ob.data
+        stale = sculpts.shown_mm_per_unit(mesh) != units.mm_per_unit(context.scene)
+        if stale:
+            lines(layout, "The scene's units have changed;", "the mesh shows another size.", icon="ERROR")
+        elif sculpts.edited(mesh):
+            lines(
+                layout,
+                "The mesh was edited; the next cut",
+                "starts from the volume. To keep the",
+                "edits: new stock from object.",
+                icon="ERROR",
+            )
+        if stale or sculpts.edited(mesh):
+            layout.operator(stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
+        if any(abs(s - 1) > 1e-5 for s in ob.scale):
+            lines(layout, "The object is scaled: tools are sized", "in its own millimetres.", icon="ERROR")
+
+
+class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_stock"
+    bl_label = "New Stock"
+
+    def draw(self, context):
+        layout = self.layout
+        settings = context.scene.riffler.stock
+        layout.row().prop(settings, "source", expand=True)
+        size = self._size(layout, context, settings)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        row = layout.row(align=True)
+        row.prop(settings, "pitch", text="Pitch (mm)")
+        row.operator(stock.RIFFLER_OT_fit_pitch.bl_idname, text="", icon="SHADERFX")
+        layout.prop(settings, "directions")
+        if settings.source == "BLOCK":
+            layout.prop(settings, "origin")
+        if size and min(size) > 0:
+            rays = estimate.ray_count(size, names.clean(settings.pitch), settings.directions)
+            about = names.format_bytes(rays * estimate.BYTES_PER_RAY)
+            many = rays > estimate.MANY_RAYS
+            layout.label(text=f"{names.format_count(rays)} rays, about {about}", icon="ERROR" if many else "NONE")
+        self._button(layout, settings)
+        unit = units.mm_per_unit(context.scene)
+        if unit != 1:
+            layout.separator()
+            lines(layout, f"1 Blender unit is {names.trim(unit, 4)} mm here.", icon="INFO")
+            layout.operator(scene.RIFFLER_OT_millimetres.bl_idname)
+
+    def _size(self, layout, context, settings):
+        if settings.source == "BLOCK":
+            column = layout.column(align=True)
+            column.label(text="Size (mm)")
+            column.row(align=True).prop(settings, "size", text="")
+            return [names.clean(s) for s in settings.size]
+        source = stock.source_object(context)
+        if source is None:
+            lines(layout, "Select the object to take as material.", icon="INFO")
+            return None
+        size = stock.source_size(source, context.scene)
+        lines(layout, source.name, names.format_size(size), icon="OBJECT_DATA")
+        return size
+
+    def _button(self, layout, settings):
+        op = layout.operator(stock.RIFFLER_OT_new_stock.bl_idname, icon="CUBE")
+        for key in properties.StockSettings.__annotations__:
+            setattr(op, key, getattr(settings, key))
+
+
+class RIFFLER_MT_tools(bpy.types.Menu):
+    bl_idname = "RIFFLER_MT_tools"
+    bl_label = "Tool Presets"
+
+    def draw(self, context):
+        for tool in presets.presets():
+            op = self.layout.operator(scene.RIFFLER_OT_tool_preset.bl_idname, text=tool["name"])
+            op.name = tool["name"]
+
+
+class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_tool"
+    bl_label = "Tool"
+
+    def draw(self, context):
+        layout = self.layout
+        tool = context.scene.riffler.tool
+        preset = tool.from_preset()
+        layout.menu(RIFFLER_MT_tools.bl_idname, text=preset["name"] if preset else "Custom")
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(tool, "kind")
+        column = layout.column(align=True)
+        for key in presets.SIZES[tool.kind]:
+            label = tool.bl_rna.properties[key].name
+            column.prop(tool, key, text=label if key.endswith(("angle", "flat_tip")) else f"{label} (mm)")
+
+
+class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_cut"
+    bl_label = "Cut"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.riffler.cut
+        layout.prop(settings, "curve")
+        layout.prop(settings, "axis")
+        column = layout.column(align=True)
+        column.prop(settings, "depth", text="Depth (mm)")
+        column.prop(settings, "tolerance", text="Tolerance (mm)")
+        layout.prop(settings, "follow")
+        op = layout.operator(cut.RIFFLER_OT_cut_curve.bl_idname, icon="CURVE_DATA")
+        op.curve = settings.curve.name if settings.curve else ""
+        for key in properties.CutSettings.__annotations__:
+            setattr(op, key, getattr(settings, key))
+        layout.operator(cut.RIFFLER_OT_cut_recording.bl_idname, text="Cut Recording…", icon="REC")
+
+
+class RIFFLER_PT_export(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_export"
+    bl_label = "Export"
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator(export.RIFFLER_OT_export_stl.bl_idname, text="Export STL (mm)…", icon="EXPORT")
+        layout.separator()
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.riffler.nc
+        column = layout.column(align=True)
+        column.prop(settings, "post")
+        column.prop(settings, "feed", text="Feed (mm/min)")
+        column.prop(settings, "spindle", text="Spindle (rpm)")
+        op = layout.operator(export.RIFFLER_OT_export_nc.bl_idname, text="Write NC…", icon="TEXT")
+        for key in properties.NcSettings.__annotations__:
+            setattr(op, key, getattr(settings, key))
+        layout.separator()
+        layout.operator(export.RIFFLER_OT_export_recording.bl_idname, text="Save Recording…", icon="REC")
+
+
+CLASSES = (RIFFLER_MT_tools, RIFFLER_PT_sculpt, RIFFLER_PT_stock, RIFFLER_PT_tool, RIFFLER_PT_cut, RIFFLER_PT_export)
