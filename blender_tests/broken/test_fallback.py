@@ -1,0 +1,69 @@
+"""A native core that does not load: a panel that says why and how to mend it, and nothing else."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import bpy
+import support
+
+
+def enable_with(source):
+    """Enables the add-on where `import riffler` runs `source`; returns what is registered for it."""
+    folder = tempfile.mkdtemp()
+    (Path(folder) / "riffler").mkdir()
+    (Path(folder) / "riffler" / "__init__.py").write_text(source)
+    for name in [n for n in sys.modules if n == "riffler" or n.startswith(("riffler.", "riffler_addon"))]:
+        del sys.modules[name]
+    sys.path.insert(0, folder)
+    try:
+        scripts = Path(bpy.utils.user_resource("SCRIPTS", path="addons", create=True))
+        if not (scripts / "riffler_addon").exists():
+            (scripts / "riffler_addon").symlink_to(Path(support.JOB["repo"]) / "addon", target_is_directory=True)
+        support.MODULE = "riffler_addon"
+        bpy.ops.preferences.addon_enable(module="riffler_addon")
+        assert "riffler_addon" in bpy.context.preferences.addons
+        return {n for n in dir(bpy.types) if n.startswith("RIFFLER_")}
+    finally:
+        sys.path.remove(folder)
+
+
+def disable():
+    bpy.ops.preferences.addon_disable(module="riffler_addon")
+    assert not [n for n in dir(bpy.types) if n.startswith("RIFFLER_")]
+
+
+def check(source, *words):
+    assert enable_with(source) == {"RIFFLER_PT_fallback", "RIFFLER_OT_copy_report"}
+    assert not hasattr(bpy.types.Scene, "riffler")
+    text = support.part("ui.fallback").text()
+    for word in (*words, bpy.app.version_string, sys.version.split()[0], "How to mend it"):
+        assert word in text, (word, text)
+    assert bpy.ops.riffler.copy_report() == {"FINISHED"}
+    disable()
+
+
+def test_a_library_that_is_too_old():
+    check("raise ImportError(\"/lib/libc.so.6: version `GLIBC_2.38' not found\")", "GLIBC_2.38", "C library is older")
+
+
+def test_a_broken_binary():
+    check("raise OSError('invalid ELF header')", "OSError: invalid ELF header")
+
+
+def test_another_package_of_that_name():
+    check("__version__ = '9'", "lacks Tool", "Another package named riffler")
+
+
+def test_a_missing_package():
+    check("raise ModuleNotFoundError(\"No module named 'riffler._core'\")", "riffler._core")
+
+
+def test_mended_without_a_restart():
+    enable_with("raise ImportError('not yet')")
+    disable()
+    for name in [n for n in sys.modules if n.startswith("riffler_addon")]:
+        del sys.modules[name]
+    bpy.ops.preferences.addon_enable(module="riffler_addon")
+    assert hasattr(bpy.types, "RIFFLER_PT_stock")
+    disable()

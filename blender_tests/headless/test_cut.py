@@ -1,0 +1,187 @@
+"""Cuts: exact amounts, axes, units, errors, and undo."""
+
+import json
+
+import bpy
+import numpy as np
+import support
+
+
+def slot(length, diameter, depth):
+    """Volume of the slot of a flat end mill: a rectangle with round ends."""
+    return (length * diameter + np.pi * diameter**2 / 4) * depth
+
+
+def test_a_straight_slot_has_the_volume_of_the_formula_in_any_scene():
+    for unit in (1000.0, 1.0):
+        bpy.ops.wm.read_homefile()
+        support.scale(unit)
+        ob = support.stock(pitch=0.1)
+        c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=unit)
+        bpy.ops.riffler.cut_curve(curve=c.name, depth=2, tool=support.FLAT)
+        removed = 24000 - support.content(ob).volume.volume
+        assert abs(removed / slot(20, 6, 2) - 1) < 0.005, (unit, removed)
+
+
+def test_the_curve_is_taken_where_it_stands():
+    support.scale(1)
+    ob = support.stock(pitch=0.25)
+    ob.matrix_world = [[0, -1, 0, 7], [1, 0, 0, -3], [0, 0, 1, 2], [0, 0, 0, 1]]
+    c = support.curve("Line", [(0, 0, 0), (10, 0, 0)])
+    c.scale = (1000, 1000, 1000)
+    c.matrix_world = ob.matrix_world @ __import__("mathutils").Matrix.Translation((10, 15, 20)) @ c.matrix_world
+    bpy.context.view_layer.update()
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=2, tool=support.FLAT)
+    poses = support.content(ob).cuts[0].poses
+    expected = c.matrix_world @ c.data.splines[0].points[0].co
+    expected = np.array(ob.matrix_world.inverted() @ expected)[:3] - (0, 0, 2)
+    assert np.allclose(poses[0, :3], expected, atol=1e-4), (poses, expected)
+    assert np.allclose(poses[:, 3:], (0, 0, 1))
+
+
+def test_tilt_leans_the_tool_about_the_curve():
+    support.scale(1)
+    ob = support.stock()
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1, tilt=[0, np.radians(30)])
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=1, axis="TILT", tool=support.BALL)
+    poses = support.content(ob).cuts[0].poses
+    lean = np.radians(30)
+    # Turned about +X by the right hand: +Z goes to -Y.
+    assert np.allclose(poses[0, 3:], (0, 0, 1)) and np.allclose(poses[-1, 3:], (0, -np.sin(lean), np.cos(lean)))
+    assert np.allclose(poses[-1, :3], np.array((30, 15, 20)) - poses[-1, 3:])
+
+
+def test_the_surface_normal_stands_on_the_sculpt():
+    support.scale(1)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48, radius=20)
+    bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz")
+    ob = bpy.context.object
+    angle = np.linspace(0, 1, 9)
+    arc = 23 * np.c_[np.sin(angle), 0 * angle, np.cos(angle)]
+    c = support.curve("Arc", arc, mm_per_unit=1)
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=1, axis="NORMAL", follow=True, tool=support.BALL)
+    poses = support.content(ob).cuts[0].poses
+    radial = poses[:, :3] / np.linalg.norm(poses[:, :3], axis=1, keepdims=True)
+    assert len(poses) > 30
+    assert np.abs(np.linalg.norm(poses[:, :3], axis=1) - 19).max() < 0.3
+    assert np.degrees(np.arccos(np.clip((poses[:, 3:] * radial).sum(axis=1), -1, 1))).max() < 6
+
+
+def test_every_spline_is_a_cut():
+    support.scale(1)
+    ob = support.stock()
+    c = support.curve("Two", [(10, 10, 20), (30, 10, 20)], mm_per_unit=1)
+    spline = c.data.splines.new("BEZIER")
+    spline.bezier_points.add(1)
+    for k, point in enumerate(spline.bezier_points):
+        point.co = (10 + 20 * k, 20, 20)
+        point.handle_left = point.handle_right = (20, 25, 20)
+    bpy.context.view_layer.update()
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=1, tool=support.BALL)
+    cuts = support.content(ob).cuts
+    assert len(cuts) == 2 and cuts[0].moves == 1 and cuts[1].moves > 10
+    assert (ob.data.riffler.cuts, ob.data.riffler.moves) == (2, 1 + cuts[1].moves)
+
+
+def test_the_scenes_tool_is_used_and_kept_with_the_cut():
+    support.scale(1)
+    ob = support.stock()
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    bpy.ops.riffler.tool_preset(name="V-bit 90°")
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=2)
+    assert support.content(ob).cuts[0].tool["name"] == "V-bit 90°"
+    # a groove of 90° and depth d has the section d², and cones at both ends
+    removed = 24000 - support.content(ob).volume.volume
+    assert abs(removed / (20 * 4 + np.pi * 8 / 3) - 1) < 0.05, removed
+
+
+def test_the_mesh_shows_the_cut():
+    support.scale(1)
+    ob = support.stock(pitch=0.25, directions="xyz")
+    c = support.curve("Line", [(-10, 15, 20), (50, 15, 20)], mm_per_unit=1)
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=2, tool=support.FLAT)
+    bpy.context.view_layer.update()
+    hit, place, normal, _ = ob.ray_cast((20, 15, 100), (0, 0, -1))
+    assert hit and abs(place.z - 18) < 1e-3 and normal.z > 0.999
+    hit, place, _, _ = ob.ray_cast((20, 5, 100), (0, 0, -1))
+    assert hit and abs(place.z - 20) < 1e-3
+    assert np.allclose(ob.dimensions, (40, 30, 20), atol=1e-4)
+
+
+def test_one_undo_step_takes_back_mesh_and_volume_together():
+    support.scale(1)
+    name = support.stock().name
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1).name
+    states = [state(name)]
+    support.push("stock")
+    for depth in (1, 2, 3):
+        bpy.ops.riffler.cut_curve("EXEC_DEFAULT", True, curve=c, depth=depth, tool=support.FLAT)
+        states.append(state(name))
+    assert len({s[2] for s in states}) == 4
+    for cached in (True, False):
+        for k in (2, 1, 0, 1, 2, 3):
+            bpy.ops.ed.undo() if k < 3 and current(name, states) > k else bpy.ops.ed.redo()
+            if not cached:
+                support.part("bl.store").clear_cache()
+            agree(state(name), states[k])
+
+
+def state(name):
+    ob = bpy.data.objects[name]
+    content = support.content(ob)
+    return support.coordinates(ob.data).copy(), support.shape(content.volume), content.volume.volume, len(content.cuts)
+
+
+def current(name, states):
+    return len(support.content(bpy.data.objects[name]).cuts)
+
+
+def agree(a, b):
+    assert np.array_equal(a[0], b[0]) and support.same(a[1], b[1]) and a[2:] == b[2:]
+
+
+def test_a_cut_after_undo_starts_from_the_undone_state():
+    support.scale(1)
+    name = support.stock().name
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1).name
+    support.push("stock")
+    bpy.ops.riffler.cut_curve("EXEC_DEFAULT", True, curve=c, depth=3, tool=support.FLAT)
+    bpy.ops.ed.undo()
+    bpy.ops.riffler.cut_curve("EXEC_DEFAULT", True, curve=c, depth=1, tool=support.FLAT)
+    removed = 24000 - support.content(bpy.data.objects[name]).volume.volume
+    assert abs(removed / slot(20, 6, 1) - 1) < 0.05, removed
+
+
+def test_what_is_refused_changes_nothing():
+    support.scale(1)
+    ob = support.stock()
+    key, co = support.part("bl.store").identity(ob.data), support.coordinates(ob.data)
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve="nobody"), "nobody")
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve=""), "curve")
+    for tool, word in (("{", "xpecting"), ("[]", "JSON"), ('{"kind": "spoon"}', "spoon")):
+        support.refused(lambda t=tool: bpy.ops.riffler.cut_curve(curve=c.name, tool=t), word)
+    bad = json.dumps({"kind": "ball", "diameter": -1, "length": 3})
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve=c.name, tool=bad), "diameter")
+    dot = support.curve("Dot", [(1, 1, 1)], mm_per_unit=1)
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve=dot.name), "Dot")
+    assert support.part("bl.store").identity(ob.data) == key
+    assert np.array_equal(support.coordinates(ob.data), co)
+
+
+def test_a_cut_into_air_warns_and_counts():
+    support.scale(1)
+    ob = support.stock()
+    c = support.curve("Line", [(10, 15, 90), (30, 15, 90)], mm_per_unit=1)
+    assert bpy.ops.riffler.cut_curve(curve=c.name, depth=1, tool=support.BALL) == {"FINISHED"}
+    assert support.content(ob).volume.volume == 24000 and ob.data.riffler.cuts == 1
+
+
+def test_all_of_it_can_go():
+    support.scale(1)
+    ob = support.stock(size=(4, 4, 4))
+    c = support.curve("Line", [(-4, 2, 0), (8, 2, 0)], mm_per_unit=1)
+    tool = '{"kind": "flat", "diameter": 12.0, "length": 30.0}'
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=1, tool=tool)
+    assert support.content(ob).volume.volume == 0 and len(ob.data.polygons) == 0
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve=c.name, axis="NORMAL", tool=tool), "surface")

@@ -1,0 +1,146 @@
+"""STL in millimetres whatever the scene says, NC code, recordings."""
+
+from pathlib import Path
+
+import bpy
+import mathutils
+import numpy as np
+import support
+
+
+def cut_stock(unit, directions="z"):
+    support.scale(unit)
+    ob = support.stock(directions=directions)
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=unit)
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=2, tool=support.BALL)
+    bpy.context.view_layer.objects.active = ob
+    return ob
+
+
+def test_stl_is_in_mm_whatever_the_scene_units_are():
+    for unit, system in ((1000.0, "METRIC"), (1.0, "METRIC"), (10.0, "METRIC"), (304.8, "IMPERIAL"), (1.0, "NONE")):
+        bpy.ops.wm.read_homefile()
+        bpy.context.scene.unit_settings.system = system
+        ob = cut_stock(unit)
+        path = support.out("units.stl")
+        bpy.ops.riffler.export_stl(filepath=path)
+        v = support.read_stl(path).reshape(-1, 3)
+        assert np.allclose(v.min(0), 0, atol=1e-4) and np.allclose(v.max(0), (40, 30, 20), atol=1e-4), (unit, v.max(0))
+        # One direction of rays: walls lie within h / 2.
+        assert abs(support.stl_volume(path) / support.content(ob).volume.volume - 1) < 0.03
+
+
+def test_the_objects_transform_is_applied():
+    unit = 10.0
+    ob = cut_stock(unit)
+    ob.matrix_world = mathutils.Matrix.LocRotScale(
+        mathutils.Vector((1, 2, 3)), mathutils.Euler((0, 0, np.pi / 2)), mathutils.Vector((2, 1, 1))
+    ) if hasattr(mathutils.Matrix, "LocRotScale") else ob.matrix_world
+    bpy.context.view_layer.update()
+    path = support.out("placed.stl")
+    bpy.ops.riffler.export_stl(filepath=path)
+    v = support.read_stl(path).reshape(-1, 3)
+    assert np.allclose(v.min(0), (10 - 30, 20, 30), atol=1e-3), v.min(0)
+    assert np.allclose(v.max(0), (10, 20 + 80, 50), atol=1e-3), v.max(0)
+    bpy.ops.riffler.export_stl(filepath=path, world=False)
+    assert np.allclose(support.read_stl(path).reshape(-1, 3).max(0), (40, 30, 20), atol=1e-4)
+
+
+def test_a_mirrored_object_is_exported_outward():
+    ob = cut_stock(1.0)
+    ob.scale = (-1, 1, 1)
+    bpy.context.view_layer.update()
+    path = support.out("mirrored.stl")
+    bpy.ops.riffler.export_stl(filepath=path)
+    assert support.stl_volume(path) > 22000
+
+
+def test_the_stl_is_closed():
+    for directions in ("z", "xyz"):
+        bpy.ops.wm.read_homefile()
+        cut_stock(1000.0, directions)
+        path = support.out("closed.stl")
+        bpy.ops.riffler.export_stl(filepath=path)
+        corners, index = np.unique(support.read_stl(path).astype("<f4").reshape(-1, 3), axis=0, return_inverse=True)
+        tri = index.reshape(-1, 3)
+        assert len(np.unique(np.sort(tri, axis=1), axis=0)) == len(tri)
+        edges = np.concatenate([tri[:, [0, 1]], tri[:, [1, 2]], tri[:, [2, 0]]]).astype(np.int64)
+        forward = edges[:, 0] * len(corners) + edges[:, 1]
+        backward = edges[:, 1] * len(corners) + edges[:, 0]
+        assert len(np.unique(forward)) == len(forward)
+        assert np.array_equal(np.sort(forward), np.sort(backward))
+
+
+def test_a_changed_scene_scale_changes_what_is_exported_and_is_said():
+    ob = cut_stock(1000.0)
+    support.scale(1)
+    path = support.out("shrunk.stl")
+    bpy.ops.riffler.export_stl(filepath=path)  # as shown: 0.04 units of 1 mm
+    assert np.allclose(support.read_stl(path).reshape(-1, 3).max(0), (0.04, 0.03, 0.02), rtol=1e-4)
+    bpy.ops.riffler.rebuild()
+    bpy.ops.riffler.export_stl(filepath=path)
+    assert np.allclose(support.read_stl(path).reshape(-1, 3).max(0), (40, 30, 20), rtol=1e-4)
+    assert np.allclose(ob.dimensions, (40, 30, 20), rtol=1e-4)
+
+
+def test_a_path_that_cannot_be_written_is_named():
+    cut_stock(1.0)
+    support.refused(lambda: bpy.ops.riffler.export_stl(filepath="/nowhere/at/all.stl"), "nowhere")
+
+
+def numbers(path, letter):
+    import re
+
+    text = re.sub(r"\(.*?\)|;.*", "", Path(path).read_text())
+    return [float(m) for m in re.findall(rf"{letter}(-?[\d.]+)", text)]
+
+
+def test_nc_of_the_cuts():
+    for post in ("3-axis", "tcp"):
+        bpy.ops.wm.read_homefile()
+        cut_stock(1.0)
+        path = support.out(f"cut-{post}.ngc")
+        bpy.ops.riffler.export_nc(filepath=path, post=post, feed=450, spindle=9000)
+        text = Path(path).read_text()
+        assert "G21" in text and ("M2" in text or "M30" in text)
+        assert {10.0, 30.0} <= set(numbers(path, "X")) and 18.0 in numbers(path, "Z")
+        assert 450.0 in numbers(path, "F") and 9000.0 in numbers(path, "S")
+
+
+def test_nc_needs_cuts_and_upright_tools_for_three_axes():
+    support.scale(1)
+    support.stock()
+    path = Path(support.out("none.ngc"))
+    path.unlink(missing_ok=True)
+    support.refused(lambda: bpy.ops.riffler.export_nc(filepath=str(path)), "no cuts")
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1, tilt=[0.3, 0.3])
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=1, axis="TILT", tool=support.BALL)
+    support.refused(lambda: bpy.ops.riffler.export_nc(filepath=str(path), post="3-axis"))
+    assert not path.exists()
+    bpy.ops.riffler.export_nc(filepath=str(path), post="tcp")
+    assert path.exists()
+
+
+def test_a_recording_makes_the_same_sculpt_again():
+    ob = cut_stock(1.0)
+    c = support.curve("Other", [(10, 5, 20), (30, 25, 18)], mm_per_unit=1, tilt=[0.2, -0.2])
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=1, axis="TILT", tool=support.FLAT)
+    path = support.out("strokes.rjournal")
+    bpy.ops.riffler.export_recording(filepath=path)
+    first = support.content(ob)
+    again = support.stock()
+    bpy.ops.riffler.cut_recording(filepath=path)
+    second = support.content(again)
+    assert support.same(support.shape(first.volume), support.shape(second.volume))
+    assert [c.tool for c in first.cuts] == [c.tool for c in second.cuts]
+    assert all(np.array_equal(a.poses, b.poses) for a, b in zip(first.cuts, second.cuts, strict=True))
+
+
+def test_what_is_no_recording_is_named():
+    support.scale(1)
+    ob = support.stock()
+    path = Path(support.out("bad.rjournal"))
+    path.write_bytes(b"hello")
+    support.refused(lambda: bpy.ops.riffler.cut_recording(filepath=str(path)), "bad.rjournal")
+    support.refused(lambda: bpy.ops.riffler.cut_recording(filepath=str(path) + "x"), "bad.rjournalx")
+    assert support.content(ob).volume.volume == 24000

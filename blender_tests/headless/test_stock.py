@@ -1,0 +1,119 @@
+"""New stock: sizes in every unit, objects as material, and what is refused."""
+
+import bpy
+import numpy as np
+import support
+
+
+def test_a_block_has_its_size_in_mm_in_any_scene():
+    for unit in (1000.0, 1.0, 10.0, 25.4):
+        support.scale(unit)
+        ob = support.stock(size=(40, 30, 20), pitch=0.5)
+        volume = support.content(ob).volume
+        assert np.array_equal(volume.upper - volume.lower, (40, 30, 20))
+        assert volume.volume == 24000
+        assert np.allclose(np.array(ob.dimensions) * unit, (40, 30, 20), rtol=1e-5), (unit, ob.dimensions[:])
+
+
+def test_the_mesh_is_closed_and_encloses_the_block():
+    for directions in ("z", "xyz"):
+        support.scale(1)
+        ob = support.stock(size=(10, 8, 6), pitch=0.5, directions=directions)
+        ob.data.calc_loop_triangles()
+        tri = np.array([t.vertices[:] for t in ob.data.loop_triangles])
+        assert abs(support.mesh_volume(support.coordinates(ob.data), tri) - 480) < 5, directions
+        edges = np.sort(np.concatenate([tri[:, [0, 1]], tri[:, [1, 2]], tri[:, [2, 0]]]), axis=1)
+        assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+        assert not ob.data.validate()
+
+
+def test_origins():
+    support.scale(1)
+    for origin, lower in (("CORNER", (0, 0, 0)), ("TOP", (-20, -15, -20)), ("CENTRE", (-20, -15, -10))):
+        ob = support.stock(origin=origin)
+        assert np.array_equal(support.content(ob).volume.lower, lower)
+    bpy.context.scene.cursor.location = (1, 2, 3)
+    assert support.stock().location[:] == (1, 2, 3)
+
+
+def test_the_new_sculpt_is_active_and_alone_selected():
+    a = support.stock()
+    b = support.stock()
+    assert bpy.context.object == b and bpy.context.selected_objects == [b]
+    assert a.data != b.data
+
+
+def test_an_object_becomes_material_with_its_modifiers_scale_and_place():
+    support.scale(1000)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.02, location=(0.5, 0.2, 0.1))
+    sphere = bpy.context.object
+    sphere.rotation_euler = (0.3, 0.2, 0.1)
+    sphere.scale = (1, 1, 0.5)
+    array = sphere.modifiers.new("two", "ARRAY")
+    array.use_relative_offset, array.use_constant_offset = False, True
+    array.constant_offset_displace = (0.1, 0, 0)
+    bpy.context.view_layer.update()
+    bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="z")
+    ob = bpy.context.object
+    volume = support.content(ob).volume
+    ideal = 2 * 4 / 3 * np.pi * 20**3 * 0.5
+    assert abs(volume.volume / ideal - 1) < 0.01, volume.volume
+    assert np.allclose(volume.upper - volume.lower, (140, 40, 20), atol=0.5)
+    assert np.allclose(ob.scale, 1) and np.allclose(ob.location, (0.5, 0.2, 0.1))
+    assert np.allclose(ob.rotation_euler, (0.3, 0.2, 0.1), atol=1e-6)
+    assert sphere.hide_get()
+
+
+def test_a_mirrored_object_is_material_too():
+    support.scale(1)
+    bpy.ops.mesh.primitive_cube_add(size=10)
+    bpy.context.object.scale = (-1, 1, 1)
+    bpy.context.view_layer.update()
+    bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="z")
+    assert abs(support.content(bpy.context.object).volume.volume - 1000) < 1e-6
+
+
+def test_what_is_refused_changes_nothing():
+    before = len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.images)
+    bpy.ops.mesh.primitive_plane_add(size=0.01)
+    plane = bpy.context.object
+    support.refused(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5))
+    assert not plane.hide_get()
+    bpy.data.objects.remove(plane)
+    bpy.context.view_layer.objects.active = None
+    support.refused(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5), "Select the object")
+    support.refused(lambda: support.stock(size=(1e5, 1e5, 1e5), pitch=0.001, directions="xyz"))
+    assert (len(bpy.data.objects), len(bpy.data.meshes) - 1, len(bpy.data.images)) == before
+
+
+def test_fit_pitch():
+    stock = bpy.context.scene.riffler.stock
+    stock.size = (100, 60, 30)
+    bpy.ops.riffler.fit_pitch()
+    assert np.isclose(stock.pitch, 0.25)
+
+
+def test_scene_in_millimetres_keeps_the_sculpts_size():
+    support.scale(1000)
+    ob = support.stock(size=(40, 30, 20))
+    assert np.allclose(ob.dimensions, (0.04, 0.03, 0.02))
+    bpy.ops.riffler.millimetres()
+    assert np.allclose(ob.dimensions, (40, 30, 20)), ob.dimensions
+    assert support.content(ob).volume.volume == 24000
+
+
+def test_every_preset_makes_a_tool():
+    import riffler
+
+    presets = support.part("core.presets").presets()
+    assert len({p["name"] for p in presets}) == len(presets)
+    tool = bpy.context.scene.riffler.tool
+    for preset in presets:
+        bpy.ops.riffler.tool_preset(name=preset["name"])
+        assert tool.from_preset() == preset, preset
+        made = riffler.Tool.from_dict(tool.dictionary())
+        assert made.name == preset["name"]
+        assert {k: v for k, v in made.to_dict().items() if k in preset} == preset
+    tool.diameter = 5.5
+    assert tool.from_preset() is None
+    assert riffler.Tool.from_dict(tool.dictionary()).diameter == 5.5

@@ -1,0 +1,233 @@
+"""Tests of the add-on in every Blender of this machine, headless and in a window.
+
+    python blender_tests/run.py                       everything
+    python blender_tests/run.py --only test_cut       tests whose name contains the text
+    python blender_tests/run.py --blender 4.5 --mode source --no-window
+
+Each (Blender, way of installing) is one process with a time limit. Ways of installing: the source folder, and the zips
+that users get (extension from 4.2 on, legacy before), built here from the wheel. Ends with the number of tests that
+passed, failed and were skipped, with reasons; exit code 1 if one failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import zipfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import environments
+from environments import ROOT, Environment
+
+HERE = Path(__file__).resolve().parent
+MARK = "RIFFLER_TEST "
+sys.path.insert(0, str(ROOT / "addon"))
+import package  # noqa: E402 (the zips are built by what builds them for users)
+
+
+@dataclass
+class Tally:
+    passed: int = 0
+    failed: list[str] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
+
+    def add(self, where: str, result: dict) -> None:
+        name, outcome = f"{where}: {result['name']}", result["outcome"]
+        note = ""
+        if outcome == "passed":
+            self.passed += 1
+        elif outcome == "skipped":
+            self.skipped.append(f"{name}: {result['message']}")
+            note = f"  {result['message']}"
+        else:
+            self.failed.append(name)
+            note = "\n" + "\n".join("      " + line for line in result["message"].rstrip().splitlines())
+        print(f"  {outcome:8}{result['seconds']:7.2f} s  {result['name']}{note}", flush=True)
+
+    def skip(self, what: str, reason: str) -> None:
+        self.skipped.append(f"{what}: {reason}")
+        print(f"{what}\n  skipped  {reason}", flush=True)
+
+
+@dataclass
+class Bench:
+    """What all runs share: the native package to import, the zips, a folder for what is written."""
+
+    paths: list[str]
+    zips: dict[str, str]
+    out: Path
+    only: str
+    timeout: float
+    tally: Tally
+
+    def run(self, environment: Environment, mode: str, files: list[Path], more: dict | None = None) -> None:
+        """One process; every result it prints counts, and a test that was begun and never ended has failed."""
+        where = f"{environment.name}, {mode}"
+        print(where, flush=True)
+        with tempfile.TemporaryDirectory() as resources:
+            job = {
+                "mode": mode,
+                "zip": self.zips.get(mode, ""),
+                "files": [str(f) for f in files],
+                "paths": self.paths if mode in ("source", "none") else [],
+                "out": str(self.out / where.replace(", ", "-").replace(" ", "-")),
+                "repo": str(ROOT),
+                "only": self.only,
+                **(more or {}),
+            }
+            path = Path(resources) / "job.json"
+            path.write_text(json.dumps(job))
+            variables = {
+                "RIFFLER_TEST_JOB": str(path),
+                "BLENDER_USER_RESOURCES": resources,
+                "BLENDER_USER_SCRIPTS": str(Path(resources) / "scripts"),
+            }
+            (Path(resources) / "scripts" / "addons").mkdir(parents=True)
+            done = environment.run(HERE / "harness.py", variables, self.timeout)
+        self._judge(where, done)
+
+    def _judge(self, where: str, done: subprocess.CompletedProcess) -> None:
+        begun, fine = None, True
+        for line in done.stdout.splitlines():
+            if not line.startswith(MARK):
+                continue
+            message = json.loads(line[len(MARK) :])
+            if "start" in message:
+                begun = message["start"]
+            elif "figure" in message:
+                print(f"  figure            {message['figure']}: {message['value']}", flush=True)
+                self.figures.append({"where": where, **message})
+            else:
+                self.tally.add(where, message)
+                fine &= message["outcome"] != "failed"
+                begun = None
+        if begun or (done.returncode != 0 and fine):
+            why = f"time limit of {self.timeout:.0f} s" if done.returncode == 124 else f"exit code {done.returncode}"
+            tail = "\n".join(done.stdout.splitlines()[-25:])
+            self.tally.add(where, {"name": begun or "process", "outcome": "failed", "seconds": 0, "message": f"{why}\n{tail}"})
+
+    figures: list[dict] = field(default_factory=list)
+
+
+def native_paths(wheel: Path | None, folder: Path) -> list[str]:
+    """Where `import riffler` finds the core in runs from source: the unpacked wheel, or a developer's build."""
+    if wheel is None:
+        return [str(ROOT / "native" / "python")]
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(folder)
+    return [str(folder)]
+
+
+def newest_wheel() -> Path | None:
+    found = [w for place in ("build/wheel", "dist") for w in (ROOT / place).glob("riffler-*.whl")]
+    return max(found, key=lambda w: w.stat().st_mtime, default=None)
+
+
+def core_tests(tally: Tally, only: str) -> None:
+    """What needs no Blender, by pytest in this Python."""
+    print("plain Python", flush=True)
+    report = Path(tempfile.mkdtemp()) / "report.xml"
+    command = [sys.executable, "-m", "pytest", str(HERE / "core"), "-q", "-p", "no:cacheprovider", f"--junitxml={report}"]
+    done = environments.execute([*command, *(["-k", only] if only else [])], {"PYTHONPATH": str(ROOT)}, 300)
+    from xml.etree import ElementTree
+
+    cases = list(ElementTree.parse(report).iter("testcase")) if report.exists() else []
+    if not cases and not only:
+        message = done.stdout
+        tally.add("plain Python", {"name": "pytest", "outcome": "failed", "seconds": 0, "message": message})
+    for case in cases:
+        problem = next((c for c in case if c.tag in ("failure", "error", "skipped")), None)
+        outcome = "passed" if problem is None else "skipped" if problem.tag == "skipped" else "failed"
+        message = "" if problem is None else (problem.get("message") if outcome == "skipped" else problem.text)
+        name = f"{case.get('classname').split('.')[-1]}.{case.get('name')}"
+        tally.add("plain Python", {"name": name, "outcome": outcome, "seconds": float(case.get("time")), "message": message})
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="text in the test's name")
+    parser.add_argument("--blender", default="", help="text in the Blender's name, as 4.5")
+    parser.add_argument("--mode", choices=("source", "extension", "legacy"), help="one way of installing only")
+    parser.add_argument("--wheel", type=Path, help="default: the newest in build/wheel or dist")
+    parser.add_argument("--no-window", action="store_true", help="headless only")
+    parser.add_argument("--figures", action="store_true", help="also measure; writes out/blender/figures.json")
+    parser.add_argument("--timeout", type=float, default=300, help="seconds for one process")
+    arguments = parser.parse_args()
+
+    tally = Tally()
+    out = ROOT / "out" / "blender"
+    out.mkdir(parents=True, exist_ok=True)
+    wheel = arguments.wheel or newest_wheel()
+    with tempfile.TemporaryDirectory() as folder:
+        zips = {}
+        if wheel:
+            extension, legacy = package.build([wheel], Path(folder) / "zips")
+            zips = {"extension": str(extension), "legacy": str(legacy)}
+        bench = Bench(native_paths(wheel, Path(folder) / "native"), zips, out, arguments.only, arguments.timeout, tally)
+        if not arguments.blender and not arguments.mode:
+            core_tests(tally, arguments.only)
+        headless(bench, arguments)
+        if not arguments.no_window and arguments.mode in (None, "source"):
+            windowed(bench, arguments)
+    if bench.figures:
+        (out / "figures.json").write_text(json.dumps(bench.figures, indent=1) + "\n")
+    return close(tally)
+
+
+def headless(bench: Bench, arguments) -> None:
+    files = sorted((HERE / "headless").glob("test_*.py"))
+    usable = []
+    for environment in environments.find():
+        if arguments.blender not in environment.name:
+            continue
+        if environment.missing:
+            bench.tally.skip(environment.name, environment.missing)
+            continue
+        usable.append(environment)
+        for mode in ("source", "extension" if environment.extensions else "legacy"):
+            if arguments.mode not in (None, mode):
+                continue
+            if mode != "source" and mode not in bench.zips:
+                bench.tally.skip(f"{environment.name}, {mode}", "no wheel in build/wheel or dist to make the zip from")
+                continue
+            bench.run(environment, mode, files)
+        if arguments.mode in (None, "source"):
+            bench.run(environment, "none", [HERE / "broken" / "test_fallback.py"])
+            if arguments.figures:
+                bench.run(environment, "source", [HERE / "figures.py"], {"only": ""})
+    if len(usable) > 1 and arguments.mode in (None, "source"):
+        with tempfile.TemporaryDirectory() as chain:
+            for environment in usable:
+                bench.run(environment, "source", [HERE / "chain" / "test_chain.py"], {"chain": chain})
+
+
+def windowed(bench: Bench, arguments) -> None:
+    import window
+
+    application = environments.application()
+    if arguments.blender not in application.name:
+        return
+    if reason := application.missing or window.missing():
+        bench.tally.skip("window", reason)
+        return
+    for script in sorted((HERE / "window").glob("window_*.py")):
+        if arguments.only in script.stem:
+            window.run(bench, application, script)
+
+
+def close(tally: Tally) -> int:
+    print(f"\n{tally.passed} passed, {len(tally.failed)} failed, {len(tally.skipped)} skipped")
+    for line in tally.failed:
+        print(f"  failed   {line}")
+    for line in tally.skipped:
+        print(f"  skipped  {line}")
+    return 1 if tally.failed or not tally.passed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
