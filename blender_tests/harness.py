@@ -25,7 +25,7 @@ def say(**message):
     print(MARK + json.dumps(message), flush=True)
 
 
-class Skip(Exception):
+class Skip(Exception):  # noqa: N818 (it is no error)
     """Raised by a test that cannot run here; its text is the reason."""
 
 

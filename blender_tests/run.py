@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import subprocess
 import sys
 import tempfile
@@ -94,9 +93,11 @@ class Bench:
     def _judge(self, where: str, done: subprocess.CompletedProcess) -> None:
         begun, fine = None, True
         for line in done.stdout.splitlines():
-            if not line.startswith(MARK):
+            # Blender may leave an unfinished line of its own before ours
+            _, mark, text = line.partition(MARK)
+            if not mark:
                 continue
-            message = json.loads(line[len(MARK) :])
+            message = json.loads(text)
             if "start" in message:
                 begun = message["start"]
             elif "figure" in message:
@@ -109,7 +110,9 @@ class Bench:
         if begun or (done.returncode != 0 and fine):
             why = f"time limit of {self.timeout:.0f} s" if done.returncode == 124 else f"exit code {done.returncode}"
             tail = "\n".join(done.stdout.splitlines()[-25:])
-            self.tally.add(where, {"name": begun or "process", "outcome": "failed", "seconds": 0, "message": f"{why}\n{tail}"})
+            self.tally.add(
+                where, {"name": begun or "process", "outcome": "failed", "seconds": 0, "message": f"{why}\n{tail}"}
+            )
 
     figures: list[dict] = field(default_factory=list)
 
@@ -132,7 +135,16 @@ def core_tests(tally: Tally, only: str) -> None:
     """What needs no Blender, by pytest in this Python."""
     print("plain Python", flush=True)
     report = Path(tempfile.mkdtemp()) / "report.xml"
-    command = [sys.executable, "-m", "pytest", str(HERE / "core"), "-q", "-p", "no:cacheprovider", f"--junitxml={report}"]
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        str(HERE / "core"),
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        f"--junitxml={report}",
+    ]
     done = environments.execute([*command, *(["-k", only] if only else [])], {"PYTHONPATH": str(ROOT)}, 300)
     from xml.etree import ElementTree
 
@@ -145,7 +157,9 @@ def core_tests(tally: Tally, only: str) -> None:
         outcome = "passed" if problem is None else "skipped" if problem.tag == "skipped" else "failed"
         message = "" if problem is None else (problem.get("message") if outcome == "skipped" else problem.text)
         name = f"{case.get('classname').split('.')[-1]}.{case.get('name')}"
-        tally.add("plain Python", {"name": name, "outcome": outcome, "seconds": float(case.get("time")), "message": message})
+        tally.add(
+            "plain Python", {"name": name, "outcome": outcome, "seconds": float(case.get("time")), "message": message}
+        )
 
 
 def main() -> int:

@@ -7,8 +7,8 @@ from ..core.curves import Spline
 
 
 def splines(curve, depsgraph, to_stock):
-    """The splines of a curve object (shape keys and the like applied), control points mapped by `to_stock` (4, 4): from
-    the object's Blender units to millimetres in the stock's frame. Hidden splines are left out."""
+    """The splines of a curve object as its control points have them (no modifiers, no shape keys), mapped by `to_stock`
+    (4, 4): from the object's Blender units to millimetres in the stock's frame. Hidden splines are left out."""
     out = []
     for s in curve.evaluated_get(depsgraph).data.splines:
         if s.hide:
@@ -42,6 +42,11 @@ def splines(curve, depsgraph, to_stock):
             )
         )
     return out
+
+
+def deformed(curve):
+    """True where the curve that is seen is not the one that its control points say."""
+    return bool(curve.data.shape_keys) or any(m.show_viewport for m in curve.modifiers)
 
 
 def _column(points, name, width=1):

@@ -1,8 +1,8 @@
 """The sculpt's data inside the .blend: a packed image that the mesh points to.
 
 Of all datablocks that hold bytes, a packed image is the one that survives every version, undo, save and reopening
-without being doubled or cut short. The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and volume as
-one thing, and it goes when the mesh goes. A copy of a mesh shares the image until one of the two is written.
+without being doubled or cut short. The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and
+volume as one thing, and it goes when the mesh goes. A copy of a mesh shares the image until one of the two is written.
 """
 
 import bpy

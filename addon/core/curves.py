@@ -47,8 +47,7 @@ def evaluate(spline: Spline, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
     elif spline.kind == "NURBS":
         points, tilt = _nurbs(spline, points, tilt, tolerance)
     elif spline.kind == "POLY":
-        if spline.cyclic and len(points) > 2:
-            points, tilt = np.vstack([points, points[:1]]), np.append(tilt, tilt[0])
+        points, tilt = _poly(spline, points, tilt)
     else:
         raise ValueError(f"a spline of type {spline.kind} cannot be cut along")
     keep = distinct(points)
@@ -60,6 +59,12 @@ def distinct(points: np.ndarray) -> np.ndarray:
     keep = np.ones(len(points), bool)
     keep[1:] = np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9
     return keep
+
+
+def _poly(spline, p, tilt):
+    if spline.cyclic and len(p) > 2:
+        return np.vstack([p, p[:1]]), np.append(tilt, tilt[0])
+    return p, tilt
 
 
 def _bezier(spline, p, tilt, tolerance):
@@ -131,16 +136,16 @@ def basis(u: np.ndarray, knot: np.ndarray, order: int) -> np.ndarray:
 def _nurbs(spline, p, tilt, tolerance):
     """Halves parameter steps until every new midpoint lies within `tolerance` of its chord."""
     count, order = len(p), min(int(spline.order), len(p))
-    if count < 2 or (spline.cyclic and count < 3):
-        return p, tilt
+    odd = spline.bezier and spline.cyclic and count % max(order - 1, 1)
+    short = spline.bezier and not spline.endpoint and count <= order
+    if order < 2 or odd or short:  # Blender shows the control polygon in these cases
+        return _poly(spline, p, tilt)
     weights = np.ones(count) if spline.weights is None else np.asarray(spline.weights, float)
     if not (weights > 0).all():
         raise ValueError("a NURBS point has a weight that is not positive")
     knot = knots(count, order, spline.cyclic, spline.endpoint, spline.bezier)
     wrap = np.arange(count + (order - 1 if spline.cyclic else 0)) % count
     lower, upper = knot[order - 1], knot[count + order - 1 if spline.cyclic else count]
-    if not upper > lower:
-        raise ValueError(f"a NURBS spline of {count} points is too short for order {order}")
 
     def at(u):
         b = basis(u, knot, order)[:, : len(wrap)] * weights[wrap]

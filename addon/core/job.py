@@ -14,6 +14,7 @@ class Cut:
 
     tool: dict  # the form of riffler.Tool.to_dict
     poses: np.ndarray  # (n, 6) tip and axis, mm, stock's frame
+    tolerance: float = 0.01  # mm, as carve is given it
 
     @property
     def moves(self) -> int:
@@ -24,7 +25,7 @@ class CutJob:
     """Carves `cuts` from `volume` in slices. `step` until it returns True; `cancel` at any time before restores the
     volume as it was; so does any error."""
 
-    def __init__(self, volume, cuts, make_tool, tolerance: float = 0.01, clock=time.perf_counter):
+    def __init__(self, volume, cuts, make_tool, clock=time.perf_counter):
         if not cuts or not all(c.moves > 0 for c in cuts):
             raise ValueError("nothing to cut: a cut needs two poses")
         self.volume = volume
@@ -33,7 +34,6 @@ class CutJob:
         self.done = 0
         self.removed = 0.0
         self._tools = [make_tool(c.tool) for c in self.cuts]
-        self._tolerance = tolerance
         self._clock = clock
         self._snapshot = volume.snapshot()
         self._cut = self._move = 0
@@ -74,7 +74,7 @@ class CutJob:
         begin = self._clock()
         try:
             result = self.volume.carve(
-                self._tools[self._cut], cut.poses[self._move : last + 1], tolerance=self._tolerance
+                self._tools[self._cut], cut.poses[self._move : last + 1], tolerance=cut.tolerance
             )
         except Exception:
             self.cancel()

@@ -25,7 +25,8 @@ def content_id(block: bytes) -> str:
 
 
 def encode(volume: bytes, cuts: list[Cut]) -> bytes:
-    header = {"volume": len(volume), "cuts": [{"tool": c.tool, "rows": len(c.poses)} for c in cuts]}
+    rows = [{"tool": c.tool, "tolerance": c.tolerance, "rows": len(c.poses)} for c in cuts]
+    header = {"volume": len(volume), "cuts": rows}
     text = json.dumps(header, separators=(",", ":"), ensure_ascii=False).encode()
     poses = [np.ascontiguousarray(c.poses, "<f8").tobytes() for c in cuts]
     return b"".join([_HEAD.pack(MAGIC, VERSION, len(text)), text, volume, *poses])
@@ -53,7 +54,7 @@ def decode(block: bytes, identity: str | None = None) -> tuple[bytes, list[Cut]]
         cuts = []
         for c in header["cuts"]:
             poses = np.frombuffer(block, "<f8", 6 * c["rows"], at).reshape(-1, 6).copy()
-            cuts.append(Cut(c["tool"], poses))
+            cuts.append(Cut(c["tool"], poses, c["tolerance"]))
             at += 48 * c["rows"]
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"the sculpt's data in this .blend is not whole: {error}") from error

@@ -9,11 +9,13 @@ import json
 import time
 
 import bpy
+import numpy as np
 import riffler
 from bpy_extras.io_utils import ImportHelper
 
 from .. import properties
 from ..bl import sculpts, store
+from ..bl.curves import deformed
 from ..core import units
 from ..core.job import CutJob, RefreshClock
 from . import paths, shared
@@ -146,9 +148,8 @@ class CutShell:
     def _start(self, context, ob):
         self._begin = time.perf_counter()
         content = store.content(ob.data)
-        tolerance = units.clean(self.tolerance)
         cuts = self.make_cuts(context, ob)
-        self._job = CutJob(content.volume.copy(), cuts, riffler.Tool.from_dict, tolerance)
+        self._job = CutJob(content.volume.copy(), cuts, riffler.Tool.from_dict)
         self._before = content.cuts
 
     def _finish(self, ob):
@@ -182,6 +183,10 @@ class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator)
             raise ValueError(
                 f"there is no curve object {self.curve!r}" if self.curve else "choose a curve to cut along"
             )
+        if deformed(curve):
+            self.report(
+                {"WARNING"}, f"{curve.name}: modifiers and shape keys are not followed; convert it to a curve first"
+            )
         depth, tolerance = units.clean(self.depth), units.clean(self.tolerance)
         return paths.along_curve(context, ob, curve, self.tool_dict(context), self.axis, depth, self.follow, tolerance)
 
@@ -208,7 +213,6 @@ class RIFFLER_OT_cut_recording(CutShell, bpy.types.Operator, ImportHelper):
     filename_ext = ".rjournal"
     filter_glob: bpy.props.StringProperty(default="*.rjournal", options={"HIDDEN"})
     filepath: bpy.props.StringProperty(name="Recording", subtype="FILE_PATH", options={"SKIP_SAVE"})
-    tolerance: properties.length("Tolerance", 0.01, "Largest distance from the exact sweep, in mm", 1e-5, 10.0)
 
     def invoke(self, context, event):
         if self.filepath:
@@ -218,7 +222,13 @@ class RIFFLER_OT_cut_recording(CutShell, bpy.types.Operator, ImportHelper):
     def make_cuts(self, context, ob):
         if not self.filepath:
             raise ValueError("choose a recording (.rjournal)")
-        return paths.from_recording(bpy.path.abspath(self.filepath))
+        cuts, stock = paths.from_recording(bpy.path.abspath(self.filepath))
+        volume = store.content(ob.data).volume
+        if stock and not (np.allclose(stock["lower"], volume.lower) and np.allclose(stock["upper"], volume.upper)):
+            size = units.format_size(stock["upper"] - stock["lower"])
+            corner = ", ".join(units.trim(x) for x in stock["lower"])
+            self.report({"WARNING"}, f"The recording was made on a stock of {size} from ({corner}), which this is not")
+        return cuts
 
 
 CLASSES = (RIFFLER_OT_cut_curve, RIFFLER_OT_cut_recording)

@@ -9,7 +9,7 @@ from .. import properties
 from ..bl import sculpts, store
 from ..core import poses
 from ..core import units as names
-from . import shared
+from . import paths, shared
 
 
 class Export(ExportHelper):
@@ -72,12 +72,21 @@ class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.ngc;*.nc;*.tap", options={"HIDDEN"})
 
     def write(self, context, ob, path):
-        cuts = store.content(ob.data).cuts
+        content = store.content(ob.data)
+        cuts = content.cuts
         if not cuts:
             raise ValueError(f"{ob.name} has no cuts yet: an NC program is what was cut")
         tools = [riffler.Tool.from_dict(c.tool) for c in cuts]
         feed, spindle = names.clean(self.feed), names.clean(self.spindle)
-        program = riffler.Program.from_cl([c.poses for c in cuts], tools=tools, feed=feed, spindle=spindle)
+        program = riffler.Program.from_cl(
+            [c.poses for c in cuts],
+            tools=tools,
+            feed=feed,
+            spindle=spindle,
+            # retracts clear the stock as it was before the first cut
+            occupied=(content.volume.lower, content.volume.upper),
+            provenance={"stock": ob.name},
+        )
         program.write(path, post=self.post)
         return f"{len(cuts)} cuts, {names.format_count(len(program.poses))} moves"
 
@@ -92,13 +101,11 @@ class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.rjournal", options={"HIDDEN"})
 
     def write(self, context, ob, path):
-        cuts = store.content(ob.data).cuts
+        content = store.content(ob.data)
+        cuts = content.cuts
         if not cuts:
             raise ValueError(f"{ob.name} has no cuts yet")
-        journal = riffler.Journal()
-        for cut in cuts:
-            journal.add_stroke(cut.poses, None, tool=riffler.Tool.from_dict(cut.tool))
-        journal.write(path)
+        paths.to_recording(cuts, content.volume).write(path)
         return f"{len(cuts)} strokes"
 
 

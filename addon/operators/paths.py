@@ -33,16 +33,30 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
             axes = poses.tilted_axes(points, tilt)
         else:  # facets and edges would jerk the tool: turn over about its own width
             axes = poses.smooth_axes(points, normals, size)
-        cuts.append(Cut(tool, poses.make_poses(points, axes, depth)))
+        cuts.append(Cut(tool, poses.make_poses(points, axes, depth), tolerance))
     if not cuts:
         raise ValueError(f"{curve.name} has no spline with two points")
     return cuts
 
 
 def from_recording(path):
-    """The strokes of a recording (.rjournal) as cuts."""
+    """The strokes of a recording (.rjournal) as cuts, and its stock as a dictionary or None."""
     journal = riffler.Journal.read(path)
-    cuts = [Cut(s.tool.to_dict(), s.poses) for s in journal.strokes if len(s.poses) > 1]
+    tools = journal.tools
+    cuts = [Cut(tools[s.tool], s.poses, s.tolerance) for s in journal.strokes if len(s) > 1]
     if not cuts:
         raise ValueError("the recording has no stroke with two poses")
-    return cuts
+    return cuts, journal.stock
+
+
+def to_recording(cuts, volume):
+    """A journal of the cuts on the volume's frame; equal tools share a number."""
+    journal = riffler.Journal()
+    journal.set_stock(volume.lower, volume.upper, volume.pitch, volume.directions)
+    tools = []
+    for cut in cuts:
+        if cut.tool not in tools:
+            tools.append(cut.tool)
+            journal.add_tool(len(tools), cut.tool)
+        journal.add_stroke(tools.index(cut.tool) + 1, cut.poses, tolerance=cut.tolerance)
+    return journal

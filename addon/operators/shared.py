@@ -24,6 +24,5 @@ def deny(cls, message):
 
 def fail(operator, error):
     """One clear message instead of a traceback; the operator is cancelled."""
-    text = str(error) or type(error).__name__
-    operator.report({"ERROR"}, text[0].upper() + text[1:])
+    operator.report({"ERROR"}, str(error) or type(error).__name__)
     return {"CANCELLED"}

@@ -5,6 +5,7 @@ import tempfile
 from pathlib import Path
 
 import bpy
+
 import support
 
 
@@ -44,7 +45,7 @@ def check(source, *words):
 
 
 def test_a_library_that_is_too_old():
-    check("raise ImportError(\"/lib/libc.so.6: version `GLIBC_2.38' not found\")", "GLIBC_2.38", "C library is older")
+    check('raise ImportError("/lib/libc.so.6: version `GLIBC_2.38\' not found")', "GLIBC_2.38", "C library is older")
 
 
 def test_a_broken_binary():

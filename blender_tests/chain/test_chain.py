@@ -4,6 +4,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+
 import support
 
 

@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+
 import support
 
 RNG = np.random.default_rng(7)
@@ -38,7 +39,8 @@ def test_nurbs_of_every_kind():
         for endpoint in (False, True):
             for bezier in (False, True):
                 for order in (3, 4):
-                    points = RNG.uniform(-10, 10, (7 if order == 4 else 9, 3))
+                    count = 4 * (order - 1) + (0 if cyclic else 1)
+                    points = RNG.uniform(-10, 10, (count, 3))
                     ob = support.curve("N", points, mm_per_unit=1, kind="NURBS", cyclic=cyclic)
                     spline = ob.data.splines[0]
                     spline.order_u = order
@@ -73,11 +75,11 @@ def test_bezier():
         assert distance(line, closed) < 0.05
 
 
-def test_shape_keys_count():
-    ob = support.curve("K", [(0, 0, 0), (10, 0, 0)], mm_per_unit=1)
-    ob.shape_key_add(name="Basis")
-    key = ob.shape_key_add(name="Up")
-    key.data[1].co = (10, 0, 5)
-    key.value = 1
-    bpy.context.view_layer.update()
-    assert np.allclose(ours(ob, 0.01)[-1], (10, 0, 5))
+def test_nurbs_that_are_no_curve_are_their_control_polygon():
+    for count, cyclic, bezier in ((7, True, True), (4, False, True), (3, False, False), (2, False, False)):
+        ob = support.curve("N", RNG.uniform(-10, 10, (count, 3)), mm_per_unit=1, kind="NURBS", cyclic=cyclic)
+        ob.data.splines[0].order_u = 4
+        ob.data.splines[0].use_bezier_u = bezier
+        theirs, line = blender_points(ob), ours(ob, 1e-3)
+        assert distance(theirs, line) < 2e-3, (count, cyclic, bezier)
+        assert bezier == (len(line) == count + cyclic), (count, len(line))

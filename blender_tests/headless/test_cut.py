@@ -4,6 +4,7 @@ import json
 
 import bpy
 import numpy as np
+
 import support
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import bpy
 import mathutils
 import numpy as np
+
 import support
 
 
@@ -33,9 +34,13 @@ def test_stl_is_in_mm_whatever_the_scene_units_are():
 def test_the_objects_transform_is_applied():
     unit = 10.0
     ob = cut_stock(unit)
-    ob.matrix_world = mathutils.Matrix.LocRotScale(
-        mathutils.Vector((1, 2, 3)), mathutils.Euler((0, 0, np.pi / 2)), mathutils.Vector((2, 1, 1))
-    ) if hasattr(mathutils.Matrix, "LocRotScale") else ob.matrix_world
+    ob.matrix_world = (
+        mathutils.Matrix.LocRotScale(
+            mathutils.Vector((1, 2, 3)), mathutils.Euler((0, 0, np.pi / 2)), mathutils.Vector((2, 1, 1))
+        )
+        if hasattr(mathutils.Matrix, "LocRotScale")
+        else ob.matrix_world
+    )
     bpy.context.view_layer.update()
     path = support.out("placed.stl")
     bpy.ops.riffler.export_stl(filepath=path)

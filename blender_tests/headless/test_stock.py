@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+
 import support
 
 
@@ -81,7 +82,7 @@ def test_what_is_refused_changes_nothing():
     assert not plane.hide_get()
     bpy.data.objects.remove(plane)
     bpy.context.view_layer.objects.active = None
-    support.refused(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5), "Select the object")
+    support.refused(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5), "select the object")
     support.refused(lambda: support.stock(size=(1e5, 1e5, 1e5), pitch=0.001, directions="xyz"))
     assert (len(bpy.data.objects), len(bpy.data.meshes) - 1, len(bpy.data.images)) == before
 

@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+
 import support
 
 
