@@ -1,0 +1,124 @@
+"""The block in the .blend, the cache, sizes in words, the diagnosis, the zips."""
+
+import numpy as np
+import pytest
+from addon.core import cache, diagnosis, estimate, presets, record, units
+from addon.core.job import Cut
+
+POSES = np.random.default_rng(3).normal(size=(5, 6))
+CUTS = [Cut({"kind": "ball", "name": "Größe 6"}, POSES), Cut({"kind": "flat"}, POSES[:2], 0.001)]
+
+
+def test_round_trip_to_the_bit():
+    block = record.encode(b"\0volume\0", CUTS)
+    volume, cuts = record.decode(block, record.content_id(block))
+    assert volume == b"\0volume\0"
+    assert [c.tool for c in cuts] == [c.tool for c in CUTS]
+    assert [c.tolerance for c in cuts] == [0.01, 0.001]
+    assert all(np.array_equal(a.poses, b.poses) for a, b in zip(cuts, CUTS, strict=True))
+    assert record.decode(record.encode(b"", []))[1] == []
+
+
+def test_equal_content_has_an_equal_id():
+    assert record.encode(b"v", CUTS) == record.encode(b"v", CUTS)
+    assert record.content_id(record.encode(b"v", CUTS)) != record.content_id(record.encode(b"w", CUTS))
+
+
+def test_damage_is_a_value_error():
+    block = record.encode(b"volume", CUTS)
+    key = record.content_id(block)
+    rng = np.random.default_rng(1)
+    for _ in range(300):
+        bad = bytearray(block)
+        bad[rng.integers(len(bad))] ^= 1 << rng.integers(8)
+        with pytest.raises(ValueError, match="damaged"):
+            record.decode(bytes(bad), key)
+    for size in range(len(block)):
+        with pytest.raises(ValueError, match="sculpt's data"):
+            record.decode(block[:size])
+    with pytest.raises(ValueError, match="newer"):
+        record.decode(block[:8] + b"\x02" + block[9:])
+
+
+def test_the_cache_forgets_the_oldest():
+    class Volume:
+        nbytes = 10
+
+    c = cache.ContentCache(count=3, nbytes=1000)
+    for k in "abc":
+        c.put(k, cache.Content(Volume()))
+    assert c.get("a")  # used: now b is the oldest
+    c.put("d", cache.Content(Volume()))
+    assert c.get("b") is None and c.get("a") and len(c) == 3
+    small = cache.ContentCache(nbytes=15)
+    small.put("a", cache.Content(Volume()))
+    small.put("b", cache.Content(Volume()))
+    assert small.get("a") is None and small.get("b")
+
+
+def test_rays_are_counted_as_the_volume_counts_them():
+    assert estimate.ray_count((100, 60, 30), 0.25, "z") == 400 * 240
+    assert estimate.ray_count((100, 60, 30), 0.25, "xyz") == 400 * 240 + 240 * 120 + 120 * 400
+    assert estimate.ray_count((0.1, 2.5, 1), 1, "z") == 1 * 3  # half goes up, and never none
+    for bad in ((0, 1, 1), (1, np.nan, 1)):
+        with pytest.raises(ValueError, match="size"):
+            estimate.ray_count(bad, 1, "z")
+    with pytest.raises(ValueError, match="pitch"):
+        estimate.ray_count((1, 1, 1), 0, "z")
+
+
+@pytest.mark.parametrize(("longest", "pitch"), [(100, 0.25), (2000, 5), (40, 0.1), (1, 0.0025)])
+def test_fitting_pitch(longest, pitch):
+    assert estimate.fitting_pitch((longest, 1, 1)) == pitch
+
+
+def test_units_and_words():
+    assert units.mm_per_unit(0.0010000000474974513) == 1
+    assert units.mm_per_unit(0.30480000376701355) == 304.8
+    assert units.format_size((100, 60.5, 29.999)) == "100 × 60.5 × 30 mm"
+    assert units.format_count(1234567) == "1\u00a0234\u00a0567"
+    assert [units.format_bytes(n) for n in (12, 1234, 4.2e6, 3.5e9)] == ["12 bytes", "1.2 KB", "4.2 MB", "3.5 GB"]
+    assert units.trim(-0.0001) == "0"
+    with pytest.raises(ValueError, match="scale_length"):
+        units.mm_per_unit(0)
+
+
+def test_every_preset_has_the_sizes_of_its_kind():
+    for tool in presets.presets():
+        sizes = set(presets.SIZES[tool["kind"]]) - {"flat_tip"}
+        assert set(tool) - {"name", "kind", "flat_tip"} == sizes, tool
+    with pytest.raises(ValueError, match="spoon"):
+        presets.tool_dict("spoon", {})
+
+
+MACHINE = diagnosis.Machine("Linux", "6.1", "x86_64", "3.11.2", "4.5.0")
+
+
+@pytest.mark.parametrize(
+    ("error", "found", "words"),
+    [
+        (ImportError("version `GLIBC_2.38' not found"), [], "C library is older"),
+        (ModuleNotFoundError("No module named 'numpy'"), [], "numpy is missing"),
+        (ImportError("cannot import"), ["_core.cpython-313-x86_64-linux-gnu.so"], "another Python"),
+        (ModuleNotFoundError("No module named 'riffler'"), [], "source folder has no native core"),
+    ],
+)
+def test_the_first_step_fits_the_error(error, found, words):
+    assert words in diagnosis.mend(error, MACHINE, found)[0]
+
+
+def test_other_processors_are_named():
+    arm = diagnosis.Machine("Linux", "6.1", "aarch64", "3.11.2", "4.5.0")
+    assert any("aarch64" in step for step in diagnosis.mend(OSError("x"), arm, []))
+
+
+def test_a_module_for_this_python_is_not_blamed():
+    steps = diagnosis.mend(OSError("boom"), MACHINE, ["_core.cpython-311-x86_64-linux-gnu.so"])
+    assert not any("another Python" in s for s in steps)
+
+
+def test_lines_fit_the_panel():
+    text = "ImportError: /a/very/long/path/without/any/blank/in/it/at/all.so: undefined symbol and some more words"
+    lines = diagnosis.wrap(text, 30)
+    assert all(len(line) <= 30 for line in lines)
+    assert "".join(lines).replace(" ", "") == text.replace(" ", "")
