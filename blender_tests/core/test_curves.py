@@ -1,5 +1,7 @@
 """Splines against closed forms."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from addon.core import curves
@@ -15,7 +17,7 @@ def bezier(points, left, right, **more):
 
 def de_casteljau(b, t):
     while len(b) > 1:
-        b = [p + (q - p) * t for p, q in zip(b[:-1], b[1:], strict=True)]
+        b = [p + (q - p) * t for p, q in pairwise(b)]
     return b[0]
 
 

@@ -1,5 +1,7 @@
 """The step function of a cut, on a clock and a volume of our own."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from addon.core.job import Cut, CutJob, RefreshClock
@@ -30,7 +32,7 @@ class Volume:
         if self.bad is not None and any(p[0] == self.bad for p in poses):
             raise ValueError("bad row")
         self.clock.now += self.cost * (len(poses) - 1)
-        self.log += [(tool, a[0], b[0], tolerance) for a, b in zip(poses[:-1], poses[1:], strict=True)]
+        self.log += [(tool, a[0], b[0], tolerance) for a, b in pairwise(poses)]
         return type("Result", (), {"removed": np.ones(len(poses) - 1)})
 
 

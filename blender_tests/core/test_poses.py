@@ -15,9 +15,9 @@ def test_without_tilt_a_level_path_has_an_upright_tool():
 
 def test_tilt_turns_about_the_tangent():
     axes = poses.tilted_axes(CIRCLE, np.full(len(ANGLE), np.radians(25)))
-    # right hand about the direction of travel (counter-clockwise): the top leans inwards
-    inward = -CIRCLE / 10
-    expected = np.cos(np.radians(25)) * np.array([0, 0, 1]) + np.sin(np.radians(25)) * inward
+    # right hand about the direction of travel (counter-clockwise): the top leans outwards
+    outward = CIRCLE / 10
+    expected = np.cos(np.radians(25)) * np.array([0, 0, 1]) + np.sin(np.radians(25)) * outward
     assert np.allclose(axes, expected, atol=1e-12)
 
 
