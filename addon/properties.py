@@ -61,7 +61,7 @@ class StockSettings:
         name="Size", default=(100, 60, 30), min=0.001, max=1e5, precision=2, description="Block along x, y and z, in mm"
     )
     origin: EnumProperty(name="Origin", items=ORIGINS, default="CORNER")
-    pitch: length("Pitch", 0.25, "Distance between rays, in mm: what the surface can resolve", 1e-4)
+    pitch: length("Pitch", 0.5, "Distance between rays, in mm: what the surface can resolve", 1e-4)
     directions: EnumProperty(name="Rays", items=DIRECTIONS, default="xyz")
 
 
@@ -176,7 +176,7 @@ class RifflerProgress(bpy.types.PropertyGroup):
     """On the window manager: the cut that runs now; never saved."""
 
     running: BoolProperty()
-    fraction: FloatProperty()
+    percent: FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100, precision=0)
     text: StringProperty()
 
 

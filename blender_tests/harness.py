@@ -6,10 +6,12 @@ crashes (4.2) or hangs (4.5) when the interpreter ends.
 """
 
 import importlib
+import importlib.machinery
 import importlib.util
 import json
 import os
 import sys
+import sysconfig
 import time
 import traceback
 from pathlib import Path
@@ -54,6 +56,16 @@ def install():
     return name
 
 
+class OnlyInstalled:
+    """Finds `riffler` anywhere but in this Python's own packages, where a developer has it too."""
+
+    def find_spec(self, name, path=None, target=None):
+        if name != "riffler":
+            return None
+        own = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
+        return importlib.machinery.PathFinder.find_spec(name, [p for p in sys.path if p not in own])
+
+
 def load(path):
     spec = importlib.util.spec_from_file_location(Path(path).stem, path)
     module = importlib.util.module_from_spec(spec)
@@ -81,6 +93,8 @@ def main():
 
     support.JOB = job
     support.Skip = Skip
+    if job["mode"] in ("extension", "legacy"):
+        sys.meta_path.insert(0, OnlyInstalled())
     try:
         support.MODULE = install()
     except Exception:

@@ -88,9 +88,9 @@ class Bench:
             }
             (Path(resources) / "scripts" / "addons").mkdir(parents=True)
             done = environment.run(HERE / "harness.py", variables, self.timeout)
-        self._judge(where, done)
+        self.judge(where, done)
 
-    def _judge(self, where: str, done: subprocess.CompletedProcess) -> None:
+    def judge(self, where: str, done: subprocess.CompletedProcess) -> None:
         begun, fine = None, True
         for line in done.stdout.splitlines():
             # Blender may leave an unfinished line of its own before ours
@@ -185,6 +185,7 @@ def main() -> int:
         bench = Bench(native_paths(wheel, Path(folder) / "native"), zips, out, arguments.only, arguments.timeout, tally)
         if not arguments.blender and not arguments.mode:
             core_tests(tally, arguments.only)
+            validate(bench)
         headless(bench, arguments)
         if not arguments.no_window and arguments.mode in (None, "source"):
             windowed(bench, arguments)
@@ -229,9 +230,23 @@ def windowed(bench: Bench, arguments) -> None:
     if reason := application.missing or window.missing():
         bench.tally.skip("window", reason)
         return
-    for script in sorted((HERE / "window").glob("window_*.py")):
+    for script in sorted((HERE / "windowed").glob("window_*.py")):
         if arguments.only in script.stem:
             window.run(bench, application, script)
+
+
+def validate(bench: Bench) -> None:
+    """Blender's own check of an extension, by the newest Blender that is here."""
+    found = sorted(
+        ROOT.glob(".envs/bpy-*/lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
+    )
+    if not found or "extension" not in bench.zips:
+        bench.tally.skip("extension zip, Blender's validator", "no bpy environment" if not found else "no wheel")
+        return
+    print("extension zip", flush=True)
+    done = environments.execute([sys.executable, str(found[-1]), "validate", bench.zips["extension"]], {}, 60)
+    outcome = "passed" if done.returncode == 0 else "failed"
+    bench.tally.add("extension zip", {"name": "validate", "outcome": outcome, "seconds": 0, "message": done.stdout})
 
 
 def close(tally: Tally) -> int:

@@ -103,5 +103,12 @@ def refused(call, *words):
     raise AssertionError("no error was reported")
 
 
+def figure(name, value):
+    """Something that was measured, for out/blender/figures.json."""
+    import harness
+
+    harness.say(figure=name, value=value)
+
+
 def push(message="step"):
     bpy.ops.ed.undo_push(message=message)

@@ -3,11 +3,9 @@
 import bpy
 
 
-def progress(layout, fraction, text):
+def progress(layout, state):
+    """A bar for `state.percent`."""
     if bpy.app.version >= (4, 0, 0):
-        layout.progress(factor=fraction, text=text)
-        return
-    # 3.x has no bar: a split row whose filled part is a pressed label
-    row = layout.row()
-    row.label(text=text, icon="TIME")
-    row.label(text="█" * round(10 * fraction) + "░" * (10 - round(10 * fraction)))
+        layout.progress(factor=state.percent / 100, text=f"{state.percent:.0f} %")
+    else:  # no bar yet: a slider looks like one
+        layout.prop(state, "percent", text="", slider=True)

@@ -89,6 +89,12 @@ class CutJob:
             self._cut, self._move = self._cut + 1, 0
 
 
+def slice_budget(outside: float, least: float = 0.04, most: float = 0.5) -> float:
+    """Seconds of carving for the next tick when the last one is `outside` seconds ago: as long as drawing the window
+    took, so that half of the time goes into the cut on a slow display and the hand still feels no lag on a fast one."""
+    return min(max(outside, least), most)
+
+
 class RefreshClock:
     """When the picture of a running cut is worth drawing again: never more than a `share` of the time, so that showing
     a cut cannot make it much slower."""

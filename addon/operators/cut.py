@@ -17,10 +17,10 @@ from .. import properties
 from ..bl import sculpts, store
 from ..bl.curves import deformed
 from ..core import units
-from ..core.job import CutJob, RefreshClock
+from ..core.job import CutJob, RefreshClock, slice_budget
 from . import paths, shared
 
-SLICE = 0.04  # s of carving per timer event: what a hand on the view still feels as smooth
+TELL = 0.1  # s between two reports of progress
 NAVIGATION = {
     "MIDDLEMOUSE",
     "WHEELUPMOUSE",
@@ -81,7 +81,9 @@ class CutShell:
             return shared.fail(self, error)
         # Names, not references: those die with the next undo.
         self._object, self._identity = ob.name, store.identity(ob.data)
-        self._clock, self._shown = RefreshClock(), False
+        self._clock, self._shown, self._spent = RefreshClock(), False, 0.0
+        self._left = time.perf_counter()
+        self._told = 0.0
         wm = context.window_manager
         wm.progress_begin(0, 100)
         wm.riffler.running = True
@@ -102,8 +104,12 @@ class CutShell:
             self._end(context)
             self.report({"WARNING"}, "Cut cancelled: the sculpt was changed or removed meanwhile")
             return {"CANCELLED"}
+        outside = time.perf_counter() - self._left  # what drawing the window took
+        if self._spent:
+            self._clock.spent(self._spent + outside)
+            self._spent = 0.0
         try:
-            if self._job.step(SLICE):
+            if self._job.step(slice_budget(outside)):
                 done = self._finish(ob)
                 self._end(context)
                 return done
@@ -112,6 +118,7 @@ class CutShell:
             self.cancel(context)
             return shared.fail(self, error)
         self._tell(context)
+        self._left = time.perf_counter()
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
@@ -130,18 +137,21 @@ class CutShell:
         _redraw(context)
 
     def _tell(self, context):
+        if time.perf_counter() - self._told < TELL:
+            return
+        self._told = time.perf_counter()
         state = context.window_manager.riffler
-        state.fraction = self._job.fraction
+        state.percent = 100 * self._job.fraction
         state.text = f"{units.format_count(self._job.done)} of {units.format_count(self._job.total)} moves"
-        context.window_manager.progress_update(100 * state.fraction)
-        context.workspace.status_text_set(f"Riffler: cutting, {100 * state.fraction:.0f} %    Esc: cancel")
+        context.window_manager.progress_update(state.percent)
+        context.workspace.status_text_set(f"Riffler: cutting, {state.percent:.0f} %    Esc: cancel")
         _redraw(context)
 
     def _refresh(self, ob):
         if self._clock.due():
             begin = time.perf_counter()
             sculpts.show(ob.data, self._job.volume.to_mesh(), sculpts.shown_mm_per_unit(ob.data))
-            self._clock.spent(time.perf_counter() - begin)
+            self._spent = time.perf_counter() - begin
             self._shown = True
 
     # ------------------------------------------------------------------ both
@@ -163,10 +173,13 @@ class CutShell:
 
 
 def _redraw(context):
+    """The sidebars only: the view itself is costly, and is drawn again when the mesh changes."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
-                area.tag_redraw()
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()
 
 
 class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator):
@@ -195,9 +208,9 @@ class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator)
         layout.use_property_split = True
         layout.prop_search(self, "curve", bpy.data, "objects", icon="CURVE_DATA")
         layout.prop(self, "axis")
-        layout.prop(self, "depth", text="Depth (mm)")
+        layout.prop(self, "depth")
         layout.prop(self, "follow")
-        layout.prop(self, "tolerance", text="Tolerance (mm)")
+        layout.prop(self, "tolerance")
 
 
 def _selected_curve(context):

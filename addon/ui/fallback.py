@@ -39,7 +39,7 @@ class RIFFLER_PT_fallback(bpy.types.Panel):
         # The sidebar's labels do not wrap: fit them to its width.
         width = max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6)
         layout = self.layout
-        layout.label(text="The native core did not load", icon="ERROR")
+        layout.label(text="Native core not loaded", icon="ERROR")
         for title, texts in (
             ("Why", [_report["why"]]),
             ("How to mend it", _report["steps"]),

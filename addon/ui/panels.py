@@ -30,7 +30,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         layout = self.layout
         state = context.window_manager.riffler
         if state.running:
-            ui.progress(layout, state.fraction, f"{100 * state.fraction:.0f} %")
+            ui.progress(layout, state)
             lines(layout, state.text, "Esc cancels", icon="BLANK1")
             return
         ob = sculpts.active(context)
@@ -75,7 +75,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
 
 class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_stock"
-    bl_label = "New Stock"
+    bl_label = "New Stock (mm)"
 
     def draw(self, context):
         layout = self.layout
@@ -85,7 +85,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         row = layout.row(align=True)
-        row.prop(settings, "pitch", text="Pitch (mm)")
+        row.prop(settings, "pitch")
         row.operator(stock.RIFFLER_OT_fit_pitch.bl_idname, text="", icon="SHADERFX")
         layout.prop(settings, "directions")
         if settings.source == "BLOCK":
@@ -99,18 +99,18 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         unit = units.mm_per_unit(context.scene)
         if unit != 1:
             layout.separator()
-            lines(layout, f"1 Blender unit is {names.trim(unit, 4)} mm here.", icon="INFO")
+            lines(layout, f"1 unit = {names.trim(unit, 4)} mm", icon="INFO")
             layout.operator(scene.RIFFLER_OT_millimetres.bl_idname)
 
     def _size(self, layout, context, settings):
         if settings.source == "BLOCK":
             column = layout.column(align=True)
-            column.label(text="Size (mm)")
+            column.label(text="Size")
             column.row(align=True).prop(settings, "size", text="")
             return [names.clean(s) for s in settings.size]
         source = stock.source_object(context)
         if source is None:
-            lines(layout, "Select the object to take as material.", icon="INFO")
+            lines(layout, "Select an object.", icon="INFO")
             return None
         size = stock.source_size(source, context.scene)
         lines(layout, source.name, names.format_size(size), icon="OBJECT_DATA")
@@ -134,7 +134,7 @@ class RIFFLER_MT_tools(bpy.types.Menu):
 
 class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_tool"
-    bl_label = "Tool"
+    bl_label = "Tool (mm)"
 
     def draw(self, context):
         layout = self.layout
@@ -146,13 +146,12 @@ class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
         layout.prop(tool, "kind")
         column = layout.column(align=True)
         for key in presets.SIZES[tool.kind]:
-            label = tool.bl_rna.properties[key].name
-            column.prop(tool, key, text=label if key.endswith(("angle", "flat_tip")) else f"{label} (mm)")
+            column.prop(tool, key)
 
 
 class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_cut"
-    bl_label = "Cut"
+    bl_label = "Cut (mm)"
 
     def draw(self, context):
         layout = self.layout
@@ -162,8 +161,8 @@ class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
         layout.prop(settings, "curve")
         layout.prop(settings, "axis")
         column = layout.column(align=True)
-        column.prop(settings, "depth", text="Depth (mm)")
-        column.prop(settings, "tolerance", text="Tolerance (mm)")
+        column.prop(settings, "depth")
+        column.prop(settings, "tolerance")
         layout.prop(settings, "follow")
         op = layout.operator(cut.RIFFLER_OT_cut_curve.bl_idname, icon="CURVE_DATA")
         op.curve = settings.curve.name if settings.curve else ""
@@ -178,15 +177,15 @@ class RIFFLER_PT_export(Sidebar, bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        layout.operator(export.RIFFLER_OT_export_stl.bl_idname, text="Export STL (mm)…", icon="EXPORT")
+        layout.operator(export.RIFFLER_OT_export_stl.bl_idname, text="Export STL…", icon="EXPORT")
         layout.separator()
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.riffler.nc
         column = layout.column(align=True)
         column.prop(settings, "post")
-        column.prop(settings, "feed", text="Feed (mm/min)")
-        column.prop(settings, "spindle", text="Spindle (rpm)")
+        column.prop(settings, "feed")
+        column.prop(settings, "spindle")
         op = layout.operator(export.RIFFLER_OT_export_nc.bl_idname, text="Write NC…", icon="TEXT")
         for key in properties.NcSettings.__annotations__:
             setattr(op, key, getattr(settings, key))

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from addon.core.job import Cut, CutJob, RefreshClock
+from addon.core.job import Cut, CutJob, RefreshClock, slice_budget
 
 
 class Clock:
@@ -101,6 +101,10 @@ def test_nothing_to_cut_is_refused():
         job(Volume(Clock()))
     with pytest.raises(ValueError, match="two poses"):
         job(Volume(Clock()), cut(0, 0))
+
+
+def test_carving_gets_half_of_the_time_on_a_slow_display():
+    assert [slice_budget(s) for s in (0.001, 0.2, 9.0)] == [0.04, 0.2, 0.5]
 
 
 def test_the_picture_never_takes_more_than_its_share():

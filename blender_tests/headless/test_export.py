@@ -90,7 +90,7 @@ def test_a_changed_scene_scale_changes_what_is_exported_and_is_said():
 
 def test_a_path_that_cannot_be_written_is_named():
     cut_stock(1.0)
-    support.refused(lambda: bpy.ops.riffler.export_stl(filepath="/nowhere/at/all.stl"), "nowhere")
+    support.refused(lambda: bpy.ops.riffler.export_stl(filepath="/nowhere/at/all.stl"), "all.stl")
 
 
 def numbers(path, letter):

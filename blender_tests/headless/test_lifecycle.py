@@ -33,6 +33,15 @@ def leftovers():
     return classes + attributes + handlers
 
 
+def test_the_native_core_is_the_one_that_was_installed():
+    import os
+
+    import riffler
+
+    inside = riffler.__file__.startswith(os.path.realpath(os.environ["BLENDER_USER_RESOURCES"]))
+    assert inside == (support.JOB["mode"] != "source"), riffler.__file__
+
+
 def test_everything_is_registered():
     assert set(dir(bpy.ops.riffler)) >= OPERATORS, dir(bpy.ops.riffler)
     panels = [c for c in bpy.types.Panel.__subclasses__() if getattr(c, "bl_category", "") == "Riffler"]

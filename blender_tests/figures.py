@@ -1,0 +1,93 @@
+"""Times in this Blender: the block of 100 × 60 × 30 mm at a pitch of 0.25 mm, tri-dexel, and 200 moves of a 6 mm ball.
+
+Minima of some runs, in milliseconds; sizes in megabytes.
+"""
+
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+import riffler
+
+import support
+
+RUNS = 5
+
+
+def best(call, before=lambda: None):
+    times = []
+    for _ in range(RUNS):
+        before()
+        begin = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - begin)
+    return round(1000 * min(times), 1)
+
+
+def ms(name, call, before=lambda: None):
+    support.figure(f"{name}, ms", best(call, before))
+
+
+def test_figures():
+    support.scale(1)
+    a = np.linspace(0, 1, 201)
+    # the ball's centre of the benchmark block's path is 3 mm above the tip
+    path = np.c_[10 + 80 * a, 30 + 15 * np.sin(12 * a), 27 - 2 * a]
+    support.curve("Path", path, mm_per_unit=1)
+
+    def new():
+        support.stock(size=(100, 60, 30), pitch=0.25, directions="xyz")
+
+    def cut():
+        bpy.ops.riffler.cut_curve("EXEC_DEFAULT", True, curve="Path", depth=0, tool=support.BALL)
+
+    def fresh():
+        for ob in [o for o in bpy.data.objects if o.name.startswith("Stock")]:
+            bpy.data.meshes.remove(ob.data)
+        new()
+
+    ms("new stock", new)
+    support.push("stock")
+    ms("cut of 200 moves, whole operator with its undo step", cut, fresh)
+
+    ob = bpy.context.object
+    content = support.content(ob)
+    poses, tool = content.cuts[0].poses, riffler.Tool.from_dict(content.cuts[0].tool)
+    block = riffler.Volume.block((0, 0, 0), (100, 60, 30), 0.25, "xyz")
+    ms("- carve", lambda: block.copy().carve(tool, poses))
+    ms("- volume to mesh", content.volume.to_mesh)
+    surface = content.volume.to_mesh()
+    ms("- fill the mesh", lambda: support.part("bl.sculpts").show(ob.data, surface, 1.0))
+    ms("- pack into the .blend", lambda: support.part("bl.store").write(ob.data, content.volume, content.cuts))
+    support.figure("triangles", len(surface.triangles))
+    support.figure("removed, mm³", round(180000 - content.volume.volume, 3))
+
+    name = ob.name
+    undo_times(name)
+    path = support.out("figures.blend")
+    ms("save", lambda: bpy.ops.wm.save_as_mainfile(filepath=path, compress=False))
+    support.figure(".blend, MB", round(Path(path).stat().st_size / 1e6, 2))
+    image = bpy.data.objects[name].data.riffler.store
+    support.figure("- of it the volume and the cuts, MB", round(image.packed_file.size / 1e6, 2))
+    ms("open", lambda: bpy.ops.wm.open_mainfile(filepath=path))
+    ob = bpy.data.objects[name]
+    ms("first read of the volume after opening", lambda: support.content(ob), support.part("bl.store").clear_cache)
+    ms("export STL", lambda: export(ob))
+
+
+def undo_times(name):
+    undos, redos = [], []
+    for _ in range(RUNS):
+        for times, step in ((undos, bpy.ops.ed.undo), (redos, bpy.ops.ed.redo)):
+            begin = time.perf_counter()
+            step()
+            times.append(time.perf_counter() - begin)
+    support.content(bpy.data.objects[name])
+    support.figure("undo, ms", round(1000 * min(undos), 1))
+    support.figure("redo, ms", round(1000 * min(redos), 1))
+
+
+def export(ob):
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.riffler.export_stl(filepath=support.out("figures.stl"))

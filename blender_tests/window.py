@@ -1,0 +1,53 @@
+"""Starts Blender in a real window on a virtual display and hands it a script of steps."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from pathlib import Path
+
+import environments
+
+HERE = Path(__file__).resolve().parent
+WIDTH, HEIGHT = 1400, 950
+
+
+def missing() -> str:
+    """Why no window can be opened here, or nothing."""
+    for program, package in (("xvfb-run", "xvfb"), ("import", "imagemagick")):
+        if not shutil.which(program):
+            return f"there is no `{program}` (package {package})"
+    return ""
+
+
+def run(bench, application, script: Path) -> None:
+    where = f"{application.name}, window, {script.stem}"
+    print(where, flush=True)
+    with tempfile.TemporaryDirectory() as resources:
+        job = {
+            "mode": "source",
+            "zip": "",
+            "files": [str(script)],
+            "paths": bench.paths,
+            "out": str(bench.out),
+            "repo": str(environments.ROOT),
+            "only": "",
+            "size": [WIDTH, HEIGHT],
+        }
+        path = Path(resources) / "job.json"
+        path.write_text(json.dumps(job))
+        (Path(resources) / "scripts" / "addons").mkdir(parents=True)
+        variables = {
+            "RIFFLER_TEST_JOB": str(path),
+            "BLENDER_USER_RESOURCES": resources,
+            "BLENDER_USER_SCRIPTS": str(Path(resources) / "scripts"),
+            "LIBGL_ALWAYS_SOFTWARE": "1",
+        }
+        display = ["xvfb-run", "-a", "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24"]
+        blender = [application.command[0], "--factory-startup", "--enable-event-simulate"]
+        command = [*display, *blender, "-p", "0", "0", str(WIDTH), str(HEIGHT)]
+        done = environments.execute(
+            [*command, "--python", str(HERE / "windowed" / "driver.py")], variables, bench.timeout
+        )
+        bench.judge(where, done)
