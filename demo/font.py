@@ -18,8 +18,9 @@ BOWL = "M-.12 .94 C.06 1.03 .56 1.1 .56 .75 C.56 .5 .26 .47 .04 .5"
 LEG = "M.2 .5 C.36 .4 .44 .08 .7 0"
 # The last leg runs out into a flourish that comes back below the whole word.
 FLOURISH = (
-    "M.2 .5 C.36 .4 .44 .1 .68 .02 C.9 -.05 1.04 -.16 .84 -.25 C.5 -.4 -.5 -.22 -1.4 -.22 "
-    "C-2.3 -.22 -2.9 -.4 -3.5 -.3 C-3.74 -.26 -3.78 -.12 -3.62 -.1 C-3.5 -.08 -3.44 -.2 -3.56 -.24"
+    "M.2 .5 C.36 .4 .44 .1 .68 .02 C.9 -.05 1.0 -.12 .84 -.19 C.5 -.33 -.4 -.14 -1.4 -.16 "
+    "C-2.1 -.175 -2.6 -.16 -3 -.175 "
+    "C-3.2 -.185 -3.3 -.27 -3.5 -.27 C-3.74 -.27 -3.76 -.1 -3.58 -.1 C-3.46 -.1 -3.44 -.2 -3.54 -.22"
 )
 
 #: letter: (advance width, strokes)
@@ -55,6 +56,6 @@ def write(letters: list[str]) -> list[tuple[str, np.ndarray]]:
     strokes = []
     for place, (letter, width) in enumerate(zip(letters, widths, strict=True), start=1):
         for part, path in enumerate(LETTERS[letter][1], start=1):
-            strokes.append((f"{place}{letter[0]}.{part}", curve(path) + (pen, 0.0)))
+            strokes.append((f"{place}{letter[0]}.{part}", curve(path) + np.array([pen, 0.0])))
         pen += width + SPACE
     return strokes

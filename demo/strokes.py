@@ -100,7 +100,7 @@ def pressure(hand: Hand, downward: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Depth of the tip (mm) along the stroke: full on down strokes, `thin` on the others, gliding in and out."""
     share = hand.thin + (1.0 - hand.thin) * np.clip(downward, 0.0, 1.0)
     share = smoothed(share[:, None], 1.2 / STEP)[:, 0]
-    edge = np.minimum(np.minimum(s, s[-1] - s) / hand.glide, 1.0)
+    edge = np.minimum(np.minimum(s, s[-1] - s) / min(hand.glide, s[-1] / 6), 1.0)
     ramp = edge**3 * (10.0 - 15.0 * edge + 6.0 * edge**2)
     return ramp * (hand.depth * share + HOVER) - HOVER
 
@@ -141,12 +141,13 @@ def draw(name: str, hand: Hand, curve: tuple[np.ndarray, np.ndarray], start: flo
 
 WRITING = Hand(tool=ENGRAVER, depth=1.7, thin=0.62, glide=1.6, speed=22.0)
 CARVING = Hand(tool=GOUGER, depth=1.3, thin=1.0, glide=5.0, lean=0.2, speed=34.0)
+RING = Hand(tool=ENGRAVER, depth=1.2, glide=1.5, speed=22.0)
 FINE = Hand(tool=ENGRAVER, depth=1.5, thin=0.8, glide=5.0, speed=26.0)
 
 
 def word(figure: Surface) -> list[tuple[str, Hand, tuple[np.ndarray, np.ndarray]]]:
     """The name across the forehead, on a great circle raised over the brows, its ends lifted a little."""
-    height, tilt, bend = 0.40, np.radians(45.0), 0.16
+    height, tilt, bend = 0.43, np.radians(49.5), 0.16
     parts = []
     for name, xy in font.write(["R", "I", "F", "F", "L", "E", "R~"]):
         x, y = height * xy[:, 0], height * (xy[:, 1] - 0.5)
@@ -156,18 +157,18 @@ def word(figure: Surface) -> list[tuple[str, Hand, tuple[np.ndarray, np.ndarray]
 
 def circlet(figure: Surface) -> list[tuple[str, Hand, tuple[np.ndarray, np.ndarray]]]:
     """Two strands braided round the head, high over the word and low behind the ears, and a whorl at its middle."""
-    pole = np.radians(112.0)  # from the face's forward direction, so leaning to the back of the head
+    pole = np.radians(121.0)  # from the face's forward direction, so leaning to the back of the head
     parts = []
-    turn = np.linspace(0.0, 2 * np.pi * 1.015, 2400)
+    turn = np.pi + np.linspace(0.0, 2 * np.pi * 1.015, 2400)  # begins behind
     for strand, phase in (("a", 0.0), ("b", np.pi)):
         wave = 0.085 * np.sin(9 * turn + phase)
-        parts.append((f"circlet {strand}", CARVING, on_dome(figure, tilted_pole(turn, np.radians(46.0) + wave, pole))))
+        parts.append((f"circlet {strand}", CARVING, on_dome(figure, about_pole(turn, np.radians(48.0) + wave, pole))))
     turn = np.linspace(0.0, 2 * np.pi * 3.5, 2400)
-    parts.append(("whorl", CARVING, on_dome(figure, tilted_pole(turn, np.radians(3.0 + 29.0 * turn / turn[-1]), pole))))
+    parts.append(("whorl", CARVING, on_dome(figure, about_pole(turn, np.radians(3.0 + 31.0 * turn / turn[-1]), pole))))
     return parts
 
 
-def tilted_pole(turn: np.ndarray, away: np.ndarray, pole: float) -> np.ndarray:
+def about_pole(turn: np.ndarray, away: np.ndarray, pole: float) -> np.ndarray:
     """Directions `away` (rad) from a pole that stands at `pole` (rad) over the face's forward direction."""
     x, y, z = np.sin(away) * np.sin(turn), -np.sin(away) * np.cos(turn), np.cos(away)
     lean = pole - np.pi / 2
@@ -186,11 +187,17 @@ def face(figure: Surface) -> list[tuple[str, Hand, tuple[np.ndarray, np.ndarray]
 
 
 #: x and z in mm, for the right side
+IRIS = (
+    "M14.5 14.3 C15.9 14.3 17 13.2 17 11.8 C17 10.4 15.9 9.3 14.5 9.3 "
+    "C13.1 9.3 12 10.4 12 11.8 C12 13.2 13.1 14.3 14.5 14.3 C15.2 14.3 15.7 14.1 16.2 13.7"
+)
 FACE = (
-    ("brow", FINE, "M6 15 C10 21 17 22.5 24 19 C28 17 31 14.5 34.5 13"),
-    ("whisker 1", FINE, "M5.5 -18 C8 -16.5 10 -17.5 11.5 -20"),
-    ("whisker 2", FINE, "M5.5 -23 C8 -21.5 11 -22.5 12.5 -25"),
-    ("whisker 3", FINE, "M5.5 -28 C8 -26.5 11.5 -27.5 13 -30"),
+    ("brow", CARVING, "M4 20.5 C6.5 26.5 9.5 30.6 14 30.3 C20 29.6 26 24.5 34.5 18.5"),
+    ("eye", RING, IRIS),
+    ("ear", CARVING, "M42 16 C46 18.6 52 19.2 55 15.5 C58 11.5 56.3 6 52.8 2.8 C49.5 .2 45 -1 40.5 -1"),
+    ("whisker 1", FINE, "M4 -19.5 C6.5 -18.2 9 -18 11.6 -19.6"),
+    ("whisker 2", FINE, "M4 -24 C6.5 -22.5 9.5 -22.3 12.4 -24.2"),
+    ("whisker 3", FINE, "M4 -28.5 C6.5 -26.8 9.5 -26.6 13 -28.8"),
 )
 
 
@@ -223,8 +230,8 @@ def tools() -> dict:
     import riffler
 
     return {
-        ENGRAVER: riffler.Tool.taper(tip_radius=0.4, half_angle=np.radians(32.0), diameter=8.0, length=30.0),
-        GOUGER: riffler.Tool.ball(diameter=4.0, length=30.0),
+        ENGRAVER: riffler.Tool.taper(tip_radius=0.4, half_angle=np.radians(32.0), diameter=5.0, length=8.0),
+        GOUGER: riffler.Tool.ball(diameter=4.0, length=8.0),
     }
 
 
