@@ -51,7 +51,7 @@ def run():
         mesh = riffler.Mesh.read(path)
         audit = mesh.audit()
         broken = audit["open_edges"] + audit["nonmanifold_edges"] > 0
-        # As many evaluations for every part: the reference takes points × triangles.
+        # As many evaluations for every part: the reference takes points x triangles.
         cells = round(40 * min(1.0, 5000 / len(mesh.triangles)) ** (1 / 3))
         reference, deviation = winding_volume(mesh, cells) if broken else (mesh.volume, 0.0)
         lower, upper = np.asarray(mesh.bounds)
