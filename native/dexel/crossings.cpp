@@ -52,55 +52,43 @@ Projection::Projection(const Mesh& mesh, const Grid& grid) : nu_(grid.nu()), nv_
   });
 }
 
-int Projection::column(const Vertex& low, const Vertex& high, int row, double v) const {
-  if (v < -0.5) return 0;
-  if (v > nv_ + 0.5) return nv_;
-  const int nearest = static_cast<int>(v + 0.5);
-  if (std::abs(v - nearest) > slack_) return std::clamp(nearest + (v > nearest), 0, nv_);
-  // Too close to call: v* > nearest, as integers.
+bool Projection::beyond(const Vertex& low, const Vertex& high, int row, int column) const {
   const auto lattice = [&](double cells) { return static_cast<Wide>(static_cast<std::int64_t>(cells * lattice_)); };
   const Wide left = (lattice(row) - lattice(low.u)) * (lattice(high.v) - lattice(low.v));
-  const Wide right = (lattice(nearest) - lattice(low.v)) * (lattice(high.u) - lattice(low.u));
-  return std::clamp(nearest + (left > right), 0, nv_);
+  const Wide right = (lattice(column) - lattice(low.v)) * (lattice(high.u) - lattice(low.u));
+  return left > right;
 }
-
-namespace {
-
-/// An edge from low to high u, for walking from row to row.
-struct Edge {
-  const Projection::Vertex& low;
-  const Projection::Vertex& high;
-  double dv, dz;  // per row
-
-  Edge(const Projection::Vertex& a, const Projection::Vertex& b) : low(a), high(b) {
-    const double du = b.u - a.u;
-    dv = du > 0 ? (b.v - a.v) / du : 0;
-    dz = du > 0 ? (b.z - a.z) / du : 0;
-  }
-  double v(int row) const { return low.v + (row - low.u) * dv; }
-  double z(int row) const { return low.z + (row - low.u) * dz; }
-};
-
-}  // namespace
 
 void Projection::cross(const Vec3i& corners, std::uint32_t triangle, int first, int last,
                        std::vector<BandCrossing>& out) const {
   const Vertex *a = &vertices_[corners.x], *b = &vertices_[corners.y], *c = &vertices_[corners.z];
+  // Sorted by u without jumps, which a processor could not foresee.
   int parity = 1;
-  if (b->u < a->u) std::swap(a, b), parity = -parity;
-  if (c->u < b->u) std::swap(b, c), parity = -parity;
-  if (b->u < a->u) std::swap(a, b), parity = -parity;
+  const auto order = [&parity](const Vertex*& low, const Vertex*& high) {
+    const bool swap = high->u < low->u;
+    const Vertex* const lower = swap ? high : low;
+    high = swap ? low : high;
+    low = lower;
+    parity = swap ? -parity : parity;
+  };
+  order(a, b), order(b, c), order(a, b);
 
-  const Edge whole(*a, *c);
-  const auto sweep = [&](const Edge& part) {
-    // Half-open: a row belongs to an edge where u(low) ≤ row < u(high), so that an edge of constant u never counts.
-    const int end = std::min(last, part.high.row);
-    for (int row = std::max(first, part.low.row); row < end; ++row) {
-      const double v_whole = whole.v(row), v_part = part.v(row);
-      const int c_whole = column(*a, *c, row, v_whole), c_part = column(part.low, part.high, row, v_part);
+  // The long edge ac against ab, then against bc. Half-open: a row belongs to an edge where u(low) ≤ row < u(high), so
+  // that an edge of constant u never counts.
+  const double inverse = 1 / (c->u - a->u), slope = (c->v - a->v) * inverse;
+  for (const bool upper : {false, true}) {
+    const Vertex &low = upper ? *b : *a, &high = upper ? *c : *b;
+    int row = std::max(first, low.row);
+    const int end = std::min(last, high.row);
+    if (row >= end) continue;
+    const double inverse_part = 1 / (high.u - low.u), slope_part = (high.v - low.v) * inverse_part;
+    for (; row < end; ++row) {
+      const double v_whole = a->v + (row - a->u) * slope, v_part = low.v + (row - low.u) * slope_part;
+      const int c_whole = column(*a, *c, row, v_whole), c_part = column(low, high, row, v_part);
       if (c_whole == c_part) continue;
       const std::int32_t sign = c_part < c_whole ? -parity : parity;
-      const double z_whole = whole.z(row), z_part = part.z(row);
+      const double z_whole = a->z + (row - a->u) * inverse * (c->z - a->z);
+      const double z_part = low.z + (row - low.u) * inverse_part * (high.z - low.z);
       const double width = v_part - v_whole, rise = z_part - z_whole;
       const std::uint32_t offset = static_cast<std::uint32_t>(row - first) * static_cast<std::uint32_t>(nv_);
       for (int k = std::min(c_whole, c_part); k < std::max(c_whole, c_part); ++k) {
@@ -108,9 +96,7 @@ void Projection::cross(const Vec3i& corners, std::uint32_t triangle, int first, 
         out.push_back({{z_whole + t * rise, triangle, sign}, offset + static_cast<std::uint32_t>(k)});
       }
     }
-  };
-  if (a->row < b->row && a->row < last && b->row > first) sweep(Edge(*a, *b));
-  if (b->row < c->row && b->row < last && c->row > first) sweep(Edge(*b, *c));
+  }
 }
 
 Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) : rows_(rows_per_band) {

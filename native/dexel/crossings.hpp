@@ -2,6 +2,7 @@
 // entered as often as it is left on every column, at any alignment.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,12 +46,25 @@ class Projection {
 
   /// ⌈v*⌉ clamped to [0, nv], where v* is the point at which the edge from `low` to `high` meets u = row, for
   /// low.row ≤ row < high.row. Exact: it depends on the edge and the row alone, not on the triangle. `v` is near v*.
-  int column(const Vertex& low, const Vertex& high, int row, double v) const;
+  int column(const Vertex& low, const Vertex& high, int row, double v) const {
+    if (!(v > -0.5)) return 0;
+    if (v > nv_ + 0.5) return nv_;
+    int ceiling = static_cast<int>(v + 1);  // unless v is an integer
+    const double past = v + 1 - ceiling;
+    if (past < slack_)
+      ceiling -= !beyond(low, high, row, ceiling - 1);
+    else if (past > 1 - slack_)
+      ceiling += beyond(low, high, row, ceiling);
+    return std::clamp(ceiling, 0, nv_);
+  }
 
   /// Appends the crossings of one triangle with rows first ≤ row < last.
   void cross(const Vec3i& corners, std::uint32_t triangle, int first, int last, std::vector<BandCrossing>& out) const;
 
  private:
+  /// v* > column, in integers.
+  bool beyond(const Vertex& low, const Vertex& high, int row, int column) const;
+
   int nu_, nv_;
   double lattice_;  // lattice points per cell, a power of two
   double slack_;    // more than the rounding error of an edge's v at a row, cells

@@ -299,7 +299,7 @@ double BoundaryTree::gather(const Vec3& centre, const Vec3& half, Field& field) 
       centre, half,
       [&](const Node& node, double bound, double d) {
         field.add_edge(points_, node.from, node.to);
-        if (d < 8 * reach)
+        if (d < reach)
           field.near_.emplace_back(points_[node.from], points_[node.to]);
         else
           field.far_curvature_ += bound;
