@@ -123,7 +123,7 @@ void stage(benchmark::State& state) {
     const SignField signs = only(0, [&] { return signs_of(volume, lattice, {}); });
     const Counts counts = only(1, [&] { return Counts(lattice, signs, {}); });
     const std::vector<Hit> hits = only(2, [&] { return hits_of(volume, lattice, signs, counts, {}); });
-    Surface surface{lattice, signs, counts, hits, FloatGrid(lattice), {}, {}, {}};
+    Surface surface{lattice, signs, counts, hits, FloatGrid(lattice), {}, {}, {}, {}};
     only(3, [&] { return place_vertices(surface, {}), 0; });
     only(4, [&] { return choose_candidates(surface), 0; });
     only(5, [&] { return choose_diagonals(surface, {}), 0; });

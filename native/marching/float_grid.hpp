@@ -22,6 +22,17 @@ class FloatGrid {
   Vec3 outside(const Vec3i& cell, const Vec3& p, int opened) const;
   /// `inside` or, for a point outside the cell, `outside` without walls.
   Vec3 near(const Vec3i& cell, const Vec3& p) const;
+  /// The place nearest to `v`, which lies inside `cell`, that is not taken: a cell's vertices give way to each other in
+  /// steps along y and z, of which even the smallest cell has three.
+  template <class Taken>
+  Vec3 free_place(const Vec3i& cell, const Vec3& v, Taken&& taken) const {
+    for (int reach = 0;; ++reach)
+      for (int y = -reach; y <= reach; ++y)
+        for (int z = -reach; z <= reach; ++z) {
+          const Vec3 place = inside(cell, to_cell(cell, v + Vec3(0, y, z) * step_));
+          if (!taken(place)) return place;
+        }
+  }
   /// How far vertices may leave their cell, in cells: 0 where the float32 steps are too coarse for it.
   double opening() const { return opening_; }
   double step() const { return step_; }

@@ -92,11 +92,8 @@ void pull(Surface& surface, std::int32_t vertex, double share) {
   const Vec3i cell = cell_of(surface, vertex);
   const Vec3 anchor = special ? special->anchor : Vec3(0.5);
   const Vec3 from = glm::clamp(grid.to_cell(cell, place), 0.0, 1.0);
-  Vec3 to = grid.inside(cell, from + share * (anchor - from));
-  for (int n = 1; coincides(surface.mesh, vertex, to); ++n) {
-    const Vec3 shift{0, 0, (n % 2 ? n : -n) * grid.step()};  // 1, −1, 2, −2 … steps off the first try
-    to = grid.inside(cell, grid.to_cell(cell, to + shift));
-  }
+  const Vec3 to = grid.free_place(cell, grid.inside(cell, from + share * (anchor - from)),
+                                  [&](const Vec3& p) { return coincides(surface.mesh, vertex, p); });
   place = to;
   if (special) special->other = place;
 }
@@ -125,9 +122,9 @@ void split_again(Surface& surface, std::vector<std::int32_t>& moved, std::vector
 }  // namespace
 
 void unfold(Surface& surface) {
-  std::vector<Vec3i> cells;
+  std::vector<Vec3i> cells = surface.sharp;
   for (const Special& s : surface.specials) cells.push_back(s.cell);
-  std::vector<std::int32_t> moved = folded_vertices(surface, cells, kSpecial);
+  std::vector<std::int32_t> moved = folded_vertices(surface, cells, kSharp | kSpecial);
   double share = 0.04;
   for (int round = 0; round < kRounds && !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
     for (const std::int32_t v : moved) pull(surface, v, share);

@@ -34,6 +34,7 @@ Lattice::Lattice(const Volume& volume) : axis_(volume.reference().axis()), pitch
   }
   check_reach(reach, pitch_);
   for (int a = 0; a < 3; ++a) reach = std::max({reach, std::abs(at(a, 0)), std::abs(at(a, points(a) - 1))});
+  reach += pitch_ / 2;  // vertices may leave the outermost cells by less than that
   int exponent = 0;
   std::frexp(reach, &exponent);  // reach < 2^exponent
   step_ = std::ldexp(1.0, exponent - 24);

@@ -25,8 +25,8 @@ class Lattice {
   double pitch() const { return pitch_; }
   /// Coordinate of lattice plane `index`; for planes that carry rays it is bit for bit what Grid::u and Grid::v say.
   double at(int axis, int index) const { return origin_[axis] + (index - 0.5) * pitch_; }
-  /// The distance u between neighbouring float32 values where the box reaches furthest out, a power of two: every
-  /// multiple of u within the lattice is a float32. Less than a quarter of the pitch.
+  /// The distance u between neighbouring float32 values where the lattice reaches furthest out, a power of two: every
+  /// multiple of u that a vertex may take is a float32. A quarter of the pitch at most (or 1e-6 of it more).
   double step() const { return step_; }
 
  private:

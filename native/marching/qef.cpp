@@ -50,11 +50,14 @@ Qef::Qef(const Tangents& tangents) : hits_(tangents) {
   mean_ *= share, mean_normal_ *= share, a_ *= share, b_ *= share;
 }
 
+bool Qef::sharp() const {
+  return glm::dot(mean_normal_, mean_normal_) <= kSmooth;
+}
+
 Vec3 Qef::solve() const {
-  const double agreement = glm::dot(mean_normal_, mean_normal_);
-  if (agreement > kSmooth) {
+  if (!sharp()) {
     // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel.
-    const Vec3 g = mean_normal_ / std::sqrt(agreement);
+    const Vec3 g = glm::normalize(mean_normal_);
     double distance = 0, slope = 0;
     for (int i = 0; i < hits_.count; ++i) {
       distance += glm::dot(hits_.normal[i], hits_.point[i] - mean_);

@@ -19,7 +19,8 @@ class Qef {
  public:
   explicit Qef(const Tangents& tangents);
 
-  const Vec3& mean() const { return mean_; }
+  /// True where the hits' normals differ too much for a smooth surface.
+  bool sharp() const;
   /// The fit: half way to the tangent planes where the hits' normals agree, the least squares point elsewhere.
   Vec3 solve() const;
   /// The least squares point in a box.

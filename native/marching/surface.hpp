@@ -23,6 +23,7 @@ enum VertexMark : std::uint8_t {
   kSpecial = 1,    // has a Special
   kCandidate = 2,  // has a candidate that is not decided yet
   kNear = 8,       // corner of a quad under scrutiny
+  kSharp = 32,     // its hits' normals differ: triangles round it may fold
   kMoved = 16,     // moved in the last round of `unfold`
 };
 
@@ -37,6 +38,7 @@ struct Surface {
   Mesh mesh;
   std::vector<std::uint8_t> marks;  // of each vertex
   std::vector<Special> specials;    // by vertex, ascending
+  std::vector<Vec3i> sharp;         // cells of the vertices marked kSharp
 
   std::size_t quads() const { return mesh.triangles.size() / 2; }
   void set_corner(std::size_t quad, int n, std::int32_t vertex) {
@@ -61,7 +63,8 @@ Columns columns_near(const Surface& surface, const std::vector<Vec3i>& cells, in
 /// Quads of these columns with a corner that has one of the marks, ascending.
 std::vector<std::uint32_t> quads_marked(const Surface& surface, const Columns& columns, std::uint8_t mark);
 
-/// Places every vertex and enters it into the quads round its edges. Marks are 0, kSpecial or kSpecial | kCandidate.
+/// Places every vertex and enters it into the quads round its edges. Marks are 0, kSharp, kSpecial or both kSpecial and
+/// kCandidate.
 void place_vertices(Surface& surface, const Progress& progress);
 
 /// Moves vertices from their safe places to their candidates, or part of the way, as long as all quads keep a valid

@@ -29,7 +29,7 @@ Mesh to_mesh(const Volume& volume, const Progress& progress) {
   const Counts counts(lattice, signs, stage(progress, 0.15, 0.2));
   if (counts.edges() == 0) return {};
   const std::vector<Hit> hits = hits_of(volume, lattice, signs, counts, stage(progress, 0.2, 0.4));
-  Surface surface{lattice, signs, counts, hits, FloatGrid(lattice), {}, {}, {}};
+  Surface surface{lattice, signs, counts, hits, FloatGrid(lattice), {}, {}, {}, {}};
   place_vertices(surface, stage(progress, 0.4, 0.7));
   choose_candidates(surface);
   choose_diagonals(surface, stage(progress, 0.7, 0.95));

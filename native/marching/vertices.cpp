@@ -90,6 +90,7 @@ class Plane {
   }
 
   std::vector<Special> specials;
+  std::vector<Vec3i> sharp;
 
  private:
   /// Edges of a cell that start in its lower layer of lattice points: one cursor each; and those of the upper layer,
@@ -167,6 +168,9 @@ class Plane {
     const bool in_cell = contains({Vec3(0.0), Vec3(1.0)}, x);
     if (in_cell && cycle.alone && !cycle.weak) {
       surface_.mesh.vertices[vertex_] = grid_.inside(cycle.cell, x);
+      if (!qef.sharp()) return;
+      surface_.marks[vertex_] = kSharp;
+      sharp.push_back(cycle.cell);
       return;
     }
     const bool stay = !cycle.alone || cycle.weak || qef.residual(x) > kBroken;
@@ -184,19 +188,13 @@ class Plane {
     specials.push_back({vertex_, cycle.cell, anchor, candidate});
   }
 
-  /// Vertices of one cell (all inside it) that would coincide: the later one moves along z.
-  Vec3 apart_from_siblings(const Vec3i& cell, Vec3 v) const {
-    const auto taken = [&] {
+  /// Vertices of one cell (all inside it) that would coincide: the later one gives way.
+  Vec3 apart_from_siblings(const Vec3i& cell, const Vec3& v) const {
+    return grid_.free_place(cell, v, [&](const Vec3& place) {
       for (auto s = specials.rbegin(); s != specials.rend() && s->cell == cell; ++s)
-        if (surface_.mesh.vertices[s->vertex] == v) return true;
+        if (surface_.mesh.vertices[s->vertex] == place) return true;
       return false;
-    };
-    const Vec3 first = v;
-    for (int n = 1; taken(); ++n) {
-      const double up = n % 2 ? (n + 1) / 2 : -n / 2;
-      v = grid_.inside(cell, grid_.to_cell(cell, first + Vec3(0, 0, up * grid_.step())));
-    }
-    return v;
+    });
   }
 
   Surface& surface_;
@@ -206,6 +204,16 @@ class Plane {
   std::int32_t vertex_;
   std::size_t cursor_[8], edge_[12];
 };
+
+template <class T>
+std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
+  std::size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  std::vector<T> all;
+  all.reserve(count);
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
 
 }  // namespace
 
@@ -219,20 +227,18 @@ void place_vertices(Surface& surface, const Progress& progress) {
   surface.mesh.triangles.resize(2 * surface.counts.edges());
   surface.marks.assign(surface.counts.vertices(), 0);
   std::vector<std::vector<Special>> specials(surface.lattice.cells(0));
+  std::vector<std::vector<Vec3i>> sharp(specials.size());
   parallel_for(
       specials.size(), 4,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           Plane plane(surface, static_cast<int>(i));
           plane.run();
-          specials[i] = std::move(plane.specials);
+          specials[i] = std::move(plane.specials), sharp[i] = std::move(plane.sharp);
         }
       },
       progress);
-  std::size_t count = 0;
-  for (const auto& s : specials) count += s.size();
-  surface.specials.reserve(count);
-  for (const auto& s : specials) surface.specials.insert(surface.specials.end(), s.begin(), s.end());
+  surface.specials = joined(specials), surface.sharp = joined(sharp);
 }
 
 }  // namespace riffler::marching
