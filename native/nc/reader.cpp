@@ -22,7 +22,7 @@ namespace {
 constexpr double kInch = 25.4;
 /// Rows that chords may make of one block, and of a program: a bound on memory against damaged numbers.
 constexpr int kMaxChords = 1'000'000;
-constexpr std::size_t kMaxRows = 50'000'000;
+constexpr std::size_t kMaxRows = 20'000'000;
 
 enum class Mode : std::uint8_t { None, Rapid, Feed, Clockwise, Counter };
 
