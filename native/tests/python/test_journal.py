@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-
 import riffler
 
 BALL = riffler.Tool.ball(6, 30).named("ball é")

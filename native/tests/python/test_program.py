@@ -4,10 +4,9 @@ import re
 
 import numpy as np
 import pytest
+import riffler
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-import riffler
 
 FIXED = settings(derandomize=True, deadline=None, max_examples=60, database=None)
 WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
