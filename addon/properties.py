@@ -23,6 +23,7 @@ DIRECTIONS = (
 SOURCES = (
     ("BLOCK", "Block", "A box of material at the 3D cursor"),
     ("OBJECT", "Object", "The active object, with its modifiers, as material"),
+    ("RECORDING", "Recording", "The stock that a recording (.rjournal) was made on"),
 )
 ORIGINS = (
     ("CORNER", "Lower corner", "The object's origin, which is the origin of NC code, lies at the lowest corner"),
@@ -57,6 +58,7 @@ class StockSettings:
     """Shared by the panel's settings and the operator."""
 
     source: EnumProperty(name="From", items=SOURCES, default="BLOCK")
+    recording: StringProperty(name="Recording", subtype="FILE_PATH", description="A recording (.rjournal)")
     size: FloatVectorProperty(
         name="Size", default=(100, 60, 30), min=0.001, max=1e5, precision=2, description="Block along x, y and z, in mm"
     )
@@ -162,6 +164,7 @@ class RifflerMesh(bpy.types.PropertyGroup):
     store: PointerProperty(type=bpy.types.Image)
     mm_per_unit: FloatProperty(default=1000.0)
     shown: IntVectorProperty(size=2)
+    shown_at: FloatVectorProperty(size=24)
     lower: FloatVectorProperty()
     upper: FloatVectorProperty()
     pitch: FloatProperty()

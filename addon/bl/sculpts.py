@@ -48,7 +48,7 @@ def show(mesh, surface, mm_per_unit):
     meshes.fill(mesh, np.asarray(surface.vertices) / mm_per_unit, surface.triangles)
     p = mesh.riffler
     p.mm_per_unit = mm_per_unit
-    p.shown = (len(mesh.vertices), len(mesh.polygons))
+    p.shown, p.shown_at = _fingerprint(mesh)
 
 
 def refill(mesh, mm_per_unit):
@@ -57,8 +57,17 @@ def refill(mesh, mm_per_unit):
 
 
 def edited(mesh):
-    """True where the mesh has other counts than the surface that was last shown."""
-    return tuple(mesh.riffler.shown) != (len(mesh.vertices), len(mesh.polygons))
+    """True where the mesh is not the surface that was last shown: other counts, or other places of a few vertices (as
+    after Apply Scale). Cheap enough for every drawing of a panel; a few pulled vertices may escape it."""
+    counts, places = _fingerprint(mesh)
+    return tuple(mesh.riffler.shown) != counts or tuple(mesh.riffler.shown_at) != places
+
+
+def _fingerprint(mesh):
+    n = len(mesh.vertices)
+    if n == 0:
+        return (0, len(mesh.polygons)), (0.0,) * 24
+    return (n, len(mesh.polygons)), tuple(x for k in range(8) for x in mesh.vertices[k * (n - 1) // 7].co)
 
 
 def shown_mm_per_unit(mesh):

@@ -7,9 +7,10 @@ volume as one thing, and it goes when the mesh goes. A copy of a mesh shares the
 
 import bpy
 
+import riffler
+
 from ..core import record
 from ..core.cache import Content, ContentCache
-from . import volumes
 
 IDENTITY = "riffler_content"  # on the image: the hash of what is packed in it
 _cache = ContentCache()
@@ -34,14 +35,14 @@ def content(mesh):
     found = _cache.get(key)
     if found is None:
         block, cuts = record.decode(_packed(mesh.riffler.store), key)
-        found = Content(volumes.from_bytes(block), cuts)
+        found = Content(riffler.Volume.from_bytes(block, mesh.name), cuts)
         _cache.put(key, found)
     return found
 
 
 def write(mesh, volume, cuts):
     """Makes `volume` and `cuts` the mesh's content; returns the bytes kept. The volume must not be changed after it."""
-    block = record.encode(volumes.to_bytes(volume), cuts)
+    block = record.encode(volume.to_bytes(), cuts)
     key = record.content_id(block)
     image = mesh.riffler.store
     if image is None or image.library or _shared(mesh, image):

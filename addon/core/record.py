@@ -32,8 +32,8 @@ def encode(volume: bytes, cuts: list[Cut]) -> bytes:
     return b"".join([_HEAD.pack(MAGIC, VERSION, len(text)), text, volume, *poses])
 
 
-def decode(block: bytes, identity: str | None = None) -> tuple[bytes, list[Cut]]:
-    """The volume's bytes and the cuts. ValueError says what is wrong with a block that is not whole."""
+def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[Cut]]:
+    """A view of the volume's bytes, and the cuts. ValueError says what is wrong with a block that is not whole."""
     if identity is not None and content_id(block) != identity:
         raise ValueError("the sculpt's data in this .blend is damaged: its checksum is another one")
     if len(block) < _HEAD.size or block[:8] != MAGIC:
@@ -49,7 +49,7 @@ def decode(block: bytes, identity: str | None = None) -> tuple[bytes, list[Cut]]
         wanted = at + header["volume"] + sum(48 * c["rows"] for c in header["cuts"])
         if wanted != len(block):
             raise ValueError(f"{wanted} bytes expected, {len(block)} found")
-        volume = block[at : at + header["volume"]]
+        volume = memoryview(block)[at : at + header["volume"]]
         at += header["volume"]
         cuts = []
         for c in header["cuts"]:

@@ -10,8 +10,9 @@ import time
 
 import bpy
 import numpy as np
-import riffler
 from bpy_extras.io_utils import ImportHelper
+
+import riffler
 
 from .. import properties
 from ..bl import sculpts, store
@@ -158,6 +159,8 @@ class CutShell:
     def _start(self, context, ob):
         self._begin = time.perf_counter()
         content = store.content(ob.data)
+        if sculpts.edited(ob.data):
+            self.report({"WARNING"}, "The mesh had been edited: the cut starts from the volume, the edits are gone")
         cuts = self.make_cuts(context, ob)
         self._job = CutJob(content.volume.copy(), cuts, riffler.Tool.from_dict)
         self._before = content.cuts

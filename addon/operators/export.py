@@ -2,8 +2,9 @@
 
 import bpy
 import numpy as np
-import riffler
 from bpy_extras.io_utils import ExportHelper
+
+import riffler
 
 from .. import properties
 from ..bl import sculpts, store
@@ -44,6 +45,8 @@ class RIFFLER_OT_export_stl(Export, bpy.types.Operator):
     )
 
     def write(self, context, ob, path):
+        if sculpts.edited(ob.data):
+            self.report({"WARNING"}, "The mesh was edited: what is written is the volume, without the edits")
         surface = store.content(ob.data).volume.to_mesh()
         if self.world:
             surface = placed(surface, sculpts.to_world_mm(ob, context.scene))

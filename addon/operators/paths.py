@@ -1,5 +1,7 @@
 """Cuts from curves and recordings."""
 
+from pathlib import Path
+
 import riffler
 
 from ..bl import curves as bl_curves
@@ -47,6 +49,16 @@ def from_recording(path):
     if not cuts:
         raise ValueError("the recording has no stroke with two poses")
     return cuts, journal.stock
+
+
+def stock_of_recording(path):
+    """The volume that a recording begins with: its snapshot, which lies beside it, or the full block."""
+    stock = riffler.Journal.read(path).stock
+    if stock is None:
+        raise ValueError(f"{Path(path).name} does not say what stock it was made on")
+    if stock["snapshot"]:
+        return riffler.Volume.load(Path(path).with_name(stock["snapshot"]))
+    return riffler.Volume.block(stock["lower"], stock["upper"], stock["pitch"], stock["directions"])
 
 
 def to_recording(cuts, volume):

@@ -2,14 +2,15 @@
 
 import bpy
 import numpy as np
-import riffler
 from mathutils import Matrix
+
+import riffler
 
 from .. import properties
 from ..bl import meshes, sculpts, units
 from ..core import estimate, poses
 from ..core import units as names
-from . import shared
+from . import paths, shared
 
 SOURCE_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
@@ -50,10 +51,14 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
         return done
 
     def execute(self, context):
+        make = {"BLOCK": self._block, "OBJECT": self._from_object, "RECORDING": self._from_recording}[self.source]
+        context.window_manager.progress_begin(0, 100)
         try:
-            ob = self._block(context) if self.source == "BLOCK" else self._from_object(context)
-        except (ValueError, MemoryError) as error:
+            ob = make(context)
+        except (ValueError, OSError, RuntimeError, MemoryError) as error:
             return shared.fail(self, error)
+        finally:
+            context.window_manager.progress_end()
         size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
         triangles = names.format_count(len(ob.data.polygons))
         self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles} triangles")
@@ -81,15 +86,27 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
         if np.linalg.det(to_stock[:3, :3]) < 0:
             triangles = np.ascontiguousarray(triangles[:, ::-1])
         mesh = riffler.Mesh(vertices, triangles)
-        volume = riffler.Volume.from_mesh(mesh, names.clean(self.pitch), self.directions)
+        wm = context.window_manager
+        volume = riffler.Volume.from_mesh(
+            mesh, names.clean(self.pitch), self.directions, progress=lambda share: wm.progress_update(100 * share)
+        )
         ob = sculpts.new_object(context, f"{source.name} Stock", volume, frame)
         source.hide_set(True)
         return ob
+
+    def _from_recording(self, context):
+        if not self.recording:
+            raise ValueError("choose a recording (.rjournal)")
+        volume = paths.stock_of_recording(bpy.path.abspath(self.recording))
+        return sculpts.new_object(context, "Stock", volume, Matrix.Translation(context.scene.cursor.location))
 
     def draw(self, context):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "source")
+        if self.source == "RECORDING":
+            layout.prop(self, "recording")
+            return
         if self.source == "BLOCK":
             layout.prop(self, "size", text="Size (mm)")
             layout.prop(self, "origin")

@@ -57,9 +57,10 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
     def _warnings(self, layout, context, ob):
         mesh = ob.data
         stale = sculpts.shown_mm_per_unit(mesh) != units.mm_per_unit(context.scene)
+        edited = sculpts.edited(mesh)
         if stale:
             lines(layout, "The scene's units have changed;", "the mesh shows another size.", icon="ERROR")
-        elif sculpts.edited(mesh):
+        elif edited:
             lines(
                 layout,
                 "The mesh was edited; the next cut",
@@ -67,7 +68,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
                 "edits: new stock from object.",
                 icon="ERROR",
             )
-        if stale or sculpts.edited(mesh):
+        if stale or edited:
             layout.operator(stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
         if any(abs(s - 1) > 1e-5 for s in ob.scale):
             lines(layout, "The object is scaled: tools are sized", "in its own millimetres.", icon="ERROR")
@@ -84,6 +85,9 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         size = self._size(layout, context, settings)
         layout.use_property_split = True
         layout.use_property_decorate = False
+        if settings.source == "RECORDING":
+            self._button(layout, settings)
+            return
         row = layout.row(align=True)
         row.prop(settings, "pitch")
         row.operator(stock.RIFFLER_OT_fit_pitch.bl_idname, text="", icon="SHADERFX")
@@ -108,6 +112,9 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
             column.label(text="Size")
             column.row(align=True).prop(settings, "size", text="")
             return [names.clean(s) for s in settings.size]
+        if settings.source == "RECORDING":
+            layout.prop(settings, "recording", text="")
+            return None
         source = stock.source_object(context)
         if source is None:
             lines(layout, "Select an object.", icon="INFO")

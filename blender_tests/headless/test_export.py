@@ -133,7 +133,9 @@ def test_a_recording_makes_the_same_sculpt_again():
     path = support.out("strokes.rjournal")
     bpy.ops.riffler.export_recording(filepath=path)
     first = support.content(ob)
-    again = support.stock()
+    bpy.ops.riffler.new_stock(source="RECORDING", recording=path)
+    again = bpy.context.object
+    assert again != ob and support.content(again).volume.volume == 24000
     bpy.ops.riffler.cut_recording(filepath=path)
     second = support.content(again)
     assert support.same(support.shape(first.volume), support.shape(second.volume))
@@ -148,4 +150,5 @@ def test_what_is_no_recording_is_named():
     path.write_bytes(b"hello")
     support.refused(lambda: bpy.ops.riffler.cut_recording(filepath=str(path)), "bad.rjournal")
     support.refused(lambda: bpy.ops.riffler.cut_recording(filepath=str(path) + "x"), "bad.rjournalx")
+    support.refused(lambda: bpy.ops.riffler.new_stock(source="RECORDING", recording=str(path)), "bad.rjournal")
     assert support.content(ob).volume.volume == 24000

@@ -12,8 +12,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 import bpy
-
 import harness
+
 import support
 
 PATIENCE = 120  # s for one condition; a software renderer on a busy machine is slow

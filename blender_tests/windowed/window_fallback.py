@@ -5,8 +5,8 @@ import tempfile
 from pathlib import Path
 
 import bpy
-
 import harness
+
 import support
 
 INSTALL = False
