@@ -143,7 +143,7 @@ class CutShell:
         self._told = time.perf_counter()
         state = context.window_manager.riffler
         state.percent = 100 * self._job.fraction
-        state.text = f"{units.format_count(self._job.done)} of {units.format_count(self._job.total)} moves"
+        state.text = f"Move {units.format_count(self._job.done)} of {units.format_count(self._job.total)}; Esc cancels"
         context.window_manager.progress_update(state.percent)
         context.workspace.status_text_set(f"Riffler: cutting, {state.percent:.0f} %    Esc: cancel")
         _redraw(context)

@@ -28,11 +28,6 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        state = context.window_manager.riffler
-        if state.running:
-            ui.progress(layout, state)
-            lines(layout, state.text, "Esc cancels", icon="BLANK1")
-            return
         ob = sculpts.active(context)
         if ob is None:
             lines(layout, "No sculpt is active.", "Make a new stock below.", icon="INFO")
@@ -171,6 +166,11 @@ class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
         column.prop(settings, "depth")
         column.prop(settings, "tolerance")
         layout.prop(settings, "follow")
+        state = context.window_manager.riffler
+        if state.running:  # in the place of the two buttons, so that nothing moves
+            ui.progress(layout, state)
+            layout.label(text=state.text)
+            return
         op = layout.operator(cut.RIFFLER_OT_cut_curve.bl_idname, icon="CURVE_DATA")
         op.curve = settings.curve.name if settings.curve else ""
         for key in properties.CutSettings.__annotations__:
