@@ -69,7 +69,8 @@ def plot(path: Path, strokes: list[Felt], title: str) -> None:
     parts.set_ylabel("force  N")
     turning.set_ylabel("torque about the tip  N·mm")
     turning.set_xlabel("time  s")
-    parts.legend(loc="upper right", ncols=3, frameon=False, handlelength=1.4)
+    lines, letters = parts.get_legend_handles_labels()
+    figure.legend(lines, letters, loc="upper right", bbox_to_anchor=(0.985, 0.99), ncols=3, frameon=False)
 
     for index, (label, start, end) in enumerate(groups(strokes)):
         for axis in axes:

@@ -63,7 +63,7 @@ def new_material(name: str, light: tuple, dark: tuple, stain: tuple, roughness: 
         link(grain(material), figure.inputs["Fac"])
     hollow = node(material, "ShaderNodeAmbientOcclusion", distance=3.0)
     hollow.samples, hollow.only_local = 2, True
-    open_sky = ramp(material, 0.5, (0.0, 0.0, 0.0), 0.97, (1.0, 1.0, 1.0))
+    open_sky = ramp(material, 0.52, (0.0, 0.0, 0.0), 0.985, (1.0, 1.0, 1.0))
     stained = node(material, "ShaderNodeMixRGB", color1=(*stain, 1.0), color2=(*light, 1.0))
     link(hollow.outputs["AO"], open_sky.inputs["Fac"])
     link(open_sky.outputs["Color"], stained.inputs["Fac"])
@@ -159,7 +159,9 @@ def render_settings(scene, samples: int, threads: int) -> None:
     scene.cycles.use_denoising = True
     scene.cycles.max_bounces = 5
     scene.cycles.seed = 1
+    scene.cycles.time_limit = 80.0  # s; what is missing then is left to the denoiser
     scene.view_settings.view_transform = "AgX"
+    scene.view_settings.exposure = 0.12
     scene.view_settings.look = "AgX - Medium High Contrast"
     scene.unit_settings.system = "METRIC"
     scene.unit_settings.scale_length = 0.001

@@ -219,9 +219,9 @@ def journal(strokes: list[Stroke]):
 
     log = riffler.Journal()
     for number, tool in tools().items():
-        log.add_tool(number, tool.to_dict())
+        log.add_tool(number, tool)
     for stroke in strokes:
-        log.add_stroke(stroke.poses, stroke.times, tool=stroke.tool, tolerance=0.005, name=stroke.name)
+        log.add_stroke(tool=stroke.tool, poses=stroke.poses, times=stroke.times, tolerance=0.01, name=stroke.name)
     return log
 
 
