@@ -8,8 +8,8 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-
 import riffler
+
 import support
 
 RUNS = 5

@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # run as a script, not only as `python -m demo.run`
 
 import riffler  # noqa: E402
+
 from demo import egg, forces, report  # noqa: E402
 
 REPLAY_TOOL = riffler.Tool.ball(diameter=3.0, length=10.0)

@@ -6,7 +6,6 @@ volume as one thing, and it goes when the mesh goes. A copy of a mesh shares the
 """
 
 import bpy
-
 import riffler
 
 from ..core import record

@@ -10,9 +10,8 @@ import time
 
 import bpy
 import numpy as np
-from bpy_extras.io_utils import ImportHelper
-
 import riffler
+from bpy_extras.io_utils import ImportHelper
 
 from .. import properties
 from ..bl import sculpts, store

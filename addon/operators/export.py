@@ -2,9 +2,8 @@
 
 import bpy
 import numpy as np
-from bpy_extras.io_utils import ExportHelper
-
 import riffler
+from bpy_extras.io_utils import ExportHelper
 
 from .. import properties
 from ..bl import sculpts, store

@@ -2,9 +2,8 @@
 
 import bpy
 import numpy as np
-from mathutils import Matrix
-
 import riffler
+from mathutils import Matrix
 
 from .. import properties
 from ..bl import meshes, sculpts, units

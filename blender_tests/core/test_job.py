@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+
 from addon.core.job import Cut, CutJob, RefreshClock, slice_budget
 
 

@@ -4,6 +4,7 @@ import tomllib
 import zipfile
 
 import pytest
+
 from addon import package
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from addon.core import poses
 
 ANGLE = np.linspace(0, 2 * np.pi, 73)

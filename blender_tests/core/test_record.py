@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from addon.core import cache, diagnosis, estimate, presets, record, units
 from addon.core.job import Cut
 

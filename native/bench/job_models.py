@@ -7,9 +7,8 @@ import time
 from pathlib import Path
 
 import numpy as np
-from report import Table
-
 import riffler
+from report import Table
 
 MODELS = Path(os.environ.get("RIFFLER_MODELS", "../shared/models"))
 

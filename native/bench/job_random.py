@@ -5,10 +5,9 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
+import riffler
 from report import Table
 from scenes import random_volume
-
-import riffler
 
 COUNTS = ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "degenerate", "duplicates", "folds")
 

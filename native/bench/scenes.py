@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-
 import riffler
 
 BLOCK = ([0, 0, 0], [100, 60, 30])

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 import riffler
 from riffler.command import console, doctor, tools
 

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 import riffler
 
 ROOT = Path(__file__).resolve().parents[3]
