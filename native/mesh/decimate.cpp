@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "geom/float32.hpp"
 #include "mesh/collapse.hpp"
 #include "mesh/half_edge.hpp"
 #include "mesh/quadric.hpp"
-#include "mesh/surface_samples.hpp"
+#include "mesh/tolerance_check.hpp"
 
 namespace riffler {
 
@@ -26,9 +27,9 @@ using OpenMesh::VertexHandle;
 /// in the file either, and quadrics keep their digits far from the origin.
 Mesh rounded(const Mesh& mesh) {
   const Box3 box = bounds(mesh);
-  const Vec3 centre(Vec3f(0.5 * box.lower + 0.5 * box.upper));
+  const Vec3 centre = to_float32(0.5 * box.lower + 0.5 * box.upper);
   Mesh result = mesh;
-  for (Vec3& v : result.vertices) v = Vec3(Vec3f(v)) - centre;
+  for (Vec3& v : result.vertices) v = to_float32(v) - centre;
   return result;
 }
 
@@ -134,11 +135,11 @@ class Queue {
 /// What is left of the tolerance for the rounded surface, so that the unrounded one keeps to it.
 double left_after_rounding(double tolerance, const Mesh& mesh) {
   double largest = 0;
-  for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(Vec3(Vec3f(v)) - v));
+  for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(to_float32(v) - v));
   return std::max(0.0, tolerance - 2 * largest);
 }
 
-void check(const DecimateLimits& limits) {
+void check_limits(const DecimateLimits& limits) {
   if (!limits.triangles && !limits.tolerance) throw std::invalid_argument("decimate needs triangles or tolerance");
   if (limits.tolerance && !(*limits.tolerance >= 0 && std::isfinite(*limits.tolerance)))
     throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*limits.tolerance));
@@ -147,7 +148,7 @@ void check(const DecimateLimits& limits) {
 }  // namespace
 
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress) {
-  check(limits);
+  check_limits(limits);
   validate(mesh);
   const std::size_t target = limits.triangles.value_or(0);
   if (mesh.triangles.size() <= target || mesh.empty()) return mesh;
@@ -155,9 +156,9 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   const Mesh local = rounded(mesh);
   HalfEdges half_edges(local);
   HalfEdgeMesh& half_mesh = half_edges.mesh;
-  std::unique_ptr<SurfaceSamples> samples;
+  std::unique_ptr<ToleranceCheck> distance;
   if (limits.tolerance)
-    samples = std::make_unique<SurfaceSamples>(local, half_mesh, left_after_rounding(*limits.tolerance, mesh));
+    distance = std::make_unique<ToleranceCheck>(half_edges, left_after_rounding(*limits.tolerance, mesh));
   report(progress, 0.1);
   Queue queue(half_mesh);
   report(progress, 0.2);
@@ -166,8 +167,8 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   Collapse collapse(half_mesh);
   std::size_t left = start;
   for (std::size_t step = 0; left > target && !queue.empty(); ++step) {
-    if (step % 4096 == 0) report(progress, 0.2 + 0.8 * static_cast<double>(start - left) / static_cast<double>(goal));
-    if (!collapse.prepare(queue.front()) || (samples && !samples->allow(collapse))) {
+    if (step % 256 == 0) report(progress, 0.2 + 0.8 * static_cast<double>(start - left) / static_cast<double>(goal));
+    if (!collapse.prepare(queue.front()) || (distance && !distance->allow(collapse))) {
       queue.reject();
       continue;
     }
@@ -175,7 +176,7 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
     queue.merge(collapse.from(), collapse.to());
     left -= collapse.faces_lost();
     collapse.commit();
-    if (samples) samples->commit(collapse);
+    if (distance) distance->commit(collapse);
     queue.refresh(collapse.to());
     for (const VertexHandle v : half_mesh.vv_range(collapse.to())) queue.refresh(v);
   }

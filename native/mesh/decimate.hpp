@@ -22,8 +22,7 @@ struct DecimateLimits {
 /// triangles left than asked for where no further collapse keeps to all this. Triangles that name a vertex twice are
 /// dropped.
 ///
-/// The tolerance is checked, in both directions, wherever the distance between the old surface and the new one can be
-/// largest: at vertices removed, at middles of edges removed, where new edges pass over old ones and along new borders.
+/// The tolerance bounds the distance of every point of either surface from the other (see ToleranceCheck).
 ///
 /// std::invalid_argument where `validate` throws, without a limit, or for a tolerance that is negative or not finite.
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress = {});

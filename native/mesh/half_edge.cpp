@@ -2,8 +2,6 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include "mesh/half_edge.hpp"
 
-#include "mesh/adjacency.hpp"
-
 namespace riffler {
 
 namespace {
@@ -11,37 +9,30 @@ namespace {
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-/// The vertex of each corner after vertices with several fans were split, and its source.
-struct Corners {
-  std::vector<int> vertex;
-  std::vector<int> source;
-
-  Corners(const Mesh& mesh, const Adjacency& adjacency) : vertex(3 * mesh.triangles.size(), -1) {
-    const int n = static_cast<int>(vertex.size());
-    for (int corner = 0; corner < n; ++corner) {
-      if (vertex[corner] >= 0 || repeats_a_vertex(mesh.triangles[corner / 3])) continue;
-      const int here = static_cast<int>(source.size());
-      source.push_back(start_of(mesh, corner));
-      // Round the vertex one way, and if there is a border, from the start the other way.
-      int at = corner;
-      do {
-        vertex[at] = here;
-        const int twin = adjacency.twin(previous_half(at));
-        at = twin;
-      } while (at >= 0 && at != corner);
-      for (int twin = adjacency.twin(corner); at < 0 && twin >= 0; twin = adjacency.twin(next_half(twin)))
-        vertex[next_half(twin)] = here;
-    }
+/// Numbers the fans of all vertices: the fan of each corner, and the vertex of each fan.
+void number_fans(const Mesh& mesh, const Adjacency& adjacency, std::vector<int>& fan, std::vector<int>& vertex) {
+  const int n = static_cast<int>(3 * mesh.triangles.size());
+  fan.assign(static_cast<std::size_t>(n), -1);
+  for (int corner = 0; corner < n; ++corner) {
+    if (fan[corner] >= 0 || repeats_a_vertex(mesh.triangles[corner / 3])) continue;
+    const int here = static_cast<int>(vertex.size());
+    vertex.push_back(start_of(mesh, corner));
+    // Round the vertex one way, and if there is a border, from the start the other way.
+    int at = corner;
+    do {
+      fan[at] = here;
+      at = adjacency.twin(previous_half(at));
+    } while (at >= 0 && at != corner);
+    for (int twin = adjacency.twin(corner); at < 0 && twin >= 0; twin = adjacency.twin(next_half(twin)))
+      fan[next_half(twin)] = here;
   }
-};
+}
 
 }  // namespace
 
-HalfEdges::HalfEdges(const Mesh& from) {
-  const Adjacency adjacency(from);
-  Corners corners(from, adjacency);
-  source = std::move(corners.source);
-  const int halves = static_cast<int>(corners.vertex.size());
+HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
+  number_fans(from, adjacency, corner, source);
+  const int halves = static_cast<int>(corner.size());
   mesh.reserve(source.size(), static_cast<std::size_t>(halves) / 2 + 1, from.triangles.size());
   std::vector<int> copies(from.vertices.size(), 0);
   for (const int v : source) ++copies[v], mesh.add_vertex(to_openmesh(from.vertices[v]));
@@ -49,24 +40,24 @@ HalfEdges::HalfEdges(const Mesh& from) {
   // The connectivity is known, so it is set directly: OpenMesh's add_face would search for it again, and depends on the
   // order of the faces.
   std::vector<HalfedgeHandle> handle(halves), out_border(source.size());
-  const auto end_corner = [&](int half) { return corners.vertex[next_half(half)]; };
+  const auto end_corner = [&](int half) { return corner[next_half(half)]; };
   for (int half = 0; half < halves; ++half) {
-    if (corners.vertex[half] < 0 || handle[half].is_valid()) continue;
-    handle[half] = mesh.new_edge(VertexHandle(corners.vertex[half]), VertexHandle(end_corner(half)));
+    if (corner[half] < 0 || handle[half].is_valid()) continue;
+    handle[half] = mesh.new_edge(VertexHandle(corner[half]), VertexHandle(end_corner(half)));
     const HalfedgeHandle opposite = mesh.opposite_halfedge_handle(handle[half]);
     if (const int twin = adjacency.twin(half); twin >= 0) {
       handle[twin] = opposite;
     } else {
       out_border[end_corner(half)] = opposite;
       const bool open = adjacency.is_open(half);
-      for (const int v : {corners.vertex[half], end_corner(half)})
+      for (const int v : {corner[half], end_corner(half)})
         if (!open) mesh.status(VertexHandle(v)).set_locked(true);
     }
   }
   for (int half = 0; half < halves; ++half) {
-    if (corners.vertex[half] < 0) continue;
+    if (corner[half] < 0) continue;
     mesh.set_next_halfedge_handle(handle[half], handle[next_half(half)]);
-    mesh.set_halfedge_handle(VertexHandle(corners.vertex[half]), handle[half]);
+    mesh.set_halfedge_handle(VertexHandle(corner[half]), handle[half]);
     if (half % 3 == 0) {
       const OpenMesh::FaceHandle face = mesh.new_face();
       mesh.set_halfedge_handle(face, handle[half]);

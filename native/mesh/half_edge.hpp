@@ -4,6 +4,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <vector>
 
+#include "mesh/adjacency.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {
@@ -32,6 +33,9 @@ inline OpenMesh::Vec3d to_openmesh(const Vec3& p) {
 struct HalfEdges {
   HalfEdgeMesh mesh;
   std::vector<int> source;  // vertex here → vertex of the mesh it was made of
+  // Of the mesh as it was, whatever happens to the half-edges:
+  Adjacency adjacency;
+  std::vector<int> corner;  // vertex here at which each half-edge of `adjacency` starts, -1 for triangles left out
 
   explicit HalfEdges(const Mesh& from);
   /// Triangles that are not deleted, in their old order, with the vertices of `from` that they use, in their old order.

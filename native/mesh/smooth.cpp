@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/float32.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/weld.hpp"
@@ -15,7 +16,7 @@ namespace riffler {
 namespace {
 
 constexpr std::size_t kGrain = 1 << 13;
-constexpr double kShrink = 0.5, kInflate = -0.53;
+constexpr double kShrink = 0.5, kInflate = -0.51;
 
 /// The neighbours of every vertex; none for those that must stay.
 class Neighbours {
@@ -68,7 +69,7 @@ void step(const std::vector<Vec3>& from, std::vector<Vec3>& to, const Mesh& mesh
 }
 
 Vec3 cross_in_float(const std::vector<Vec3>& vertices, const Vec3i& t) {
-  const Vec3 a(Vec3f(vertices[t.x])), b(Vec3f(vertices[t.y])), c(Vec3f(vertices[t.z]));
+  const Vec3 a = to_float32(vertices[t.x]), b = to_float32(vertices[t.y]), c = to_float32(vertices[t.z]);
   return glm::cross(b - a, c - a);
 }
 
@@ -115,10 +116,10 @@ class Repair {
 
   /// Vertices that moved onto another one.
   void mark_meeting() {
-    Welder<Vec3f> welder(vertices_.size());
+    Welder<Vec3> welder(vertices_.size());
     std::vector<int> first;
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
-      const int place = welder.add(Vec3f(vertices_[v]));
+      const int place = welder.add(to_float32(vertices_[v]));
       if (place == static_cast<int>(first.size()))
         first.push_back(static_cast<int>(v));
       else
