@@ -3,6 +3,34 @@
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """
 
-from ._core import Cancelled, FormatError, Mesh, __version__
+from ._core import (
+    Cancelled,
+    Cut,
+    FormatError,
+    Journal,
+    JournalStroke,
+    JournalWriter,
+    Mesh,
+    Program,
+    Snapshot,
+    Tool,
+    Volume,
+    __version__,
+    machines,
+)
 
-__all__ = ["Cancelled", "FormatError", "Mesh", "__version__"]
+__all__ = [
+    "Cancelled",
+    "Cut",
+    "FormatError",
+    "Journal",
+    "JournalStroke",
+    "JournalWriter",
+    "Mesh",
+    "Program",
+    "Snapshot",
+    "Tool",
+    "Volume",
+    "__version__",
+    "machines",
+]
