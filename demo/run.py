@@ -151,6 +151,8 @@ def main() -> int:
     parser.add_argument("--pitch", type=float, default=0.25, help="mm between rays")
     parser.add_argument("--samples", type=int, default=24, help="of the renderer, which stops after 80 s at the latest")
     options = parser.parse_args()
+    if not options.blender_python.exists():
+        parser.error(f"{options.blender_python} is not there: a Python with Blender's module bpy 4.5 is needed")
     out, stages = options.out, Stages()
     out.mkdir(parents=True, exist_ok=True)
     head, other = report.Piece("Suzanne", "recorded tools"), report.Piece("Egg", f"replayed, {REPLAY_TOOL.name}")
