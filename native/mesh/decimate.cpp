@@ -118,12 +118,14 @@ class Queue {
       heap_.insert(v);
   }
 
-  /// Mean square distance (mm²) from the planes of both ends, and a little for length: among equals, as everywhere in a
-  /// plane, short edges go first and the triangles stay well shaped.
+  /// Distance from the planes of both ends, squared, times area, and a little for length: among equals, as everywhere
+  /// in a plane, short edges go first and the triangles stay well shaped.
   double cost_of(HalfedgeHandle half) const {
     const VertexHandle from = mesh_.from_vertex_handle(half), to = mesh_.to_vertex_handle(half);
     const Vec3 p = to_vec3(mesh_.point(to)), edge = p - to_vec3(mesh_.point(from));
-    return mean_square(quadrics_[from.idx()], quadrics_[to.idx()], p) + 1e-8 * glm::dot(edge, edge);
+    const double length2 = glm::dot(edge, edge);
+    // Rounding may take the sum a little below 0.
+    return std::max(0.0, quadrics_[from.idx()](p) + quadrics_[to.idx()](p)) + 1e-8 * length2 * length2;
   }
 
   HalfEdgeMesh& mesh_;

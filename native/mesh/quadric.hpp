@@ -1,20 +1,16 @@
 // Quadric error metric.
 #pragma once
 
-#include <algorithm>
-
 #include "geom/vec.hpp"
 
 namespace riffler {
 
-/// Weighted sum of the squared distances from planes (Garland & Heckbert, SIGGRAPH 97, section 5), with its weight, so
-/// that the mean can be told: the sum alone calls a small error of a large region worse than a large one of a small
-/// one.
+/// Sum of the squared distances from planes, each times its area, mm⁴ (Garland & Heckbert, SIGGRAPH 97, section 5).
 struct Quadric {
   // xᵀ A x + 2 bᵀ x + c
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0;
   Vec3 b{0};
-  double c = 0, weight = 0;
+  double c = 0;
 
   Quadric() = default;
   Quadric(const Vec3& n, const Vec3& point, double w)
@@ -23,8 +19,7 @@ struct Quadric {
         zz(w * n.z * n.z),
         xy(w * n.x * n.y),
         yz(w * n.y * n.z),
-        zx(w * n.z * n.x),
-        weight(w) {
+        zx(w * n.z * n.x) {
     const double d = -glm::dot(n, point);
     b = (w * d) * n;
     c = w * d * d;
@@ -32,7 +27,7 @@ struct Quadric {
 
   Quadric& operator+=(const Quadric& q) {
     xx += q.xx, yy += q.yy, zz += q.zz, xy += q.xy, yz += q.yz, zx += q.zx;
-    b += q.b, c += q.c, weight += q.weight;
+    b += q.b, c += q.c;
     return *this;
   }
 
@@ -41,11 +36,5 @@ struct Quadric {
     return glm::dot(p, a + 2.0 * b) + c;
   }
 };
-
-/// Mean of both, mm²; never negative.
-inline double mean_square(const Quadric& q, const Quadric& r, const Vec3& p) {
-  const double weight = q.weight + r.weight;
-  return weight > 0 ? std::max(0.0, (q(p) + r(p)) / weight) : 0.0;
-}
 
 }  // namespace riffler
