@@ -73,7 +73,7 @@ class Filler {
 Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress)
     : mesh_(mesh),
       loops_(loops),
-      box_(bounds(mesh)),
+      box_(loops.empty() ? Box3{} : bounds(mesh)),
       grid_(grid),
       projection_(mesh, grid),
       passages_(loops.empty() ? std::vector<Passage>{} : find_passages(mesh, loops, projection_, grid, progress)),

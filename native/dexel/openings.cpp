@@ -6,7 +6,7 @@
 #include <limits>
 #include <tuple>
 
-#include "dexel/winding.hpp"
+#include "dexel/boundary_tree.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
@@ -51,8 +51,8 @@ class Search {
  public:
   using Rounded = std::function<int(int row, int column, double z)>;
 
-  Search(const BoundaryTree& tree, const Rounded& rounded, std::vector<Passage>& out)
-      : tree_(tree), rounded_(rounded), out_(out) {}
+  Search(const BoundaryTree& tree, const Rounded& rounded, bool with_gradients, std::vector<Passage>& out)
+      : tree_(tree), rounded_(rounded), with_gradients_(with_gradients), out_(out) {}
 
   /// Whether K may pass ½ in the block: second-order bound about its centre.
   bool may_pass(const Block& block) {
@@ -130,12 +130,13 @@ class Search {
 
   void add(double z, bool rising) {
     Passage passage{row_, column_, rising ? 1 : -1, z, Vec3(0)};
-    field_.at(Vec3(row_, column_, z), passage.gradient);
+    if (with_gradients_) field_.at(Vec3(row_, column_, z), passage.gradient);
     out_.push_back(passage);
   }
 
   const BoundaryTree& tree_;
   const Rounded& rounded_;  // K rounded to an integer, by boundary_winding
+  bool with_gradients_;
   std::vector<Passage>& out_;
   Field field_;
   double phase_ = 0, remainder_ = 0;
@@ -185,7 +186,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   const Search::Rounded rounded = [&](int row, int column, double z) {
     return static_cast<int>(std::lround(boundary_winding(loops, projection, pitch, row, column, base + z * pitch)));
   };
-  Search top_level(tree, rounded, passages);
+  Search top_level(tree, rounded, grid.has_normals(), passages);
   while (!pending.empty()) {
     const Block block = pending.back();
     pending.pop_back();
@@ -199,7 +200,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   parallel_for(
       tasks.size(), 1,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) Search(tree, rounded, found[k]).block(tasks[k]);
+        for (std::size_t k = begin; k < end; ++k) Search(tree, rounded, grid.has_normals(), found[k]).block(tasks[k]);
       },
       progress);
   for (const std::vector<Passage>& part : found) passages.insert(passages.end(), part.begin(), part.end());

@@ -1,5 +1,5 @@
 // Where columns pass through the openings of a broken part: the surfaces on which its boundary's share K of the winding
-// number (winding.hpp) is an odd multiple of ½.
+// number (field.hpp) is an odd multiple of ½.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ struct Passage {
   std::int32_t row, column;
   std::int32_t sign;
   double z;       ///< mm along the ray
-  Vec3 gradient;  ///< of K, in the cyclic frame, any length
+  Vec3 gradient;  ///< of K, in the cyclic frame, any length; only for grids with normals
 };
 
 /// All passages of the grid's columns, sorted by row, column and z. `loops` is the mesh's boundary.

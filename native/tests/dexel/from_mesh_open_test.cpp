@@ -8,7 +8,7 @@
 #include "dexel/from_mesh.hpp"
 #include "dexel/openings.hpp"
 #include "dexel/shapes.hpp"
-#include "dexel/winding.hpp"
+#include "dexel/boundary_tree.hpp"
 
 namespace riffler {
 namespace {

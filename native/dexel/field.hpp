@@ -11,7 +11,7 @@
 // K is harmonic away from ∂S; its gradient is the Biot–Savart field of a current along ∂S.
 #pragma once
 
-#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "geom/vec.hpp"
@@ -30,8 +30,8 @@ class Field {
   /// Prepares `at` for the column through (u, v).
   void set_column(double u, double v);
   Value at(double z) const;
-  /// Phase and gradient anywhere; set_column is not needed.
-  double at(const Vec3& p, Vec3& gradient) const;
+  /// Phase and gradient; sets the column through p.
+  double at(const Vec3& p, Vec3& gradient);
 
   /// Upper bound of the norm of K's second derivatives within `half` of z on the column set; infinity on an edge.
   double curvature(double z, double half) const;
@@ -48,62 +48,28 @@ class Field {
     Mat3 quadrupole;  // symmetric
     double trace;
   };
-  struct Column {
-    double rr, dot, cross;  // |α|²; with the point before: Re and Im of conj(α) β
-  };
 
+  Value sum(double z, Vec3* gradient) const;
   void clear();
   void add_edge(const std::vector<Vec3>& points, int a, int b);
+  void add_point(const Vec3& p, bool begins);
 
-  std::vector<Vec3> points_;          // polylines
-  std::vector<std::uint8_t> begins_;  // whether the point begins one
+  // The points of polylines, one after the other, padded to a multiple of kLanes when a column is set.
+  std::vector<double> x_, y_, z_, joined_;  // joined: 1 where an edge leads to the point from the one before, else 0
   std::vector<Multipole> far_;
   std::vector<std::pair<Vec3, Vec3>> near_;  // edges whose curvature depends on the place
   double far_curvature_ = 0;
-  double u_ = 0, v_ = 0;
-  std::vector<Column> column_;
   int last_ = -1;  // index of the last point added
+
+  double u_ = 0, v_ = 0;
+  // Of each point relative to the column, and of the edge that leads to it: Re and Im of conj(α) β.
+  std::vector<double> ax_, ay_, rr_, dot_, cross_;
+  mutable std::vector<double> scratch_;
 };
 
-/// The boundary as a tree: loops halved recursively into chains, and groups of loops. Every node knows the surface
-/// spanned between its chain and the chain's chord.
-class BoundaryTree {
- public:
-  /// Closed loops of points, in cells.
-  explicit BoundaryTree(const std::vector<std::vector<Vec3>>& loops);
-
-  bool empty() const { return nodes_.empty(); }
-  double length() const { return nodes_.empty() ? 0 : nodes_[root_].length; }
-
-  /// Fills `field` with what K needs within the box centre ± half, to kAccuracy for each multipole; returns an upper
-  /// bound of the norm of K's second derivatives there, infinity where an edge may pass through.
-  double gather(const Vec3& centre, const Vec3& half, Field& field) const;
-  /// The bound alone; stops at the first edge that is near.
-  double curvature(const Vec3& centre, const Vec3& half) const;
-
-  static constexpr double kAccuracy = 1e-7;
-
- private:
-  struct Node {
-    Vec3 centre{0};
-    double radius = 0;
-    double length = 0;  // of the boundary in the node
-    double area = 0;    // of the surface spanned, triangle by triangle
-    Vec3 dipole{0};     // area vector
-    Mat3 quadrupole{0};
-    int left = -1, right = -1;
-    int from = -1, to = -1;  // the chord's ends; −1 where the node is made of whole loops
-  };
-
-  int chain(int from, int to);
-  int group(std::vector<int>& loops, std::size_t begin, std::size_t end);
-  void join(Node& node) const;
-  template <class OnEdge, class OnFar>
-  double visit(const Vec3& centre, const Vec3& half, const OnEdge& on_edge, const OnFar& on_far) const;
-
-  std::vector<Vec3> points_;
-  std::vector<Node> nodes_;
-  int root_ = -1;
-};
+/// Distance of p from the segment ab.
+double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
+/// Bound of the norm of the second derivatives of K of an edge at the distance d or more from it.
+double edge_curvature(double length, double d);
 
 }  // namespace riffler
