@@ -4,7 +4,10 @@ target_compile_options(
   riffler_options
   INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
             # Results decide topology and must agree between machines: no contraction into fused multiply-adds.
-            -ffp-contract=off)
+            -ffp-contract=off
+            # Nobody reads errno after a square root or traps a comparison; without both they become vector
+            # instructions. Results are the same to the bit.
+            -fno-math-errno -fno-trapping-math)
 # A shared library is loaded only where something of it is called.
 target_link_options(riffler_options INTERFACE LINKER:--as-needed)
 if(RIFFLER_WERROR)
