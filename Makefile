@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup demo test test-cpp test-python test-docs test-blender bench lint format sanitize docs package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender bench lint format sanitize docs package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -16,6 +16,9 @@ help:  ## Show this list
 
 setup:  ## Install what is needed, make .venv, build riffler into it
 	@$(ready)
+
+envs:  ## Make an environment for every Blender that the tests use: .envs
+	@$(ready) test
 
 demo:  ## Carve the demo figure, write STL and NC code, render it: out/demo
 	@$(ready) demo
