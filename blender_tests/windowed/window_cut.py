@@ -63,14 +63,14 @@ def steps(screen):
     screen.shoot("02-new-stock")
 
     with screen.override():
-        settings.cut.curve = bpy.data.objects[spiral(6, 3000, "Spiral")]
+        settings.cut.curve = bpy.data.objects[spiral(6, 6000, "Spiral")]
         settings.cut.depth = 1.0
         bpy.ops.ed.undo_push(message="Curve")
     before = state()
     with screen.override():
         assert bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve="Spiral", depth=1) == {"RUNNING_MODAL"}
     assert running()
-    yield lambda: bpy.context.window_manager.riffler.percent > 40 or not running()
+    yield lambda: bpy.context.window_manager.riffler.percent > 20 or not running()
     assert running(), "the cut was over before it could be looked at"
     screen.shoot("03-cutting")
     yield lambda: not running()
@@ -84,6 +84,9 @@ def steps(screen):
 
     yield from undo_and_redo(screen, before, after)
     yield from cancel(screen, after)
+    # no undo step of its own: the first takes back the long curve, the second the cut before
+    yield from undo(screen, after)
+    assert "Long" not in bpy.data.objects
     yield from undo(screen, before)
 
 
@@ -110,9 +113,14 @@ def undo_and_redo(screen, before, after):
 
 def cancel(screen, after):
     """Esc in mid-cut, after the surface was shown half cut: all is as it was, and no undo step is left."""
+    name = spiral(6, 60_000, "Long")  # long enough on any machine
+    bpy.data.objects[name].hide_set(True)
+    bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
+    with screen.override():
+        bpy.ops.ed.undo_push(message="Long curve")
     faces = len(bpy.data.objects["Stock"].data.polygons)
     with screen.override():
-        bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve="Spiral", depth=6)
+        bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve=name, depth=6)
     yield lambda: len(bpy.data.objects["Stock"].data.polygons) != faces or not running()
     assert running(), "the cut was over before Esc"
     screen.key("ESC")
