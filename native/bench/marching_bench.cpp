@@ -2,8 +2,8 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "geom/parallel.hpp"
 #include "marching/surface.hpp"
@@ -14,9 +14,17 @@ namespace {
 
 constexpr double kRadius = 3;
 
-Vec3 centre(int n) {
-  const double a = n / 200.0;
-  return {10 + 80 * a, 30 + 15 * std::sin(12 * a), 30 - 2 * a};
+/// The ball's centre after n moves.
+const Vec3& centre(int n) {
+  static const std::array<Vec3, 201> centres = [] {
+    std::array<Vec3, 201> c;
+    for (int m = 0; m <= 200; ++m) {
+      const double a = m / 200.0;
+      c[m] = {10 + 80 * a, 30 + 15 * std::sin(12 * a), 30 - 2 * a};
+    }
+    return c;
+  }();
+  return centres[n];
 }
 
 /// Where the line p + s d meets the ball's sweep from a to b; empty where it does not.
