@@ -1,30 +1,10 @@
-// The .rvol file, all numbers little-endian:
-//
-//   header (96 bytes)  magic 8 | version u32 | directions, 4 characters | length of the file u64 | lower, upper, pitch
-//                      7 × f64 | spans stored u64 | tiles stored u32 | CRC-32 of what is before it u32
-//   then, for each grid in the order of `directions`, one "map" chunk and as many "tile" chunks as it takes:
-//   chunk (24 bytes)   kind, 4 characters | items u32 | spans u32 | payload's length u64 | CRC-32 of the 20 bytes
-//   before
-//                      and the payload u32 | payload
-//
-// A map chunk's items are the grid's tiles: a column u32 that says which stored tile stands there, 0 for the empty one,
-// 1, 2, … in order of first appearance. A tile chunk's items are the next stored tiles: columns of spans per ray (u32,
-// 1024 a tile), near ends, far ends (bits of a double, u64), and for "xyz" u and v of the near and the far normal
-// (u16). Columns are as planes.hpp has them. Tiles of equal content are stored once, whatever their history was: equal
-// volumes are equal files.
-#include "dexel/file.hpp"
-
-#include <zlib.h>
-
+// .rvol → volume
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
-#include <type_traits>
-#include <unordered_map>
 
+#include "dexel/file.hpp"
+#include "dexel/file_format.hpp"
 #include "dexel/planes.hpp"
 #include "geom/error.hpp"
 #include "geom/io.hpp"
@@ -32,182 +12,10 @@
 
 namespace riffler {
 
-static_assert(std::endian::native == std::endian::little, "the file's numbers are copied as they stand in memory");
-
 namespace {
 
+using namespace rvol;
 using TilePtr = std::shared_ptr<const Tile>;
-using Bytes = std::vector<std::uint8_t>;
-
-constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'R', 'V', 'O', 'L', '\r', '\n', 0x1A};
-constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kHeader = 96, kChunkHeader = 24;
-/// A tile chunk ends when it has this many tiles or spans: enough for deflate, small enough for every thread.
-constexpr std::size_t kChunkTiles = 64, kChunkSpans = std::size_t{1} << 18;
-constexpr std::uint32_t kMap = 0x2070616D, kTiles = 0x656C6974;  // "map ", "tile"
-
-std::uint32_t checksum(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b = {}) {
-  uLong crc = 0;
-  for (const auto part : {a, b})
-    if (!part.empty()) crc = crc32_z(crc, part.data(), part.size());  // a null pointer would start anew
-  return static_cast<std::uint32_t>(crc);
-}
-
-template <class T>
-void put(Bytes& out, const T& value) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  const std::size_t at = out.size();
-  out.resize(at + sizeof value);
-  std::memcpy(out.data() + at, &value, sizeof value);
-}
-
-template <class T>
-T get(std::span<const std::uint8_t> bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
-
-// ---- writing
-
-/// A grid's tiles without repetition: places[t] is 0 for an empty tile, else 1 + its index in `stored`.
-struct StoredTiles {
-  std::vector<std::uint32_t> places;
-  std::vector<TilePtr> stored;
-};
-
-std::uint64_t content_hash(const Tile& tile) {
-  const auto bytes = [](const auto& items) {
-    return std::span(reinterpret_cast<const std::uint8_t*>(items.data()), items.size() * sizeof items[0]);
-  };
-  return (std::uint64_t{checksum(bytes(tile.offset))} << 32) + checksum(bytes(tile.spans), bytes(tile.normals));
-}
-
-bool same_content(const Tile& a, const Tile& b) {
-  // Bits, not values: −0 and 0 are two different files.
-  return a.offset == b.offset && a.spans.size() == b.spans.size() && a.normals == b.normals &&
-         (a.spans.empty() || std::memcmp(a.spans.data(), b.spans.data(), a.spans.size() * sizeof(Span)) == 0);
-}
-
-StoredTiles without_repetition(const Grid& grid) {
-  std::unordered_map<const Tile*, std::uint32_t> known;  // by address: index in `distinct`
-  std::vector<TilePtr> distinct;
-  std::vector<std::uint32_t> at(grid.tile_count());
-  for (std::size_t t = 0; t < at.size(); ++t) {
-    const auto [found, added] = known.try_emplace(&grid.tile(t), static_cast<std::uint32_t>(distinct.size()));
-    if (added) distinct.push_back(grid.shared_tile(t));
-    at[t] = found->second;
-  }
-  std::vector<std::uint64_t> hashes(distinct.size());
-  parallel_for(distinct.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) hashes[k] = content_hash(*distinct[k]);
-  });
-
-  StoredTiles result;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> by_hash;
-  std::vector<std::uint32_t> place(distinct.size());
-  for (std::size_t k = 0; k < distinct.size(); ++k) {
-    if (distinct[k]->spans.empty()) continue;
-    for (const std::uint32_t p : by_hash[hashes[k]])
-      if (same_content(*result.stored[p - 1], *distinct[k])) place[k] = p;
-    if (place[k] != 0) continue;
-    result.stored.push_back(distinct[k]);
-    place[k] = static_cast<std::uint32_t>(result.stored.size());
-    by_hash[hashes[k]].push_back(place[k]);
-  }
-  result.places.reserve(at.size());
-  for (const std::uint32_t k : at) result.places.push_back(place[k]);
-  return result;
-}
-
-/// What one chunk will hold: the map of a grid, or stored tiles begin … end − 1 of it.
-struct Plan {
-  std::size_t grid;
-  std::uint32_t kind;
-  std::size_t begin = 0, end = 0, spans = 0;
-};
-
-std::vector<Plan> plan_chunks(const std::vector<StoredTiles>& grids) {
-  std::vector<Plan> plans;
-  for (std::size_t g = 0; g < grids.size(); ++g) {
-    plans.push_back({g, kMap, 0, grids[g].places.size(), 0});
-    const std::vector<TilePtr>& stored = grids[g].stored;
-    for (std::size_t k = 0; k < stored.size();) {
-      Plan plan{g, kTiles, k, k, 0};
-      while (k < stored.size() && k - plan.begin < kChunkTiles && plan.spans < kChunkSpans)
-        plan.spans += stored[k++]->spans.size();
-      plan.end = k;
-      plans.push_back(plan);
-    }
-  }
-  return plans;
-}
-
-void write_tiles(PlaneWriter& out, std::span<const TilePtr> tiles, std::size_t spans, bool with_normals) {
-  std::vector<std::uint32_t> counts;
-  counts.reserve(tiles.size() * kTileRays);
-  for (const TilePtr& tile : tiles)
-    for (int r = 0; r < kTileRays; ++r) counts.push_back(tile->offset[r + 1] - tile->offset[r]);
-  out.column(counts);
-
-  std::vector<std::uint64_t> ends;
-  ends.reserve(spans);
-  for (double Span::* end : {&Span::near, &Span::far}) {
-    ends.clear();
-    for (const TilePtr& tile : tiles)
-      for (const Span& span : tile->spans) ends.push_back(std::bit_cast<std::uint64_t>(span.*end));
-    out.column(ends);
-  }
-  if (!with_normals) return;
-
-  std::vector<std::uint16_t> components;
-  components.reserve(spans);
-  for (PackedNormal SpanNormals::* end : {&SpanNormals::near, &SpanNormals::far})
-    for (std::int16_t PackedNormal::* component : {&PackedNormal::u, &PackedNormal::v}) {
-      components.clear();
-      for (const TilePtr& tile : tiles)
-        for (const SpanNormals& n : tile->normals) components.push_back(static_cast<std::uint16_t>(n.*end.*component));
-      out.column(components);
-    }
-}
-
-Bytes write_chunk(const Plan& plan, const StoredTiles& tiles, bool with_normals) {
-  Bytes chunk;
-  put(chunk, plan.kind);
-  put(chunk, static_cast<std::uint32_t>(plan.end - plan.begin));
-  put(chunk, static_cast<std::uint32_t>(plan.spans));
-  chunk.resize(kChunkHeader);
-  PlaneWriter out(chunk);
-  if (plan.kind == kMap)
-    out.column(tiles.places);
-  else
-    write_tiles(out, std::span(tiles.stored).subspan(plan.begin, plan.end - plan.begin), plan.spans, with_normals);
-  const std::uint64_t length = chunk.size() - kChunkHeader;
-  std::memcpy(chunk.data() + 12, &length, sizeof length);
-  const std::span whole(chunk);
-  const std::uint32_t crc = checksum(whole.first(20), whole.subspan(kChunkHeader));
-  std::memcpy(chunk.data() + 20, &crc, sizeof crc);
-  return chunk;
-}
-
-Bytes write_header(const Frame& frame, std::uint64_t length, std::uint64_t spans, std::uint32_t tiles) {
-  Bytes header;
-  put(header, kMagic);
-  put(header, kVersion);
-  std::array<char, 4> directions{};
-  std::copy(frame.directions.begin(), frame.directions.end(), directions.begin());
-  put(header, directions);
-  put(header, length);
-  for (const Vec3& corner : {frame.box.lower, frame.box.upper})
-    for (int k = 0; k < 3; ++k) put(header, corner[k]);
-  put(header, frame.pitch);
-  put(header, spans);
-  put(header, tiles);
-  put(header, checksum(header));
-  return header;
-}
-
-// ---- reading
 
 struct Header {
   Frame frame;
@@ -447,39 +255,8 @@ Volume Reader::run(const Progress& progress) const {
 
 }  // namespace
 
-std::vector<std::uint8_t> to_bytes(const Volume& volume, const Progress& progress) {
-  std::vector<StoredTiles> tiles;
-  for (const Grid& grid : volume.grids()) tiles.push_back(without_repetition(grid));
-  const std::vector<Plan> plans = plan_chunks(tiles);
-  std::vector<Bytes> chunks(plans.size());
-  parallel_for(
-      plans.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k)
-          chunks[k] = write_chunk(plans[k], tiles[plans[k].grid], volume.grids()[plans[k].grid].has_normals());
-      },
-      progress);
-
-  std::uint64_t length = kHeader, spans = 0;
-  std::uint32_t stored = 0;
-  for (const Bytes& chunk : chunks) length += chunk.size();
-  for (const Plan& plan : plans) spans += plan.spans;
-  for (const StoredTiles& grid : tiles) stored += static_cast<std::uint32_t>(grid.stored.size());
-  Bytes bytes = write_header(volume.frame(), length, spans, stored);
-  bytes.reserve(length);
-  for (Bytes& chunk : chunks) {
-    bytes.insert(bytes.end(), chunk.begin(), chunk.end());
-    Bytes().swap(chunk);
-  }
-  return bytes;
-}
-
 Volume from_bytes(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress) {
   return Reader(bytes, name).run(progress);
-}
-
-void save(const Volume& volume, const std::filesystem::path& path, const Progress& progress) {
-  write_file(path, to_bytes(volume, progress));
 }
 
 Volume load(const std::filesystem::path& path, const Progress& progress) {
