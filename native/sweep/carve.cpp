@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -51,6 +52,25 @@ void check(const CarveOptions& options, std::size_t moves) {
       throw std::invalid_argument("dt, row " + std::to_string(i) + ": must be a positive time in s");
 }
 
+/// Brings back the tiles that were replaced unless the carve ends well. Costs what was cut, not what there is.
+class Rollback {
+ public:
+  Rollback() = default;
+  Rollback(const Rollback&) = delete;
+  Rollback& operator=(const Rollback&) = delete;
+  ~Rollback() {
+    if (armed_)
+      for (auto& [place, tile] : first_) place.first->set_tile(place.second, std::move(tile));
+  }
+  void keep(Grid& grid, std::size_t tile) { first_.try_emplace({&grid, tile}, grid.shared_tile(tile)); }
+  /// The carve ended well. Returns whether anything was replaced.
+  bool commit() { return armed_ = false, !first_.empty(); }
+
+ private:
+  std::map<std::pair<Grid*, std::size_t>, std::shared_ptr<const Tile>> first_;
+  bool armed_ = true;
+};
+
 /// What one tile contributes to one move.
 struct Share {
   std::uint32_t move;
@@ -61,8 +81,9 @@ struct Share {
 /// Cuts one grid, batch by batch.
 class GridCarver {
  public:
-  GridCarver(Grid& grid, bool measured, const std::vector<Pose>& poses, const CarveOptions& options, Cut& cut)
-      : grid_(grid), measured_(measured), options_(options), cut_(cut), poses_(poses) {
+  GridCarver(Grid& grid, bool measured, const std::vector<Pose>& poses, const CarveOptions& options, Cut& cut,
+             Rollback& rollback)
+      : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback), poses_(poses) {
     for (Pose& p : poses_) p = {to_local(grid.axis(), p.tip), to_local(grid.axis(), p.axis)};
     for (std::size_t m = 0; m + 1 < poses_.size(); ++m) motions_.emplace_back(poses_[m], poses_[m + 1]);
   }
@@ -80,7 +101,6 @@ class GridCarver {
   }
 
   const Stats& stats() const { return stats_; }
-  bool changed() const { return changed_; }
 
  private:
   struct Work {  // one tile and its steps in the batch
@@ -220,14 +240,15 @@ class GridCarver {
       cut_.torque[s.move] += to_world(grid_.axis(), s.torque);
     }
     if (!w.result) return;
+    rollback_.keep(grid_, w.tile);
     grid_.set_tile(w.tile, std::move(w.result));
-    changed_ = true;
   }
 
   Grid& grid_;
-  bool measured_, changed_ = false;
+  bool measured_;
   const CarveOptions& options_;
   Cut& cut_;
+  Rollback& rollback_;
   std::vector<Pose> poses_;  // in the grid's cyclic frame
   std::vector<Motion> motions_;
   std::vector<Step> steps_;
@@ -242,28 +263,21 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   const std::vector<Pose> path = checked(poses);
   check(options, moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
-  const Volume before = volume.snapshot();
+  Rollback rollback;
   Stats stats;
   stats.moves = moves;
-  bool changed = false;
-  try {
-    const std::size_t grids = volume.grids().size();
-    for (std::size_t g = 0; g < grids; ++g) {
-      Grid& grid = volume.grids()[g];
-      GridCarver carver(grid, &grid == &volume.reference(), path, options, cut);
-      carver.run(tool, [&](std::size_t done) {
-        report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
-                                     static_cast<double>(grids));
-      });
-      report(options.progress, static_cast<double>(g + 1) / static_cast<double>(grids));
-      stats += carver.stats();
-      changed = changed || carver.changed();
-    }
-  } catch (...) {
-    volume.restore(before);
-    throw;
+  const std::size_t grids = volume.grids().size();
+  for (std::size_t g = 0; g < grids; ++g) {
+    Grid& grid = volume.grids()[g];
+    GridCarver carver(grid, &grid == &volume.reference(), path, options, cut, rollback);
+    carver.run(tool, [&](std::size_t done) {
+      report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
+                                   static_cast<double>(grids));
+    });
+    report(options.progress, static_cast<double>(g + 1) / static_cast<double>(grids));
+    stats += carver.stats();
   }
-  if (changed) volume.touch();
+  if (rollback.commit()) volume.touch();
   volume.count(stats);
   return cut;
 }
