@@ -30,21 +30,35 @@ bool opposed(const Vec3& a, const Vec3& b) {
 bool Collapse::prepare(HalfedgeHandle half) {
   half_ = half;
   from_ = mesh_.from_vertex_handle(half), to_ = mesh_.to_vertex_handle(half);
-  if (mesh_.status(from_).locked() || !keeps_manifold()) return false;
+  if (mesh_.status(from_).locked() || !keeps_borders()) return false;
   gather();
-  return keeps_shape();
+  return keeps_shape() && keeps_manifold();
 }
 
-bool Collapse::keeps_manifold() const {
-  // OpenMesh's test is the link condition (Dey et al. 1999) but for the tetrahedron, which would become two triangles
-  // back to back, and for what a border needs.
-  if (!mesh_.is_collapse_ok(half_)) return false;
+/// A border vertex stays on its border, two borders do not meet, and no triangle hangs by one vertex.
+bool Collapse::keeps_borders() const {
   const HalfedgeHandle back = mesh_.opposite_halfedge_handle(half_);
-  if (mesh_.is_boundary(from_)) return mesh_.is_boundary(half_) || mesh_.is_boundary(back);
-  const OpenMesh::VertexHandle left = mesh_.to_vertex_handle(mesh_.next_halfedge_handle(half_));
-  const OpenMesh::VertexHandle right = mesh_.to_vertex_handle(mesh_.next_halfedge_handle(back));
-  return mesh_.valence(from_) > 2 &&
-         !(mesh_.find_halfedge(left, right).is_valid() && mesh_.valence(left) == 3 && mesh_.valence(right) == 3);
+  const bool along = mesh_.is_boundary(half_) || mesh_.is_boundary(back);
+  if (mesh_.is_boundary(from_) && !along) return false;
+  for (const HalfedgeHandle side : {half_, back}) {
+    if (mesh_.is_boundary(side)) continue;
+    const HalfedgeHandle next = mesh_.next_halfedge_handle(side), last = mesh_.next_halfedge_handle(next);
+    if (mesh_.is_boundary(mesh_.opposite_halfedge_handle(next)) &&
+        mesh_.is_boundary(mesh_.opposite_halfedge_handle(last)))
+      return false;
+  }
+  return true;
+}
+
+/// The link condition (Dey, Edelsbrunner, Guha & Nekhayev, Publ. Inst. Math. 66 (1999) 23): the two ends have no common
+/// neighbours but the tips of the edge's triangles. The tetrahedron meets it and would become two triangles back to
+/// back, but these are a fold. (OpenMesh's is_collapse_ok asks the same, but allocates memory on each call.)
+bool Collapse::keeps_manifold() {
+  ++stamp_;
+  for (const HalfedgeHandle spoke : ring_) stamps_[mesh_.to_vertex_handle(spoke).idx()] = stamp_;
+  int common = 0;
+  for (const OpenMesh::VertexHandle v : mesh_.vv_range(to_)) common += stamps_[v.idx()] == stamp_ ? 1 : 0;
+  return common == lost_;
 }
 
 void Collapse::gather() {

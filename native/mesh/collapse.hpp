@@ -15,7 +15,7 @@ namespace riffler {
 /// the faces first … last of them become the new faces (to, ring[i], ring[i + 1]). The others vanish.
 class Collapse {
  public:
-  explicit Collapse(HalfEdgeMesh& mesh) : mesh_(mesh) {}
+  explicit Collapse(HalfEdgeMesh& mesh) : mesh_(mesh), stamps_(mesh.n_vertices(), 0) {}
 
   /// False where the mesh would not stay a manifold, a border would leave its line of vertices, or a triangle would
   /// turn over, lose its area or fold onto a neighbour.
@@ -47,12 +47,15 @@ class Collapse {
 
  private:
   int wrap(int i) const { return i == ring_size() ? 0 : i; }
-  bool keeps_manifold() const;
+  bool keeps_borders() const;
+  bool keeps_manifold();
   void gather();
   bool keeps_shape();
   bool folds(int i, OpenMesh::HalfedgeHandle across) const;
 
   HalfEdgeMesh& mesh_;
+  std::vector<unsigned> stamps_;  // vertices marked by the last test carry its number
+  unsigned stamp_ = 0;
   OpenMesh::HalfedgeHandle half_;
   OpenMesh::VertexHandle from_, to_;
   Vec3 old_, new_;
