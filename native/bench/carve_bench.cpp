@@ -37,8 +37,8 @@ Frame frame(const benchmark::State& state, const char* directions) {
 }
 
 void per_move(benchmark::State& state) {
-  state.counters["us/move"] = benchmark::Counter(static_cast<double>(state.iterations()) * kMoves * 1e-6,
-                                                 benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["per_move"] = benchmark::Counter(static_cast<double>(state.iterations()) * kMoves,
+                                                  benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void calibration(benchmark::State& state) {
