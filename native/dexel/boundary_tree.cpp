@@ -93,7 +93,9 @@ double BoundaryTree::visit(const Vec3& centre, const Vec3& half, const OnEdge& o
     const Node& node = nodes_[stack[--top]];
     if (node.left < 0) {
       const Vec3 &a = points_[node.from], &b = points_[node.to];
-      const double d = segment_distance(centre, a, b) - reach;
+      // The sphere about an edge is nearer than the edge, but quickly seen to be far.
+      double d = glm::length(node.centre - centre) - node.radius - reach;
+      if (d < 4 * node.length) d = segment_distance(centre, a, b) - reach;
       const double bound = edge_curvature(node.length, d);
       if (!on_edge(node, bound, d)) return kInfinity;
       sum += bound;
@@ -101,8 +103,7 @@ double BoundaryTree::visit(const Vec3& centre, const Vec3& half, const OnEdge& o
     }
     const Vec3 offset = glm::max(glm::abs(node.centre - centre) - half, Vec3(0));
     const double d = glm::length(offset) - node.radius;
-    // Third derivatives of 1/r are at most 6 / r⁴, so the remainder after the quadrupole is at most 3 area radius² /
-    // d⁴.
+    // Third derivatives of 1/r are at most 6 / r⁴: what the quadrupole leaves is at most 3 area radius² / d⁴.
     if (d > 0 && 3 * node.area * node.radius * node.radius <= 4 * kPi * kAccuracy * d * d * d * d) {
       const double bound = node.length / (d * d * d) / (2 * kPi);
       sum += bound;
@@ -114,16 +115,13 @@ double BoundaryTree::visit(const Vec3& centre, const Vec3& half, const OnEdge& o
   return sum;
 }
 
-double BoundaryTree::curvature(const Vec3& centre, const Vec3& half) const {
-  return visit(centre, half, [](const Node&, double, double d) { return d > 0; }, [](const Node&, double) {});
-}
-
-double BoundaryTree::gather(const Vec3& centre, const Vec3& half, Field& field) const {
+double BoundaryTree::gather(const Vec3& centre, const Vec3& half, Field& field, bool clear_only) const {
   field.clear();
   const double reach = glm::length(half);
   return visit(
       centre, half,
       [&](const Node& node, double bound, double d) {
+        if (clear_only && !(d > 0)) return false;
         field.add_edge(points_, node.from, node.to);
         if (d < reach)
           field.near_.emplace_back(points_[node.from], points_[node.to]);

@@ -19,12 +19,11 @@ class BoundaryTree {
   double length() const { return nodes_.empty() ? 0 : nodes_[root_].length; }
 
   /// Fills `field` with what K needs within the box centre ± half, to kAccuracy for each multipole; returns an upper
-  /// bound of the norm of K's second derivatives there, infinity where an edge may pass through.
-  double gather(const Vec3& centre, const Vec3& half, Field& field) const;
-  /// The bound alone; stops at the first edge that is near.
-  double curvature(const Vec3& centre, const Vec3& half) const;
+  /// bound of the norm of K's second derivatives there, infinity where an edge may pass through. With `clear_only` it
+  /// gives up at the first such edge, and the field is not to be used then.
+  double gather(const Vec3& centre, const Vec3& half, Field& field, bool clear_only = false) const;
 
-  static constexpr double kAccuracy = 1e-7;
+  static constexpr double kAccuracy = 1e-6;
 
  private:
   struct Node {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "dexel/field_sum.hpp"
+#include <utility>
 
 namespace riffler {
 
@@ -33,6 +32,11 @@ struct Stereographic {
   }
 };
 
+/// The phase of K, whose edges' share is `edges` and whose multipoles' share times 4π is `value`.
+double phase(const EdgeSum& edges, double value) {
+  return wrap(std::atan2(edges.im, edges.re) / (2 * kPi) - 0.5 + value / (4 * kPi));
+}
+
 }  // namespace
 
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -45,7 +49,8 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
 // |∇(dl × r / |r|³)| ≤ 2 |dl| / |r|³, integrated over the edge or over the whole line.
 double edge_curvature(double length, double d) {
   if (!(d > 0)) return kInfinity;
-  return std::min(2 * length / (d * d * d), 4 / (d * d)) / (4 * kPi);
+  const double inverse = 1 / d;
+  return std::min(0.5 * length * inverse, 1.0) * inverse * inverse / kPi;
 }
 
 void Field::clear() {
@@ -68,47 +73,63 @@ void Field::add_edge(const std::vector<Vec3>& points, int a, int b) {
 void Field::set_column(double u, double v) {
   u_ = u, v_ = v;
   // One point in front of the first group of lanes, and points that no edge leads to behind the last.
-  while (z_.size() % FieldInput::kLanes != 1) add_point(Vec3(u + 1, v, 0), true);
+  while (z_.size() % kLanes != 1) add_point(Vec3(u + 1, v, 0), true);
   const std::size_t n = z_.size();
   for (std::vector<double>* w : {&ax_, &ay_, &rr_, &dot_, &cross_}) w->resize(n);
   scratch_.resize(4 * n);
-  Vec2 a(0);
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec2 b = aside(x_[k] - u, y_[k] - v);
-    ax_[k] = b.x, ay_[k] = b.y, rr_[k] = b.x * b.x + b.y * b.y;
-    // Without an edge conj(α) β counts as 0 and the product's factor, t_a t_b, as 1.
-    dot_[k] = joined_[k] * (a.x * b.x + a.y * b.y), cross_[k] = joined_[k] * (a.x * b.y - a.y * b.x);
-    a = b;
+    const Vec2 a = aside(x_[k] - u, y_[k] - v);
+    ax_[k] = a.x, ay_[k] = a.y, rr_[k] = a.x * a.x + a.y * a.y;
   }
+  // Without an edge conj(α) β counts as 0, which leaves the product a positive factor.
+  for (std::size_t k = 1; k < n; ++k) {
+    dot_[k] = joined_[k] * (ax_[k - 1] * ax_[k] + ay_[k - 1] * ay_[k]);
+    cross_[k] = joined_[k] * (ax_[k - 1] * ay_[k] - ay_[k - 1] * ax_[k]);
+  }
+  set_poles();
 }
 
-Field::Value Field::sum(double z, Vec3* gradient) const {
-  const FieldInput in{ax_.data(),    ay_.data(),     z_.data(),       rr_.data(),   dot_.data(),
-                      cross_.data(), joined_.data(), scratch_.data(), z_.size() - 1};
-  const FieldSum s = sum_field(in, z, gradient != nullptr);
-  Vec3 slope(s.gx, s.gy, s.gz);
-  double more = 0;
-  for (const Multipole& m : far_) {
-    const Vec3 r = m.centre - Vec3(u_, v_, z);
-    const double inverse = 1 / glm::dot(r, r), cube = inverse * std::sqrt(inverse);
-    const Vec3 q = m.quadrupole * r;
-    const double dipole = glm::dot(m.dipole, r), quadrupole = glm::dot(r, q);
-    more += (dipole + m.trace - 3 * quadrupole * inverse) * cube;
-    slope -=
-        (m.dipole - 3 * inverse * ((dipole + m.trace) * r + 2.0 * q) + 15 * quadrupole * inverse * inverse * r) * cube;
+void Field::set_poles() {
+  const std::size_t n = (far_.size() + kLanes - 1) / kLanes * kLanes;
+  poles_.assign(8 * n, 0);
+  double* array = poles_.data();
+  const auto next = [&] { return std::exchange(array, array + n); };
+  double *z = next(), *rr = next(), *dz = next(), *across = next(), *flat = next(), *skew = next(), *qzz = next(),
+         *trace = next();
+  for (std::size_t k = far_.size(); k < n; ++k) rr[k] = 1;
+  for (std::size_t k = 0; k < far_.size(); ++k) {
+    const Multipole& m = far_[k];
+    const double x = m.centre.x - u_, y = m.centre.y - v_;
+    z[k] = m.centre.z, rr[k] = x * x + y * y, dz[k] = m.dipole.z, across[k] = m.dipole.x * x + m.dipole.y * y;
+    flat[k] = m.quadrupole[0][0] * x * x + 2 * m.quadrupole[0][1] * x * y + m.quadrupole[1][1] * y * y;
+    skew[k] = m.quadrupole[0][2] * x + m.quadrupole[1][2] * y;
+    qzz[k] = m.quadrupole[2][2], trace[k] = m.trace;
   }
-  slope /= 4 * kPi;
-  if (gradient) *gradient = slope;
-  return {wrap(std::atan2(s.im, s.re) / (2 * kPi) - 0.5 + more / (4 * kPi)), slope.z};
 }
 
 Field::Value Field::at(double z) const {
-  return sum(z, nullptr);
+  const EdgeSum edges = sum_edges(edge_arrays(), z, false);
+  const std::size_t n = poles_.size() / 8;
+  const double* p = poles_.data();
+  const PoleSum poles = sum_poles({p, p + n, p + 2 * n, p + 3 * n, p + 4 * n, p + 5 * n, p + 6 * n, p + 7 * n, n}, z);
+  return {phase(edges, poles.value), (edges.gz + poles.slope) / (4 * kPi)};
 }
 
 double Field::at(const Vec3& p, Vec3& gradient) {
   set_column(p.x, p.y);
-  return sum(p.z, &gradient).phase;
+  const EdgeSum edges = sum_edges(edge_arrays(), p.z, true);
+  Vec3 sum(edges.gx, edges.gy, edges.gz);
+  double value = 0;
+  for (const Multipole& m : far_) {
+    const Vec3 r = m.centre - p;
+    const double inverse = 1 / glm::dot(r, r), cube = inverse * std::sqrt(inverse);
+    const Vec3 q = m.quadrupole * r;
+    const double dipole = glm::dot(m.dipole, r) + m.trace, quadrupole = glm::dot(r, q);
+    value += (dipole - 3 * quadrupole * inverse) * cube;
+    sum -= (m.dipole - 3 * inverse * (dipole * r + 2.0 * q) + 15 * quadrupole * inverse * inverse * r) * cube;
+  }
+  gradient = sum / (4 * kPi);
+  return phase(edges, value);
 }
 
 double Field::curvature(double z, double half) const {

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "dexel/field_sum.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {
@@ -49,7 +50,11 @@ class Field {
     double trace;
   };
 
-  Value sum(double z, Vec3* gradient) const;
+  void set_poles();
+  EdgeArrays edge_arrays() const {
+    return {ax_.data(),    ay_.data(),     z_.data(),       rr_.data(),   dot_.data(),
+            cross_.data(), joined_.data(), scratch_.data(), z_.size() - 1};
+  }
   void clear();
   void add_edge(const std::vector<Vec3>& points, int a, int b);
   void add_point(const Vec3& p, bool begins);
@@ -64,6 +69,7 @@ class Field {
   double u_ = 0, v_ = 0;
   // Of each point relative to the column, and of the edge that leads to it: Re and Im of conj(α) β.
   std::vector<double> ax_, ay_, rr_, dot_, cross_;
+  std::vector<double> poles_;  // the arrays of PoleArrays, one after the other
   mutable std::vector<double> scratch_;
 };
 

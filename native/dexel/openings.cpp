@@ -14,7 +14,7 @@ namespace riffler {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kLeaf = 4;                             // columns and cells of a leaf's sides
+constexpr int kLeaf = 8;                             // columns and cells of a leaf's sides
 constexpr int kTask = 32;                            // of a task's
 constexpr double kShortest = 1.0 / (1 << 20);        // cells: a piece of a column at an edge is not halved further
 constexpr double kRoot = 1e-9;                       // cells: where the search along a column ends
@@ -57,8 +57,8 @@ class Search {
   /// Whether K may pass ½ in the block: second-order bound about its centre.
   bool may_pass(const Block& block) {
     const Vec3 half = block.half();
-    if (tree_.curvature(block.centre(), half) == std::numeric_limits<double>::infinity()) return true;
-    const double curvature = tree_.gather(block.centre(), half, field_);
+    const double curvature = tree_.gather(block.centre(), half, field_, true);
+    if (curvature == std::numeric_limits<double>::infinity()) return true;
     phase_ = field_.at(block.centre(), gradient_);
     remainder_ = 0.5 * curvature * glm::dot(half, half);
     return std::abs(phase_) <= glm::dot(glm::abs(gradient_), half) + remainder_ + kSlack;

@@ -33,7 +33,7 @@ TEST_P(OpenModel, KeepsItsVolumeByWindingNumber) {
   const Frame frame = frame_of(mesh, 256, "z", 1);
   const Volume volume = from_mesh(mesh, frame);
   // A jittered grid of points; each counts inside where |w| > ½ by the sum over all triangles.
-  const int budget = static_cast<int>(3e8 / static_cast<double>(mesh.triangles.size()));
+  const int budget = static_cast<int>(1e8 / static_cast<double>(mesh.triangles.size()));
   const int side = std::clamp(static_cast<int>(std::cbrt(budget / 3.0)), 6, 22);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -131,8 +132,19 @@ inline bool inside(const Grid& grid, int i, int j, double z) {
   return false;
 }
 
+/// RIFFLER_MODELS, or else shared/models beside the repository, sought from the working directory upwards.
 inline std::filesystem::path model_path(const std::string& name) {
-  return std::filesystem::path(__FILE__).parent_path() / "../../../../shared/models" / (name + ".stl");
+  std::filesystem::path models = "../shared/models";
+  if (const char* folder = std::getenv("RIFFLER_MODELS")) {
+    models = folder;
+  } else {
+    for (auto p = std::filesystem::current_path(); p != p.root_path(); p = p.parent_path())
+      if (std::filesystem::is_directory(p / "shared/models")) {
+        models = p / "shared/models";
+        break;
+      }
+  }
+  return models / (name + ".stl");
 }
 
 /// A binary STL, equal vertices welded; empty where the file is absent.
