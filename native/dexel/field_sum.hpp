@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 namespace riffler {
 
@@ -20,9 +21,6 @@ struct EdgeSum {
   double gx, gy, gz;  // Σ (a × b) (|a| + |b|) / (|a| |b| (|a| |b| + a·b))
 };
 
-/// The product, gz, and (with `full`) gx and gy at the height z. The same bits on every processor.
-EdgeSum sum_edges(const EdgeArrays& in, double z, bool full);
-
 /// Dipoles and quadrupoles about one column: arrays of n, a multiple of kLanes. With r = (x, y, z − height), the dipole
 /// D and the symmetric quadrupole Q with its trace: D·r = across + dz rz, r·Qr = flat + 2 skew rz + qzz rz².
 struct PoleArrays {
@@ -34,6 +32,27 @@ struct PoleSum {
   double value, slope;  // Σ D·r / r³ + trace / r³ − 3 r·Qr / r⁵, and its derivative by the height
 };
 
-PoleSum sum_poles(const PoleArrays& in, double z);
+/// Both sums for one set of instructions.
+class FieldSums {
+ public:
+  /// The product, gz, and (with `full`) gx and gy at the height z.
+  EdgeSum edges(const EdgeArrays& in, double z, bool full) const;
+  PoleSum poles(const PoleArrays& in, double z) const;
+
+  /// All that this processor can run, the fastest first. They give the same bits.
+  static const std::vector<FieldSums>& available();
+
+ private:
+  struct EdgeLanes {
+    double re[kLanes], im[kLanes], gx[kLanes], gy[kLanes], gz[kLanes];
+  };
+  struct PoleLanes {
+    double value[kLanes], slope[kLanes];
+  };
+  friend struct FieldLanes;
+
+  void (*edges_)(const EdgeArrays&, double, bool, EdgeLanes&);
+  void (*poles_)(const PoleArrays&, double, PoleLanes&);
+};
 
 }  // namespace riffler
