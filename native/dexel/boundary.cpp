@@ -129,4 +129,59 @@ std::vector<std::vector<int>> boundary_loops(const Mesh& mesh) {
   return walks(leftover(mesh, same, sums), mesh.vertices.size());
 }
 
+namespace {
+
+/// Points in buckets of side `size`, each looked for among its neighbours.
+class Buckets {
+ public:
+  Buckets(double size, std::size_t points) : size_(size), heads_(std::bit_ceil(2 * points + 1), -1) {
+    points_.reserve(points);
+  }
+
+  /// The first point within `size` of p; p itself, added, where there is none.
+  Vec3 find_or_add(const Vec3& p) {
+    const Vec3 cell = glm::floor(p / size_);
+    for (int k = 0; k < 27; ++k) {
+      const Vec3 near = cell + Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      for (int at = heads_[slot(near)]; at >= 0; at = points_[at].next)
+        if (points_[at].cell == near && glm::length(points_[at].p - p) <= size_) return points_[at].p;
+    }
+    int& head = heads_[slot(cell)];
+    points_.push_back({p, cell, head});
+    head = static_cast<int>(points_.size()) - 1;
+    return p;
+  }
+
+ private:
+  struct Point {
+    Vec3 p, cell;
+    int next;
+  };
+  std::size_t slot(const Vec3& cell) const {
+    const Vec3 c = cell + 0.0;  // −0 becomes 0
+    std::uint64_t h = mix(std::bit_cast<std::uint64_t>(c.x));
+    h = mix(h + std::bit_cast<std::uint64_t>(c.y)), h = mix(h + std::bit_cast<std::uint64_t>(c.z));
+    return h & (heads_.size() - 1);
+  }
+
+  double size_;
+  std::vector<int> heads_;
+  std::vector<Point> points_;
+};
+
+}  // namespace
+
+Mesh join_cracks(const Mesh& mesh, const std::vector<std::vector<int>>& loops, double tolerance) {
+  Mesh joined = mesh;
+  const std::vector<int> same = weld(mesh.vertices);
+  std::vector<bool> on_boundary(mesh.vertices.size(), false);
+  for (const std::vector<int>& loop : loops)
+    for (const int k : loop) on_boundary[k] = true;
+  Buckets buckets(tolerance, mesh.vertices.size());
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k)
+    if (on_boundary[k]) joined.vertices[k] = buckets.find_or_add(mesh.vertices[k]);
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) joined.vertices[k] = joined.vertices[same[k]];
+  return joined;
+}
+
 }  // namespace riffler

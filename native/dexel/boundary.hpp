@@ -13,4 +13,8 @@ namespace riffler {
 /// count as one. O(n) for closed meshes.
 std::vector<std::vector<int>> boundary_loops(const Mesh& mesh);
 
+/// The mesh with cracks joined: of its boundary's vertices, each that lies within `tolerance` (mm) of one before it
+/// moves there. What rounding tore apart is closed by this, so that no column has to look for its way between the lips.
+Mesh join_cracks(const Mesh& mesh, const std::vector<std::vector<int>>& loops, double tolerance);
+
 }  // namespace riffler

@@ -291,14 +291,21 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress)
   Volume result(frame);
   report(progress, 0);
   const Box3 box = bounds(mesh);
-  const std::vector<std::vector<int>> loops = boundary_loops(mesh);
+  std::vector<std::vector<int>> loops = boundary_loops(mesh);
   // Coordinates may have been rounded to single precision on their way here.
   const double rounding =
       std::max(std::ldexp(most(box.size()), -22), std::ldexp(std::max(most(box.lower), most(box.upper)), -24));
   if (!loops.empty() && is_flat(mesh, rounding))
     throw std::invalid_argument("the mesh is a flat sheet: it has no volume");
-  fill(result, mesh, loops, progress);
-  if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(mesh, loops, box))
+  Mesh joined;
+  const Mesh* used = &mesh;
+  if (!loops.empty()) {
+    joined = join_cracks(mesh, loops, std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
+    used = &joined;
+    loops = boundary_loops(joined);
+  }
+  fill(result, *used, loops, progress);
+  if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(*used, loops, box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
   report(progress, 1);
   return result;

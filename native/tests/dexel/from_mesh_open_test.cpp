@@ -35,6 +35,26 @@ TEST(Boundary, CountsMultiplicity) {
   EXPECT_EQ(edges, 8);
 }
 
+TEST(Boundary, CracksOfRoundingAreJoined) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Mesh solid = sphere({10, 20, 30}, 10, 20);
+  Mesh torn = unwelded(solid);
+  for (Vec3& p : torn.vertices) p += 1e-6 * Vec3(uniform(random), uniform(random), uniform(random));
+  const auto loops = boundary_loops(torn);
+  EXPECT_EQ(loops.size(), torn.triangles.size());
+  const Mesh joined = join_cracks(torn, loops, 1e-5);
+  EXPECT_TRUE(boundary_loops(joined).empty());
+  double farthest = 0;
+  for (std::size_t k = 0; k < torn.vertices.size(); ++k)
+    farthest = std::max(farthest, glm::length(joined.vertices[k] - torn.vertices[k]));
+  EXPECT_LE(farthest, 1e-5);
+  // A tolerance below the cracks' width leaves the mesh as it is.
+  EXPECT_EQ(join_cracks(torn, loops, 1e-9).vertices, torn.vertices);
+  const Frame frame = frame_of(solid, 64, "z");
+  EXPECT_NEAR(from_mesh(torn, frame).volume() / from_mesh(solid, frame).volume(), 1, 1e-6);
+}
+
 /// A bent boundary with much detail: the rim of a wavy cup.
 std::vector<Vec3> rim(int n) {
   std::vector<Vec3> loop;
