@@ -38,8 +38,8 @@ class Step {
 /// A material point r of the tool moves as X(t) = tip(t) + R(t) r; over a part of angle φ/N and way P/N it leaves its
 /// chord by at most (D φ² + 2 P φ) / (8 N²), D the greatest distance of a point from the tip. Along their chords all
 /// points move by an affine map of t, whose departure from a translation bends the section by no more than the same
-/// amount. A function that departs so much from a convex one may fall by four times that behind a rising slope, so it is
-/// (D φ² + 2 P φ) / (2 N²) that must not exceed `bound` (docs/methods.md, "Carving").
+/// amount. A function that departs so much from a convex one may fall by four times that behind a rising slope, so it
+/// is (D φ² + 2 P φ) / (2 N²) that must not exceed `bound` (docs/methods.md, "Carving").
 std::uint64_t part_count(double angle, double way, double lever, double bound);
 
 /// Calls `sink` for every step of `piece` on `motion` that can touch `box`, in order of t. Poses, box and steps are in
