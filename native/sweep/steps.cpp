@@ -35,16 +35,32 @@ Piece below(const Piece& piece, double height) {
   return Frustum{f->z0, f->r0, height, radius_at(piece, height)};
 }
 
+/// The t at which the axis is square to the rays, where rays change the face through which they enter; −1 if nowhere.
+/// axis(t) = cos(φ t) a + sin(φ t) b, with b from the axis at the end.
+double edge_on(const Motion& motion) {
+  const double a = motion.from().axis.z, end = motion.to().axis.z, angle = motion.angle();
+  if (!(a * end < 0)) return -1;
+  const double b = (end - std::cos(angle) * a) / std::sin(angle);
+  const double t = std::atan2(std::abs(a), a > 0 ? -b : b) / angle;
+  return t > 0 && t < 1 ? t : -1;
+}
+
 void turning_steps(const Piece& piece, const Motion& motion, std::uint32_t move, const Box3& box, double tolerance,
                    const std::function<void(Step&&)>& sink) {
   const double lever = std::hypot(std::max(std::abs(bottom(piece)), std::abs(top(piece))), max_radius(piece));
   const double way = glm::length(motion.to().tip - motion.from().tip);
   const std::uint64_t n = part_count(motion.angle(), way, lever, kShare * tolerance);
-  for (std::uint64_t k = 0; k < n; ++k) {
-    const double t0 = static_cast<double>(k) / static_cast<double>(n);
-    const double t1 = static_cast<double>(k + 1) / static_cast<double>(n);
+  const auto part = [&](double t0, double t1) {
     const Footprint footprint(piece, {motion.at(t0), motion.at(t1)}, tolerance);
     if (footprint.overlaps(box)) sink(Step(move, footprint, TurningPiece(piece, motion, t0, t1, tolerance)));
+  };
+  const double turn = edge_on(motion);
+  double from = 0;
+  for (std::uint64_t k = 0; k < n; ++k) {
+    const double to = static_cast<double>(k + 1) / static_cast<double>(n);
+    if (from < turn && turn < to) part(from, turn), from = turn;
+    part(from, to);
+    from = to;
   }
 }
 

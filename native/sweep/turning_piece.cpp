@@ -10,12 +10,20 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kDeepest = 24;   // halvings of a part in which a ray is met twice
 constexpr int kMostHits = 60;  // of a bracket; a handful is usual
 constexpr double kStop = 0.1;  // of the tolerance: what the search for an extreme may leave
+/// |n · d| below which a face bends a(t) too much to trust two tangents across its edge.
+constexpr double kEdgeOn = 0.25;
 }  // namespace
 
 struct TurningPiece::Sample {
   double t;
   bool hit;
   SweptHit near, far;
+};
+
+/// The derivative of a(t), or of −b(t) for the far end: negative where the stretch still grows.
+struct TurningPiece::Slope {
+  double rate;
+  double facing;  // |n · d|
 };
 
 void SweptIntervals::add(const SweptInterval& interval) {
@@ -59,13 +67,12 @@ void TurningPiece::hit(double u, double v, const Interval& material, SweptInterv
   part(u, v, material, sample(u, v, t0_, first_), sample(u, v, t1_, last_), 0, out);
 }
 
-/// The derivative of a(t), or of −b(t) for the far end: negative where the stretch still grows.
-double TurningPiece::slope(double u, double v, const Sample& s, bool far) const {
+TurningPiece::Slope TurningPiece::slope(double u, double v, const Sample& s, bool far) const {
   const SweptHit& hit = far ? s.far : s.near;
   const Vec3 n = (s.t == t0_ ? first_ : s.t == t1_ ? last_ : at(s.t)).normal(u, v, hit);
-  const double rate = glm::dot(n, motion_->velocity({u, v, hit.s}, s.t));
+  const double rate = glm::dot(n, motion_->velocity({u, v, hit.s}, s.t)), facing = std::abs(n.z);
   // The ray enters where n.z < 0 and leaves where n.z > 0, so both cases divide by −|n.z|.
-  return rate == 0 ? 0 : -rate / std::abs(n.z);
+  return {rate == 0 ? 0 : -rate / facing, facing};
 }
 
 void TurningPiece::part(double u, double v, const Interval& material, const Sample& from, const Sample& to, int depth,
@@ -107,37 +114,41 @@ TurningPiece::Sample TurningPiece::extreme(double u, double v, bool far, const S
   double f0 = value(low), f1 = value(high);
   Sample best = f0 <= f1 ? low : high;
   if (value(best) < enough) return best;
-  double g0 = low.hit ? slope(u, v, low, far) : -kInfinity, g1 = high.hit ? slope(u, v, high, far) : kInfinity;
-  for (int i = 0; i < kMostHits && g0 < 0 && g1 > 0; ++i) {
+  Slope g0 = low.hit ? slope(u, v, low, far) : Slope{-kInfinity, 0};
+  Slope g1 = high.hit ? slope(u, v, high, far) : Slope{kInfinity, 0};
+  const auto surface = [&](const Sample& s) { return far ? s.far.surface : s.near.surface; };
+  for (int i = 0; i < kMostHits && g0.rate < 0 && g1.rate > 0; ++i) {
     const double width = high.t - low.t;
     double t = (low.t + high.t) / 2;
-    if (std::isfinite(g0) && std::isfinite(g1)) {
+    const bool both = low.hit && high.hit && std::isfinite(g0.rate) && std::isfinite(g1.rate);
+    if (both && (surface(low) == surface(high) || std::min(g0.facing, g1.facing) > kEdgeOn)) {
       // Both tangents lie below a convex function: where they cross is below its minimum. Near an edge-on face the
       // function may bend the other way; then they cross outside or too high, and halving goes on.
-      const double cross = (f1 - f0 - g1 * width) / (g0 - g1), bound = f0 + g0 * cross;
+      const double cross = (f1 - f0 - g1.rate * width) / (g0.rate - g1.rate), bound = f0 + g0.rate * cross;
       if (cross > 0 && cross < width && bound <= value(best)) {
         if (value(best) - bound <= kStop * tolerance_) break;
-        const double secant = -g0 / (g1 - g0) * width;
+        const double secant = -g0.rate / (g1.rate - g0.rate) * width;
         t = low.t + std::clamp(i % 2 == 0 ? secant : cross, 0.02 * width, 0.98 * width);
       }
     }
-    if (std::min(-g0, g1) * width <= kStop * tolerance_ && std::max(-g0, g1) * width <= tolerance_) break;
+    if (std::min(-g0.rate, g1.rate) * width <= kStop * tolerance_ && std::max(-g0.rate, g1.rate) * width <= tolerance_)
+      break;
     if (!(t > low.t && t < high.t)) break;
     const Sample s = sample(u, v, t);
     if (!s.hit) {
       // The ray is not met there: beyond the end at which it is not met either, or in a gap that a shorter part shows.
       if (!high.hit)
-        high = s, f1 = kInfinity, g1 = kInfinity;
+        high = s, f1 = kInfinity, g1 = {kInfinity, 0};
       else if (!low.hit)
-        low = s, f0 = kInfinity, g0 = -kInfinity;
+        low = s, f0 = kInfinity, g0 = {-kInfinity, 0};
       else
         break;
       continue;
     }
     if (value(s) < value(best)) best = s;
     if (value(best) < enough) break;
-    const double g = slope(u, v, s, far);
-    if (g < 0)
+    const Slope g = slope(u, v, s, far);
+    if (g.rate < 0)
       low = s, f0 = value(s), g0 = g;
     else
       high = s, f1 = value(s), g1 = g;

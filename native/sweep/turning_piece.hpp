@@ -48,10 +48,11 @@ class TurningPiece {
 
  private:
   struct Sample;
+  struct Slope;
   SweptPiece at(double t) const { return {piece_, motion_->tip(t), motion_->axis(t), Vec3(0)}; }
   Sample sample(double u, double v, double t) const;
   Sample sample(double u, double v, double t, const SweptPiece& body) const;
-  double slope(double u, double v, const Sample& s, bool far) const;
+  Slope slope(double u, double v, const Sample& s, bool far) const;
   void part(double u, double v, const Interval& material, const Sample& from, const Sample& to, int depth,
             SweptIntervals& out) const;
   Sample extreme(double u, double v, bool far, const Sample& from, const Sample& to, double beyond) const;
