@@ -9,8 +9,8 @@ import sys
 import time
 from math import sin
 
-import bmesh
-import bpy
+import bpy  # isort: split
+import bmesh  # exists once bpy has been imported
 
 solver, moves = sys.argv[1], int(sys.argv[2])
 bpy.ops.wm.read_factory_settings(use_empty=True)
