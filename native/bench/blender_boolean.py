@@ -10,6 +10,7 @@ import time
 from math import sin
 
 import bpy  # isort: split
+
 import bmesh  # exists once bpy has been imported
 
 solver, moves = sys.argv[1], int(sys.argv[2])
