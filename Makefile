@@ -44,7 +44,7 @@ bench:  ## Measure run time and error: out/bench
 	@$(ready) bench
 	$(python) tools/preset.py bench
 	mkdir -p out/bench
-	build/bench/native/bench/riffler_bench --benchmark_out=out/bench/native.json
+	RIFFLER_THREADS=1 build/bench/native/bench/riffler_bench --benchmark_out=out/bench/native.json
 	$(python) native/bench/run.py --out out/bench
 
 lint:  ## Check style, layers, and that every header stands alone

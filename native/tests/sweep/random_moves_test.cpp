@@ -77,7 +77,10 @@ void expect_within(const Volume& volume, const Tool& tool, const Motion& motion,
 }
 
 TEST(Carve, RandomTurningMovesKeepTheTolerance) {
-  for (int seed = 0; seed < 250; ++seed) {
+  // The first three turn a flat face edge-on to a ray; they failed while two tangents were trusted across such an edge.
+  std::vector<int> seeds{5139, 7109, 8628};
+  for (int seed = 0; seed < 250; ++seed) seeds.push_back(seed);
+  for (const int seed : seeds) {
     SCOPED_TRACE(seed);
     Random random(static_cast<std::uint64_t>(seed));
     const Tool tool = any_cutter(random);
