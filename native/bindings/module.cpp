@@ -11,8 +11,10 @@ PYBIND11_MODULE(_core, m) {
 #else
   m.attr("__compiler__") = "GCC " __VERSION__;
 #endif
-  py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError);
-  py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError);
+  py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError).attr("__doc__") =
+      "A file that is not what it should be: names the file, the line or byte, and what was expected.";
+  py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError).attr("__doc__") =
+      "A long call that its progress callback stopped; the object is as it was before.";
   m.def("thread_count", &thread_count, "Threads that parallel calls use: RIFFLER_THREADS or the CPU affinity.");
   bind_mesh(m);
   bind_tool(m);
