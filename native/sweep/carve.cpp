@@ -3,19 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "geom/parallel.hpp"
 #include "sweep/steps.hpp"
-#include "sweep/tile_cut.hpp"
+#include "sweep/tile_cutter.hpp"
 
 namespace riffler {
 
 namespace {
 
 /// Steps that are cut in one go: enough to fill all threads, few enough to stay in the cache.
-constexpr std::size_t kBatch = 2048;
+constexpr std::size_t kBatch = 512;
 /// Rays below which starting threads costs more than it gains.
 constexpr double kSerialRays = 2e4;
 
@@ -71,13 +72,6 @@ class Rollback {
   bool armed_ = true;
 };
 
-/// What one tile contributes to one move.
-struct Share {
-  std::uint32_t move;
-  double removed = 0;
-  Vec3 force{0}, torque{0};
-};
-
 /// Cuts one grid, batch by batch.
 class GridCarver {
  public:
@@ -89,14 +83,12 @@ class GridCarver {
   }
 
   void run(const Tool& tool, const std::function<void(std::size_t)>& moves_done) {
-    for (std::size_t m = 0; m < motions_.size(); ++m) {
-      for (const Piece& piece : tool.cutter())
-        for_each_step(piece, motions_[m], static_cast<std::uint32_t>(m), grid_.box(), options_.tolerance,
-                      [&](Step&& step) {
-                        steps_.push_back(std::move(step));
-                        if (steps_.size() == kBatch) flush(), moves_done(m);
-                      });
-    }
+    const Cutter cutter(tool.cutter());
+    for (std::size_t m = 0; m < motions_.size(); ++m)
+      for_each_step(cutter, motions_[m], static_cast<std::uint32_t>(m), grid_.box(), [&](Step&& step) {
+        steps_.push_back(std::move(step));
+        if (steps_.size() == kBatch) flush(), moves_done(m);
+      });
     flush();
   }
 
@@ -105,16 +97,14 @@ class GridCarver {
  private:
   struct Work {  // one tile and its steps in the batch
     std::size_t tile, begin, end;
-    std::vector<Share> shares;
-    Stats stats;
-    std::shared_ptr<Tile> result;
+    TileResult done;
   };
 
   void flush() {
     if (steps_.empty()) return;
     std::vector<Work> work = assign();
     double rays = 0;
-    for (const Step& s : steps_) rays += s.footprint().rows().length() * s.footprint().columns().length();
+    for (const Step& s : steps_) rays += s.footprint.rows().length() * s.footprint.columns().length();
     rays /= grid_.pitch() * grid_.pitch();
     const auto body = [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) cut_tile(work[k]);
@@ -132,9 +122,9 @@ class GridCarver {
   std::vector<Work> assign() {
     pairs_.clear();
     for (std::size_t k = 0; k < steps_.size(); ++k) {
-      const Footprint& footprint = steps_[k].footprint();
-      const auto [u0, u1] = indices(footprint.rows(), grid_.box().lower.x, grid_.nu());
-      const auto [v0, v1] = indices(footprint.columns(), grid_.box().lower.y, grid_.nv());
+      const Footprint& footprint = steps_[k].footprint;
+      const auto [u0, u1] = ray_indices(footprint.rows(), grid_.box().lower.x, grid_.pitch(), grid_.nu());
+      const auto [v0, v1] = ray_indices(footprint.columns(), grid_.box().lower.y, grid_.pitch(), grid_.nv());
       if (u0 > u1 || v0 > v1) continue;
       for (int a = u0 / kTileSide; a <= u1 / kTileSide; ++a)
         for (int b = v0 / kTileSide; b <= v1 / kTileSide; ++b) pairs_.emplace_back(grid_.tile_index(a, b), k);
@@ -142,106 +132,36 @@ class GridCarver {
     std::sort(pairs_.begin(), pairs_.end());
     std::vector<Work> work;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      if (work.empty() || work.back().tile != pairs_[k].first) work.push_back({pairs_[k].first, k, k, {}, {}, {}});
+      if (work.empty() || work.back().tile != pairs_[k].first) work.push_back({pairs_[k].first, k, k, {}});
       work.back().end = k + 1;
     }
     return work;
   }
 
-  /// First and last ray whose coordinate lies in `range`.
-  std::pair<int, int> indices(const Interval& range, double lower, int n) const {
-    if (range.empty()) return {0, -1};
-    const double h = grid_.pitch();
-    const double first = std::ceil((range.near - lower) / h - 0.5), last = std::floor((range.far - lower) / h - 0.5);
-    return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(n))),
-            static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
-  }
-
+  /// Cuts one tile with its steps of the batch.
   void cut_tile(Work& work) const {
     const Tile& tile = grid_.tile(work.tile);
-    TileCut cut(tile, grid_.has_normals(), 1e-9 * grid_.pitch());
-    std::uint32_t last_move = ~0U;
+    if (tile.spans.empty()) return;
+    std::optional<TileCutter> cutter;
     for (std::size_t k = work.begin; k < work.end; ++k) {
       const Step& step = steps_[pairs_[k].second];
-      if (tile.reach.cut(step.footprint().height()).empty()) continue;  // the tool stays above or below the tile
-      work.stats.tiles_visited += step.move() != last_move;
-      last_move = step.move();
-      cut_step(work, cut, step);
+      if (tile.reach.cut(step.footprint.height()).empty()) continue;  // the tool stays above or below the tile
+      if (!cutter) cutter.emplace(grid_, work.tile, measured_, options_);
+      cutter->cut(step, motions_[step.move]);
     }
-    if (!cut.changed()) return;
-    work.result = cut.finish();
-    work.stats.tiles_changed = 1;
-    work.stats.bytes_copied = work.result->nbytes();
-  }
-
-  void cut_step(Work& work, TileCut& cut, const Step& step) const {
-    const int tile_u = static_cast<int>(work.tile) / grid_.tiles_v(),
-              tile_v = static_cast<int>(work.tile) % grid_.tiles_v();
-    const auto [u0, u1] = indices(step.footprint().rows(), grid_.box().lower.x, grid_.nu());
-    const int first_u = std::max(u0, tile_u * kTileSide), last_u = std::min(u1, tile_u * kTileSide + kTileSide - 1);
-    for (int i = first_u; i <= last_u; ++i) {
-      const double u = grid_.shifted_u(i);
-      const auto [v0, v1] = indices(step.footprint().row(u), grid_.box().lower.y, grid_.nv());
-      const int first_v = std::max(v0, tile_v * kTileSide), last_v = std::min(v1, tile_v * kTileSide + kTileSide - 1);
-      for (int j = first_v; j <= last_v; ++j) cut_ray(work, cut, step, i, j, u, grid_.shifted_v(j));
-    }
-  }
-
-  void cut_ray(Work& work, TileCut& cut, const Step& step, int i, int j, double u, double v) const {
-    const int r = Grid::ray_index(i, j);
-    const std::span<const Span> spans = cut.ray(r);
-    if (spans.empty() || spans.front().near >= step.footprint().height().far ||
-        spans.back().far <= step.footprint().height().near)
-      return;
-    ++work.stats.rays_tested;
-    SweptIntervals swept;
-    step.hit(u, v, {spans.front().near, spans.back().far}, swept);
-    bool changed = false;
-    for (const SweptInterval& interval : swept) changed |= cut_interval(work, cut, step, r, u, v, interval);
-    work.stats.rays_changed += changed;
-  }
-
-  bool cut_interval(Work& work, TileCut& cut, const Step& step, int r, double u, double v,
-                    const SweptInterval& interval) const {
-    const auto normals = [&](PackedNormal& at_near, PackedNormal& at_far) {
-      // The material's new surface looks into the tool.
-      at_near = PackedNormal::pack(to_world(grid_.axis(), -step.normal(u, v, interval.near, interval.near_t)));
-      at_far = PackedNormal::pack(to_world(grid_.axis(), -step.normal(u, v, interval.far, interval.far_t)));
-    };
-    const auto removed = [&](double lo, double hi) {
-      if (measured_) add_share(work, step, (interval.near_t + interval.far_t) / 2, {u, v, (lo + hi) / 2}, hi - lo);
-    };
-    return cut.subtract(r, {interval.near.s, interval.far.s}, normals, removed);
-  }
-
-  /// (3.18)–(3.24) with k per volume and second; the direction is against the velocity of the tool's material point at
-  /// the piece, which contains the source's cases I–IV, and along the axis where that point stands still.
-  void add_share(Work& work, const Step& step, double t, const Vec3& p, double length) const {
-    if (work.shares.empty() || work.shares.back().move != step.move())
-      work.shares.push_back({step.move(), 0, Vec3(0), Vec3(0)});
-    Share& share = work.shares.back();
-    const double removed = length * grid_.pitch() * grid_.pitch();
-    share.removed += removed;
-    if (options_.dt.empty()) return;
-    const Motion& motion = motions_[step.move()];
-    const Vec3 velocity = motion.velocity(p, t);
-    const double speed = glm::length(velocity);
-    const Vec3 direction = speed > 0 ? -velocity / speed : motion.axis(t);
-    const Vec3 force = direction * (options_.removal_constant * removed / options_.dt[step.move()]);
-    share.force += force;
-    share.torque += glm::cross(p - motion.to().tip, force);
+    if (cutter) work.done = cutter->finish();
   }
 
   void collect(Work& w) {
-    stats_ += w.stats;
-    for (const Share& s : w.shares) {
+    stats_ += w.done.stats;
+    for (const Share& s : w.done.shares) {
       cut_.removed[s.move] += s.removed;
       cut_.force[s.move] += to_world(grid_.axis(), s.force);
       cut_.torque[s.move] += to_world(grid_.axis(), s.torque);
     }
-    if (!w.result) return;
+    if (!w.done.tile) return;
     rollback_.keep(grid_, w.tile);
-    grid_.set_tile(w.tile, std::move(w.result));
+    grid_.set_tile(w.tile, std::move(w.done.tile));
   }
 
   Grid& grid_;

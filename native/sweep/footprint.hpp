@@ -1,21 +1,22 @@
-// Which rays a step of a piece can touch, and at which heights.
+// Which rays a step of a tool can touch, and at which heights.
 #pragma once
 
 #include <initializer_list>
-#include <vector>
+#include <span>
 
 #include "geom/interval.hpp"
 #include "geom/pose.hpp"
+#include "sweep/turning_part.hpp"
 #include "tool/piece.hpp"
 
 namespace riffler {
 
-/// The convex hull of a piece's axis at some poses, thickened by the piece's largest radius, seen along the rays (third
+/// Per piece, the convex hull of its axis at some poses, thickened by its largest radius, seen along the rays (third
 /// coordinate of the cyclic frame).
 class Footprint {
  public:
-  /// `slack`: how far the motion between the poses may leave the hull, mm.
-  Footprint(const Piece& piece, std::initializer_list<Pose> poses, double slack);
+  /// At most two poses. `slack`: how far the motion between them may leave the hull, mm.
+  Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> poses, double slack);
 
   /// Ranges of u, of v and of the third coordinate (not always tight).
   const Interval& rows() const { return rows_; }
@@ -26,10 +27,21 @@ class Footprint {
   bool overlaps(const Box3& box) const;
 
  private:
-  static constexpr int kMost = 4;
-  int count_ = 0;
-  Vec2 corner_[kMost];
-  double thickness_;
+  /// Discs of one radius at the corners, and the long sides of the strips between them: v = y + slope (u − x) from
+  /// `from` to `to`.
+  struct Side {
+    double from, to, x, y, slope;
+  };
+  struct Hull {
+    double thickness;
+    int corners = 0, sides = 0;
+    Vec2 corner[4];
+    Side side[12];
+  };
+  void add_corner(Hull& hull, const Vec2& p);
+
+  std::size_t count_ = 0;
+  Hull hulls_[ConvexGroup::kMost];
   Interval rows_, columns_, height_;
 };
 

@@ -186,23 +186,15 @@ void SweptPiece::ball(const Ray& ray, Extremes& out) const {
   }
 }
 
-double SweptPiece::clearance(double u, double v, double beyond) const {
-  const Ray ray = this->ray(u, v);
-  const double low = z0_ - beyond, high = z1_ + beyond;
-  const Interval inside = slab(ray.z - low, ray.oz, high - low);
-  if (inside.empty()) return std::max(low - ray.z, ray.z - high) + beyond;
-  const auto clamp = [&](double s) { return std::clamp(s, inside.near, inside.far); };
-  if (kind_ == Kind::Torus) return round_clearance(ray, inside);
-  if (kind_ == Kind::Ball) {
-    const double z = ray.z - zc_, s = clamp(-(ray.x * tilt_ + z * ray.oz));
-    return glm::length(Vec3(ray.x + s * tilt_, ray.y, z + s * ray.oz)) - r_;
+SweptShape SweptPiece::shape() const {
+  SweptShape s{kind_, cut_bottom_, cut_top_, {}, {}, {}, {}, tilt_, axis_.z, way_, m1_, m2_, mo_,
+               z0_,   z1_,         r0_,      r1_, slope_, e_, zc_, r_, {}};
+  const Vec3 against = way_ > 0 ? -direction_ : axis_;
+  for (int i = 0; i < 3; ++i) {
+    s.tip[i] = tip_[i], s.axis[i] = axis_[i], s.e1[i] = e1_[i], s.e2[i] = e2_[i];
+    s.direction[i] = against[i];
   }
-  // ρ − k is convex along the ray and least where dρ/ds = dk/ds.
-  const double grow = slope_ * ray.oz, ratio = tilt_ > 0 ? grow / tilt_ : kInfinity;
-  const double s = std::abs(ratio) < 1 ? clamp((ratio * std::abs(ray.y) / std::sqrt(1 - ratio * ratio) - ray.x) / tilt_)
-                                       : (grow > 0 ? inside.far : inside.near);
-  const double k = r0_ + slope_ * (ray.z + s * ray.oz - z0_);
-  return (std::hypot(ray.x + s * tilt_, ray.y) - k) / std::hypot(1.0, slope_);
+  return s;
 }
 
 Vec3 SweptPiece::normal(double u, double v, const SweptHit& hit) const {

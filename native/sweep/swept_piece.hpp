@@ -23,6 +23,19 @@ struct SweptHit {
   Surface surface = Surface::Lateral;
 };
 
+/// The numbers of a SweptPiece, for kernels. Frame: three vectors e1, e2, axis with e1 × e2 = axis, the rays in the plane
+/// of axis and e1: their direction is tilt e1 + oz axis.
+struct SweptShape {
+  enum class Kind : unsigned char { Frustum, Ball, Torus } kind;
+  bool cut_bottom, cut_top;         ///< a Round that ends in a flat face there
+  double tip[3], axis[3], e1[3], e2[3];
+  double tilt, oz;
+  double way, m1, m2, mo;           ///< length of the motion and its unit vector in the frame
+  double z0, z1, r0, r1, slope;     ///< ends and dr/dz
+  double e, zc, r;                  ///< Round
+  double direction[3];              ///< of the force: against the motion, along the axis where there is none
+};
+
 /// The body that a convex piece sweeps on a straight way at fixed orientation. It is convex, so a ray meets it in one
 /// interval; in the plane spanned by ray and motion, with coordinates (s along the ray, τ along the way), its section
 /// is { piece at τ contains the point } ∩ { 0 ≤ τ ≤ way }, a convex set of which [near, far] are the extreme s. The
@@ -40,10 +53,7 @@ class SweptPiece {
   bool hit(double u, double v, SweptHit& near, SweptHit& far) const;
   /// Unit normal, out of the body, at a hit of the ray through (u, v).
   Vec3 normal(double u, double v, const SweptHit& hit) const;
-  /// For a piece that does not move: a lower bound of the distance between it and the ray through (u, v), among the
-  /// points of the ray that are at most `beyond` above or below it along its axis; positive exactly where the ray
-  /// misses it if `beyond` is 0. Convex in the piece's position.
-  double clearance(double u, double v, double beyond) const;
+  SweptShape shape() const;
 
  private:
   /// A ray in the coordinates of the section: its point (s, τ) is tip + (x + s tilt − τ m1) e1 + (y − τ m2) e2 +
@@ -73,9 +83,9 @@ class SweptPiece {
   Gap gap(const Ray& ray, double s, double way) const;
   double nearest_way(const Ray& ray, double s, const Interval& ways, double guess) const;
   bool extreme(const Ray& ray, double sign, const Interval& ways, SweptHit& out) const;
-  double round_clearance(const Ray& ray, const Interval& inside) const;
 
-  enum class Kind : unsigned char { Frustum, Ball, Torus } kind_;
+  using Kind = SweptShape::Kind;
+  Kind kind_;
   bool cut_bottom_ = false, cut_top_ = false;  // a Round that ends in a flat face there
   Vec3 tip_, axis_, e1_, e2_;                  // e1 × e2 = axis; the ray lies in the plane of axis and e1
   double tilt_;                                // sine between axis and ray: the ray's component along e1

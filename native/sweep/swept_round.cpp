@@ -65,23 +65,6 @@ bool SweptPiece::extreme(const Ray& ray, double sign, const Interval& ways, Swep
   return false;
 }
 
-double SweptPiece::round_clearance(const Ray& ray, const Interval& inside) const {
-  // The distance is convex along the ray: golden section round the centre's foot.
-  const double reach = 2 * (std::abs(e_) + r_), foot = zc_ * axis_.z;
-  const double golden = 0.6180339887498949;
-  double a = std::max(inside.near, foot - reach), b = std::min(inside.far, foot + reach);
-  if (a > b) return gap(ray, std::clamp(foot, inside.near, inside.far), 0).distance;
-  double x = b - golden * (b - a), y = a + golden * (b - a);
-  double fx = gap(ray, x, 0).distance, fy = gap(ray, y, 0).distance;
-  for (int i = 0; i < 48; ++i) {
-    if (fx < fy)
-      b = y, y = x, fy = fx, x = b - golden * (b - a), fx = gap(ray, x, 0).distance;
-    else
-      a = x, x = y, fx = fy, y = a + golden * (b - a), fy = gap(ray, y, 0).distance;
-  }
-  return std::min(fx, fy);
-}
-
 void SweptPiece::torus(const Ray& ray, Extremes& out) const {
   const bool cut = cut_bottom_ || cut_top_;
   SweptHit low, high;

@@ -1,50 +1,51 @@
-// A tile while it is being cut: its rays in a form that can shrink and split, written back as a new tile at the end.
+// A tile while it is being cut: its rays as planes of ends that can be cut many at a time, packed again at the end.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "dexel/tile.hpp"
+#include "sweep/ray_window.hpp"
 
 namespace riffler {
 
-/// Reads the tile until the first cut, then works on a copy of its rays.
+/// Rays with one span (nearly all) live in two planes, those with several in a pool. An empty ray has near > far, so
+/// that no cut touches it.
 class TileCut {
  public:
   /// Spans left thinner than `thinnest` vanish.
-  TileCut(const Tile& tile, bool with_normals, double thinnest)
-      : tile_(tile), with_normals_(with_normals), thinnest_(thinnest) {}
+  TileCut(const Tile& tile, bool with_normals, double thinnest);
 
-  std::span<const Span> ray(int r) const {
-    return changed_ ? std::span<const Span>(spans_.data() + begin_[r], count_[r]) : tile_.ray(r);
-  }
+  /// Ends of a ray's only span, or of the hull of its spans; padded by kLanes. Whoever writes them calls `touch`.
+  double* near() { return near_; }
+  double* far() { return far_; }
+  const std::uint32_t* many() const { return many_; }
+  void touch() { changed_ = true; }
 
   /// Takes [cut.near, cut.far] from ray r. `normals(near, far)` is asked for the normals of the two new ends only if
-  /// there are any; `removed(near, far)` is told every piece of material taken. Returns whether anything was.
+  /// there are any; `removed(near, far)` is told every piece of material taken.
   template <class Normals, class Removed>
-  bool subtract(int r, const Interval& cut, const Normals& normals, const Removed& removed) {
-    bool any = false;
-    for (const Span& s : ray(r)) any = any || (s.far > cut.near && s.near < cut.far);
-    if (!any) return false;
-    open();
+  void subtract(int r, const Interval& cut, const Normals& normals, const Removed& removed) {
     kept_.clear(), kept_normals_.clear();
     SpanNormals ends;
-    bool have_ends = false;
-    for (std::uint32_t k = begin_[r]; k < begin_[r] + count_[r]; ++k) {
-      const Span s = spans_[k];
-      const SpanNormals n = with_normals_ ? normals_[k] : SpanNormals{};
+    bool have_ends = false, any = false;
+    const std::uint32_t n = count(r);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const Span s = span(r, k);
+      const SpanNormals old = with_normals_ ? normal(r, k) : SpanNormals{};
       if (s.far <= cut.near || s.near >= cut.far) {
-        keep(s, n);
+        keep(s, old);
         continue;
       }
+      any = true;
       const bool below = cut.near - s.near > thinnest_, above = s.far - cut.far > thinnest_;
       if (with_normals_ && (below || above) && !have_ends) normals(ends.near, ends.far), have_ends = true;
-      if (below) keep({s.near, cut.near}, {n.near, ends.near});
-      if (above) keep({cut.far, s.far}, {ends.far, n.far});
+      if (below) keep({s.near, cut.near}, {old.near, ends.near});
+      if (above) keep({cut.far, s.far}, {ends.far, old.far});
       removed(below ? cut.near : s.near, above ? cut.far : s.far);
     }
-    store(r);
-    return true;
+    if (any) store(r);
   }
 
   bool changed() const { return changed_; }
@@ -52,19 +53,28 @@ class TileCut {
   std::shared_ptr<Tile> finish() const;
 
  private:
-  void open();
-  void store(int r);
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  bool is_many(int r) const { return many_[r / kTileSide] >> (r % kTileSide) & 1U; }
+  std::uint32_t count(int r) const { return is_many(r) ? count_[r] : (near_[r] < far_[r] ? 1U : 0U); }
+  Span span(int r, std::uint32_t k) const { return is_many(r) ? pool_[begin_[r] + k] : Span{near_[r], far_[r]}; }
+  const SpanNormals& normal(int r, std::uint32_t k) const {
+    return is_many(r) ? pool_normals_[begin_[r] + k] : normals_[r];
+  }
   void keep(const Span& s, const SpanNormals& n) {
     kept_.push_back(s);
     if (with_normals_) kept_normals_.push_back(n);
   }
+  void put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n);
+  void store(int r);
 
-  const Tile& tile_;
   bool with_normals_, changed_ = false;
   double thinnest_;
-  std::vector<std::uint32_t> begin_, count_;
-  std::vector<Span> spans_;  // rays that grew lie at the end; their old places are forgotten
-  std::vector<SpanNormals> normals_;
+  alignas(64) double near_[kTileRays + kLanes], far_[kTileRays + kLanes];
+  std::uint32_t many_[kTileSide];
+  std::vector<SpanNormals> normals_;         // of the planes
+  std::vector<std::uint32_t> begin_, count_;  // of rays with several spans, in the pool
+  std::vector<Span> pool_;                   // rays that grew lie at the end; their old places are forgotten
+  std::vector<SpanNormals> pool_normals_;
   std::vector<Span> kept_;
   std::vector<SpanNormals> kept_normals_;
 };

@@ -1,0 +1,90 @@
+// Subtraction of stretches from the rays of a window, many at a time, and the sums over what is taken.
+#if defined(RIFFLER_SWEEP_CUT_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RIFFLER_SWEEP_CUT_LANES_INL_HPP
+#undef RIFFLER_SWEEP_CUT_LANES_INL_HPP
+#else
+#define RIFFLER_SWEEP_CUT_LANES_INL_HPP
+#endif
+
+#include <bit>
+
+#include "sweep/lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace riffler::HWY_NAMESPACE {
+
+/// A group of neighbouring rays of one row.
+struct Group {
+  int ray;       // index of the first in the tile
+  int slot;      // of the sums
+  V v;           // their coordinate; u is the row's
+  V near, far;   // their material
+  M active;      // lanes that the step may touch
+};
+
+/// Rays in a tool's frame: their point at height s over the tip is (x + s tilt, y, z + s oz).
+struct SectionRays {
+  V x, y, z;
+};
+
+/// Calls body(u, group) for all groups of the window with material at its heights.
+template <class Body>
+HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
+  const V low = set(w.low), high = set(w.high);
+  for (int a = w.first_row; a <= w.last_row; ++a)
+    for (int b = w.first[a]; b < w.end[a]; b += lanes()) {
+      Group g{a * kTileSide + b, (b - w.first[a]) % kLanes, hn::LoadU(kD, w.v + b), zero(), zero(),
+              hn::FirstN(kD, static_cast<std::size_t>(w.end[a] - b))};
+      g.near = hn::LoadU(kD, w.near + g.ray), g.far = hn::LoadU(kD, w.far + g.ray);
+      g.active = both(g.active, both(hn::Lt(g.near, high), hn::Gt(g.far, low)));
+      if (none(g.active)) continue;
+      w.tested += hn::CountTrue(kD, g.active);
+      body(w.u[a], g);
+    }
+}
+
+HWY_INLINE void add_to(double* slots, int slot, V x) {
+  hn::StoreU(hn::Add(hn::LoadU(kD, slots + slot), x), kD, slots + slot);
+}
+
+/// Takes `cut` from the lanes of `mask`; `t_near` and `t_far` are the motion's t at its ends. `add(length, middle, t)`
+/// is told what every lane lost.
+template <class Add>
+HWY_INLINE void subtract(RayWindow& w, const Group& g, M mask, Stretch cut, V t_near, V t_far, const Add& add) {
+  const M touched = both(both(mask, hn::Lt(cut.near, cut.far)), both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.near)));
+  if (none(touched)) return;
+  w.changed += hn::CountTrue(kD, touched);
+  const V thinnest = set(w.thinnest);
+  const M below = hn::Gt(hn::Sub(cut.near, g.near), thinnest), above = hn::Gt(hn::Sub(g.far, cut.far), thinnest);
+  const int a = g.ray / kTileSide, b = g.ray % kTileSide;
+  const M many = from_bits((w.many[a] >> b) & ((1U << lanes()) - 1));
+  const M simple = w.in_place ? without(without(touched, many), both(below, above)) : no_lane();
+  const V low = pick(below, cut.near, g.near), high = pick(above, cut.far, g.far);
+  if (!none(simple)) {
+    const M gone = without(without(simple, below), above);
+    const V near = pick(gone, set(kInfinity), pick(above, cut.far, g.near));
+    const V far = pick(gone, set(-kInfinity), pick(below, cut.near, g.far));
+    hn::StoreU(pick(simple, near, g.near), kD, w.near + g.ray);
+    hn::StoreU(pick(simple, far, g.far), kD, w.far + g.ray);
+    if (w.measured) {
+      const V length = hn::IfThenElseZero(simple, hn::Sub(high, low));
+      add_to(w.sums->length, g.slot, length);
+      // Lanes that lose nothing may hold infinities.
+      const V middle = hn::IfThenElseZero(simple, hn::Mul(set(0.5), hn::Add(low, high)));
+      if (w.with_force) add(length, middle, hn::Mul(set(0.5), hn::Add(t_near, t_far)));
+    }
+  }
+  const unsigned rest = bits(without(touched, simple));
+  if (!rest) return;
+  double near[kLanes], far[kLanes], tn[kLanes], tf[kLanes];
+  hn::StoreU(cut.near, kD, near), hn::StoreU(cut.far, kD, far), hn::StoreU(t_near, kD, tn), hn::StoreU(t_far, kD, tf);
+  for (unsigned m = rest; m; m &= m - 1) {
+    const int k = std::countr_zero(m);
+    w.cut(w.self, g.ray + k, {near[k], far[k], tn[k], tf[k]});
+  }
+}
+
+}  // namespace riffler::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,63 @@
+#include "sweep/kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sweep/kernels.cpp"
+// Clang-format would sort foreach_target.h away from its place.
+// clang-format off
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format on
+
+#include "sweep/straight_lanes-inl.hpp"
+#include "sweep/turning_lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace riffler::HWY_NAMESPACE {
+
+void CutStraight(const SweptShape& shape, RayWindow& window) {
+  cut_straight_lanes(shape, window);
+}
+
+void CutTurning(TurningPoses& poses, RayWindow& window) {
+  cut_turning_lanes(poses, window);
+}
+
+}  // namespace riffler::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+#include <stdexcept>
+
+namespace riffler {
+
+HWY_EXPORT(CutStraight);
+HWY_EXPORT(CutTurning);
+
+void cut_straight(const SweptShape& shape, RayWindow& window) {
+  HWY_DYNAMIC_DISPATCH(CutStraight)(shape, window);
+}
+
+void cut_turning(TurningPoses& poses, RayWindow& window) {
+  HWY_DYNAMIC_DISPATCH(CutTurning)(poses, window);
+}
+
+std::vector<std::string> instruction_sets() {
+  std::vector<std::string> names;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) names.emplace_back(hwy::TargetName(target));
+  return names;
+}
+
+void use_instruction_set(const std::string& name) {
+  std::int64_t chosen = name.empty() ? -1 : 0;
+  hwy::SetSupportedTargetsForTest(0);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+    if (name == hwy::TargetName(target)) chosen = target;
+  if (chosen == 0) throw std::invalid_argument("this machine has no instruction set " + name);
+  if (chosen > 0) hwy::SetSupportedTargetsForTest(chosen);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace riffler
+
+#endif

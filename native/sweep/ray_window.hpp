@@ -1,0 +1,51 @@
+// The rays of a tile that one step may touch, as the vector kernels see them: plain arrays and numbers.
+#pragma once
+
+#include <cstdint>
+
+#include "dexel/tile.hpp"
+
+namespace riffler {
+
+/// Rays are handled in groups of up to this many; arrays are padded by as much.
+inline constexpr int kLanes = 8;
+
+/// What a step takes from one ray: [near, far], and the motion's t at its two ends.
+struct RayCut {
+  double near, far, near_t, far_t;
+};
+
+/// Sums over the pieces of material taken, each weighted by its length. Every ray adds to the slot of its column modulo
+/// kLanes, so that the result does not depend on how many rays a kernel handles at once.
+struct RemovedSums {
+  double length[kLanes] = {};
+  double direction[3][kLanes] = {};  ///< Σ length × direction of the force (unit)
+  double moment[3][kLanes] = {};     ///< Σ length × (middle − pivot) × direction
+};
+
+struct RayWindow {
+  // The tile (tile_cut.hpp): the only span of every ray, or the hull of several.
+  double* near;
+  double* far;
+  const std::uint32_t* many;  ///< bit b of row a: the ray holds several spans
+  double u[kTileSide];
+  double v[kTileSide + kLanes];
+  double thinnest;  ///< mm: what is left thinner vanishes
+  // The part that the step may touch: columns [first[a], end[a]) of rows first_row … last_row, at these heights.
+  int first_row, last_row;
+  std::uint8_t first[kTileSide], end[kTileSide];
+  double low, high;
+  // What is wanted.
+  bool in_place;     ///< cut single spans here; otherwise every cut goes to `cut`
+  bool measured;     ///< add up the lengths taken
+  bool with_force;   ///< and the directions
+  double pivot[3];   ///< of the moment
+  void* self;
+  void (*cut)(void* self, int ray, const RayCut& cut);                    ///< what is not cut here
+  bool (*exact)(void* self, double u, double v, double& near, double& far);  ///< the scalar way, where lanes give up
+  RemovedSums* sums;
+  // What was done.
+  std::uint64_t tested = 0, changed = 0, hits = 0;
+};
+
+}  // namespace riffler

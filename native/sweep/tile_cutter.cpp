@@ -1,0 +1,141 @@
+#include "sweep/tile_cutter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sweep/kernels.hpp"
+
+namespace riffler {
+
+std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n) {
+  if (range.empty()) return {0, -1};
+  const double first = std::ceil((range.near - lower) / pitch - 0.5), last = std::floor((range.far - lower) / pitch - 0.5);
+  return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(n))),
+          static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
+}
+
+TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const CarveOptions& options)
+    : grid_(grid),
+      options_(options),
+      first_row_(static_cast<int>(tile) / grid.tiles_v() * kTileSide),
+      first_column_(static_cast<int>(tile) % grid.tiles_v() * kTileSide),
+      rays_(grid.tile(tile), grid.has_normals(), 1e-9 * grid.pitch()),
+      window_{} {
+  RayWindow& w = window_;
+  w.near = rays_.near(), w.far = rays_.far(), w.many = rays_.many();
+  for (int k = 0; k < kTileSide; ++k) w.u[k] = grid.shifted_u(first_row_ + k);
+  for (int k = 0; k < kTileSide + kLanes; ++k) w.v[k] = grid.shifted_v(first_column_ + k);
+  w.thinnest = 1e-9 * grid.pitch();
+  w.in_place = !grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
+  w.self = this, w.sums = &sums_;
+  w.cut = [](void* self, int ray, const RayCut& cut) { static_cast<TileCutter*>(self)->cut_one(ray, cut); };
+  w.exact = [](void* self, double u, double v, double& near, double& far) {
+    SweptHit a, b;
+    const auto* me = static_cast<const TileCutter*>(self);
+    if (!std::get<SweptPiece>(me->step_->body).hit(u, v, a, b)) return false;
+    return near = a.s, far = b.s, true;
+  };
+}
+
+/// Rows and columns of the tile in the footprint; false if there are none.
+bool TileCutter::set_window(const Footprint& footprint) {
+  RayWindow& w = window_;
+  const double h = grid_.pitch();
+  const auto [u0, u1] = ray_indices(footprint.rows(), grid_.box().lower.x, h, grid_.nu());
+  w.first_row = std::max(u0 - first_row_, 0), w.last_row = std::min(u1 - first_row_, kTileSide - 1);
+  bool any = false;
+  for (int a = w.first_row; a <= w.last_row; ++a) {
+    const auto [v0, v1] = ray_indices(footprint.row(w.u[a]), grid_.box().lower.y, h, grid_.nv());
+    const int first = std::max(v0 - first_column_, 0), end = std::min(v1 - first_column_ + 1, kTileSide);
+    w.first[a] = static_cast<std::uint8_t>(std::min(first, kTileSide)), w.end[a] = static_cast<std::uint8_t>(std::max(end, 0));
+    any = any || first < end;
+  }
+  w.low = footprint.height().near, w.high = footprint.height().far;
+  return any;
+}
+
+void TileCutter::cut(const Step& step, const Motion& motion) {
+  step_ = &step, motion_ = &motion;
+  if (!set_window(step.footprint)) return;
+  result_.stats.tiles_visited += step.move != last_move_;
+  last_move_ = step.move;
+  RayWindow& w = window_;
+  w.tested = w.changed = w.hits = 0;
+  for (int i = 0; i < 3; ++i) w.pivot[i] = motion.to().tip[i];
+  if (const auto* part = std::get_if<TurningPart>(&step.body)) {
+    TurningPoses poses(part->group, *part->motion, part->t0, part->t1, options_.tolerance);
+    cut_turning(poses, w);
+  } else {
+    cut_straight(std::get<SweptPiece>(step.body).shape(), w);
+  }
+  if (w.changed > 0) {
+    rays_.touch();
+    if (w.measured) add_share();
+  }
+  result_.stats.rays_tested += w.tested, result_.stats.rays_changed += w.changed, result_.stats.hits += w.hits;
+}
+
+/// What the kernel leaves: rays with several spans, splits, and all cuts of a grid that stores normals.
+void TileCutter::cut_one(int ray, const RayCut& cut) {
+  const int row = ray / kTileSide, column = ray % kTileSide;
+  const double u = window_.u[row], v = window_.v[column];
+  const int slot = (column - window_.first[row]) % kLanes;
+  const auto normals = [&](PackedNormal& near, PackedNormal& far) {
+    // The material's new surface looks into the tool.
+    const auto [a, b] = ends(u, v, cut);
+    near = PackedNormal::pack(to_world(grid_.axis(), -a)), far = PackedNormal::pack(to_world(grid_.axis(), -b));
+  };
+  const auto removed = [&](double low, double high) {
+    if (!window_.measured) return;
+    const double length = high - low;
+    sums_.length[slot] += length;
+    if (!window_.with_force) return;
+    const Vec3 p{u, v, (low + high) / 2}, velocity = motion_->velocity(p, (cut.near_t + cut.far_t) / 2);
+    const double speed = glm::length(velocity);
+    const Vec3 direction = speed > 0 ? -velocity / speed : motion_->axis((cut.near_t + cut.far_t) / 2);
+    const Vec3 moment = glm::cross(p - motion_->to().tip, direction);
+    for (int i = 0; i < 3; ++i)
+      sums_.direction[i][slot] += length * direction[i], sums_.moment[i][slot] += length * moment[i];
+  };
+  rays_.subtract(ray, {cut.near, cut.far}, normals, removed);
+}
+
+/// Normals of the swept body at both ends of a cut.
+std::pair<Vec3, Vec3> TileCutter::ends(double u, double v, const RayCut& cut) const {
+  if (const auto* part = std::get_if<TurningPart>(&step_->body))
+    return {turning_normal(part->group, *part->motion, {u, v, cut.near}, cut.near_t),
+            turning_normal(part->group, *part->motion, {u, v, cut.far}, cut.far_t)};
+  const auto& body = std::get<SweptPiece>(step_->body);
+  SweptHit near, far;
+  if (!body.hit(u, v, near, far)) return {Vec3(0, 0, -1), Vec3(0, 0, 1)};
+  return {body.normal(u, v, near), body.normal(u, v, far)};
+}
+
+/// (3.18)–(3.24) with k per volume and second.
+void TileCutter::add_share() {
+  const auto total = [](const double* slots) { return std::accumulate(slots, slots + kLanes, 0.0); };
+  if (result_.shares.empty() || result_.shares.back().move != step_->move)
+    result_.shares.push_back({step_->move, 0, Vec3(0), Vec3(0)});
+  Share& share = result_.shares.back();
+  const double area = grid_.pitch() * grid_.pitch();
+  share.removed += area * total(sums_.length);
+  if (window_.with_force) {
+    const double scale = options_.removal_constant * area / options_.dt[step_->move];
+    for (int i = 0; i < 3; ++i) {
+      share.force[i] += scale * total(sums_.direction[i]);
+      share.torque[i] += scale * total(sums_.moment[i]);
+    }
+  }
+  sums_ = {};
+}
+
+TileResult TileCutter::finish() {
+  if (!rays_.changed()) return std::move(result_);
+  result_.tile = rays_.finish();
+  result_.stats.tiles_changed = 1;
+  result_.stats.bytes_copied = result_.tile->nbytes();
+  return std::move(result_);
+}
+
+}  // namespace riffler

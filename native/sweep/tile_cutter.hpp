@@ -1,0 +1,58 @@
+// Cuts one tile with one step after the other.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "dexel/grid.hpp"
+#include "dexel/stats.hpp"
+#include "sweep/carve.hpp"
+#include "sweep/steps.hpp"
+#include "sweep/tile_cut.hpp"
+
+namespace riffler {
+
+/// What one tile contributes to one move, in the grid's frame.
+struct Share {
+  std::uint32_t move;
+  double removed = 0;
+  Vec3 force{0}, torque{0};
+};
+
+struct TileResult {
+  std::shared_ptr<Tile> tile;  ///< the new tile, or null if nothing was cut
+  std::vector<Share> shares;
+  Stats stats;
+};
+
+/// First and last of n rays `pitch` apart whose coordinate lies in `range`.
+std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n);
+
+class TileCutter {
+ public:
+  /// `measured`: what is taken counts towards Cut::removed.
+  TileCutter(const Grid& grid, std::size_t tile, bool measured, const CarveOptions& options);
+
+  void cut(const Step& step, const Motion& motion);
+  TileResult finish();
+
+ private:
+  bool set_window(const Footprint& footprint);
+  void cut_one(int ray, const RayCut& cut);
+  std::pair<Vec3, Vec3> ends(double u, double v, const RayCut& cut) const;
+  void add_share();
+
+  const Grid& grid_;
+  const CarveOptions& options_;
+  int first_row_, first_column_;  // of the tile, in the grid
+  TileCut rays_;
+  RayWindow window_;
+  RemovedSums sums_;
+  TileResult result_;
+  std::uint32_t last_move_ = ~0U;
+  const Step* step_ = nullptr;
+  const Motion* motion_ = nullptr;
+};
+
+}  // namespace riffler
