@@ -18,8 +18,8 @@ void CutStraight(const SweptShape& shape, RayWindow& window) {
   cut_straight_lanes(shape, window);
 }
 
-void CutTurning(TurningPoses& poses, RayWindow& window) {
-  cut_turning_lanes(poses, window);
+void CutTurning(const TurningBody& body, RayWindow& window) {
+  cut_turning_lanes(body, window);
 }
 
 }  // namespace riffler::HWY_NAMESPACE
@@ -38,8 +38,8 @@ void cut_straight(const SweptShape& shape, RayWindow& window) {
   HWY_DYNAMIC_DISPATCH(CutStraight)(shape, window);
 }
 
-void cut_turning(TurningPoses& poses, RayWindow& window) {
-  HWY_DYNAMIC_DISPATCH(CutTurning)(poses, window);
+void cut_turning(const TurningBody& body, RayWindow& window) {
+  HWY_DYNAMIC_DISPATCH(CutTurning)(body, window);
 }
 
 std::vector<std::string> instruction_sets() {

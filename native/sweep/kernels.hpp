@@ -14,7 +14,7 @@ namespace riffler {
 /// Cuts the body of a straight step out of the rays of the window.
 void cut_straight(const SweptShape& shape, RayWindow& window);
 /// Cuts what a turning part sweeps.
-void cut_turning(TurningPoses& poses, RayWindow& window);
+void cut_turning(const TurningBody& body, RayWindow& window);
 
 /// Names of the instruction sets that this machine can use, best first.
 std::vector<std::string> instruction_sets();

@@ -98,14 +98,14 @@ HWY_INLINE Stretch common(Stretch a, Stretch b) {
 }
 
 /// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, by roots that do not cancel.
-HWY_INLINE Stretch at_most_zero(double q2, V q1, V q0) {
+HWY_INLINE Stretch at_most_zero(double q2, double per_q2, V q1, V q0) {
   const V disc = hn::Sub(hn::Mul(q1, q1), hn::Mul(set(q2), q0));
   const M real = hn::Ge(disc, zero());
   const V q = hn::Neg(hn::Add(q1, with_sign(sqrt(max(disc, zero())), q1)));
   const M flat = hn::Eq(q, zero());
   const V b = hn::Div(q0, pick(flat, set(1), q));
   if (q2 > 0) {
-    const V a = hn::Mul(q, set(1 / q2)), c = pick(flat, zero(), b);
+    const V a = hn::Mul(q, set(per_q2)), c = pick(flat, zero(), b);
     return where(real, {min(a, c), max(a, c)});
   }
   const V a = with_sign(set(kInfinity), q);
@@ -113,12 +113,18 @@ HWY_INLINE Stretch at_most_zero(double q2, V q1, V q0) {
   const Stretch half = where(without(real, flat), {min(a, b), max(a, b)});
   return {pick(all, set(-kInfinity), half.near), pick(all, set(kInfinity), half.far)};
 }
+HWY_INLINE Stretch at_most_zero(double q2, V q1, V q0) {
+  return at_most_zero(q2, 1 / q2, q1, q0);
+}
 
-/// {s : 0 ≤ at + slope · s ≤ height}.
+/// {s : 0 ≤ at + slope · s ≤ height}; `per_slope` is 1 / slope, or 0 for a slope of nothing.
+HWY_INLINE Stretch slab_by(V at, double per_slope, double height) {
+  if (per_slope == 0) return where(both(hn::Ge(at, zero()), hn::Le(at, set(height))), everything());
+  const V r = set(-per_slope), a = hn::Mul(at, r), b = hn::Mul(hn::Sub(at, set(height)), r);
+  return per_slope > 0 ? Stretch{a, b} : Stretch{b, a};
+}
 HWY_INLINE Stretch slab(V at, double slope, double height) {
-  if (std::abs(slope) < 1e-200) return where(both(hn::Ge(at, zero()), hn::Le(at, set(height))), everything());
-  const V r = set(-1 / slope), a = hn::Mul(at, r), b = hn::Mul(hn::Sub(at, set(height)), r);
-  return slope > 0 ? Stretch{a, b} : Stretch{b, a};
+  return slab_by(at, std::abs(slope) < 1e-200 ? 0 : 1 / slope, height);
 }
 
 }  // namespace riffler::HWY_NAMESPACE

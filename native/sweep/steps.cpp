@@ -9,47 +9,68 @@ namespace {
 
 /// rad: a turning move is first cut into parts of at most this angle, so that their footprints stay near the tool.
 constexpr double kWidestPart = 0.25;
+/// Radii: how far above the highest contact a piece is cut off.
+constexpr double kMargin = 0.01;
 
-/// Greatest height on the axis at which the tool can meet the box during the move. f(t) = (corner − tip) · axis has
-/// |f″| ≤ 2 P φ + D φ², so it exceeds its ends' greater value by at most an eighth of that.
-double highest_contact(const Motion& motion, const Box3& box) {
-  double height = -std::numeric_limits<double>::infinity(), far = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 c{corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                 corner & 4 ? box.upper.z : box.lower.z};
-    for (const Pose& pose : {motion.from(), motion.to()}) {
-      height = std::max(height, glm::dot(c - pose.tip, pose.axis));
-      far = std::max(far, glm::length(c - pose.tip));
+/// Greatest height on the axis at which the piece can meet the box between two poses less than a quarter turn apart.
+/// Where the axis leans out of a face of the box, o · m > 0, that component is a concave function of the time, and the
+/// disc of radius ρ at height ζ stays beyond the face while tip · m + ζ o · m − ρ √(1 − (o · m)²) does.
+double highest_contact(const Piece& piece, const Pose& from, const Pose& to, const Box3& box) {
+  double radius = max_radius(piece), slope = 0;
+  if (const auto* f = std::get_if<Frustum>(&piece))
+    slope = (f->r1 - f->r0) / (f->z1 - f->z0), radius = f->r0 - slope * f->z0;  // at ζ = 0
+  double height = top(piece);
+  for (int i = 0; i < 3; ++i)
+    for (const double m : {-1.0, 1.0}) {
+      const double lean = std::clamp(std::min(m * from.axis[i], m * to.axis[i]), 0.0, 1.0);
+      const double across = std::sqrt(1 - lean * lean), rise = lean - slope * across;
+      if (!(rise > 0) || lean == 0) continue;
+      const double face = m > 0 ? box.upper[i] : -box.lower[i], tip = std::min(m * from.tip[i], m * to.tip[i]);
+      height = std::min(height, (face - tip + radius * across) / rise);
     }
+  return height;
+}
+
+/// What of convex pieces, from the tip upwards, can meet the box between two poses: all below one height.
+ConvexGroup reachable(std::span<const Piece> pieces, double thinnest, const Pose& from, const Pose& to,
+                      const Box3& box) {
+  double height = -std::numeric_limits<double>::infinity();
+  for (const Piece& piece : pieces)
+    if (const double h = highest_contact(piece, from, to, box); h > bottom(piece)) height = std::max(height, h);
+  // A little more, so that no cut ends at the face itself.
+  height += kMargin * (pieces.empty() ? 0 : max_radius(pieces.back()));
+  ConvexGroup out;
+  out.thinnest = thinnest;
+  for (const Piece& piece : pieces) {
+    if (height <= bottom(piece)) continue;
+    const auto* f = std::get_if<Frustum>(&piece);
+    const bool cut = f && height < f->z1;
+    out.pieces[out.count++] = cut ? Frustum{f->z0, f->r0, height, radius_at(piece, height)} : piece;
   }
-  const double way = glm::length(motion.to().tip - motion.from().tip), turn = motion.angle();
-  return height + (2 * way * turn + (far + way) * turn * turn) / 8;
+  return out;
 }
 
-/// The piece without what lies above `height` on the axis, where a frustum can be cut without changing its lower part.
-Piece below(const Piece& piece, double height) {
-  const auto* f = std::get_if<Frustum>(&piece);
-  if (!f || height >= f->z1) return piece;
-  return Frustum{f->z0, f->r0, height, radius_at(piece, height)};
-}
-
-void turning_parts(const ConvexGroup& whole, const Motion& motion, double height, std::uint32_t move, const Box3& box,
-                   const std::function<void(Step&&)>& sink) {
-  ConvexGroup group;
+double lever_of(const ConvexGroup& group) {
   double lever = 0;
-  for (const Piece& piece : whole.all())
-    if (bottom(piece) < height) {
-      const Piece low = below(piece, height);
-      group.pieces[group.count++] = low;
-      lever = std::max(lever, std::hypot(std::max(std::abs(bottom(low)), std::abs(top(low))), max_radius(low)));
-    }
-  if (group.count == 0) return;
+  for (const Piece& p : group.all())
+    lever = std::max(lever, std::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
+  return lever;
+}
+
+void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t move, const Box3& box,
+                   const std::function<void(Step&&)>& sink) {
   const int n = static_cast<int>(std::ceil(motion.angle() / kWidestPart));
-  const double angle = motion.angle() / n, slack = lever * angle * angle / 8;
+  const double angle = motion.angle() / n;
+  Pose from = motion.from();
   for (int k = 0; k < n; ++k) {
     const double t0 = static_cast<double>(k) / n, t1 = static_cast<double>(k + 1) / n;
-    const Footprint footprint(group.all(), {motion.at(t0), motion.at(t1)}, slack);
-    if (footprint.overlaps(box)) sink({move, footprint, TurningPart{group, &motion, t0, t1}});
+    const Pose to = motion.at(t1);
+    const ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
+    if (group.count > 0) {
+      const Footprint footprint(group.all(), {from, to}, lever_of(group) * angle * angle / 8);
+      if (footprint.overlaps(box)) sink({move, footprint, TurningPart{group, &motion, t0, t1}});
+    }
+    from = to;
   }
 }
 
@@ -57,17 +78,17 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, double height
 
 void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t move, const Box3& box,
                    const std::function<void(Step&&)>& sink) {
-  const double height = highest_contact(motion, box);
   if (motion.angle() > 0) {
-    for (const ConvexGroup& group : cutter.groups) turning_parts(group, motion, height, move, box, sink);
+    for (const ConvexGroup& group : cutter.groups) turning_parts(group, motion, move, box, sink);
     return;
   }
-  const Pose& from = motion.from();
+  const Pose &from = motion.from(), &to = motion.to();
   for (const Piece& piece : cutter.pieces) {
-    if (height <= bottom(piece)) continue;
-    const Piece low = below(piece, height);
-    const Footprint footprint({&low, 1}, {from, motion.to()}, 0);
-    if (footprint.overlaps(box)) sink({move, footprint, SweptPiece(low, from.tip, from.axis, motion.to().tip - from.tip)});
+    const ConvexGroup low = reachable({&piece, 1}, 0, from, to, box);
+    if (low.count == 0) continue;
+    const Footprint footprint(low.all(), {from, to}, 0);
+    if (footprint.overlaps(box))
+      sink({move, footprint, SweptPiece(low.pieces[0], from.tip, from.axis, to.tip - from.tip)});
   }
 }
 

@@ -64,8 +64,7 @@ void TileCutter::cut(const Step& step, const Motion& motion) {
   w.tested = w.changed = w.hits = 0;
   for (int i = 0; i < 3; ++i) w.pivot[i] = motion.to().tip[i];
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
-    TurningPoses poses(part->group, *part->motion, part->t0, part->t1, options_.tolerance);
-    cut_turning(poses, w);
+    cut_turning(TurningBody(part->group, *part->motion, part->t0, part->t1, options_.tolerance), w);
   } else {
     cut_straight(std::get<SweptPiece>(step.body).shape(), w);
   }

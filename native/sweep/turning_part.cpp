@@ -13,9 +13,11 @@ PieceShape shape_of(const Piece& piece) {
   PieceShape s{};
   s.z0 = bottom(piece), s.z1 = top(piece);
   s.r0 = radius_at(piece, s.z0), s.r1 = radius_at(piece, s.z1);
-  s.slope = (s.r1 - s.r0) / (s.z1 - s.z0), s.cosine = 1 / std::hypot(1.0, s.slope);
+  s.slope = std::holds_alternative<Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0, s.cosine = 1 / std::hypot(1.0, s.slope);
+  s.inverse = 1 / s.r0;
   if (const auto* round = std::get_if<Round>(&piece)) {
     s.round = true, s.e = round->e, s.zc = round->zc, s.r = round->r;
+    s.inverse = 1 / s.r;
     s.ball = s.e == 0 && s.z0 <= s.zc - s.r && s.z1 >= s.zc + s.r;
   }
   return s;
@@ -48,62 +50,43 @@ std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
     if (!joins) out.emplace_back();
     out.back().pieces[out.back().count++] = piece;
   }
+  for (ConvexGroup& group : out) {
+    double radius = 0;
+    for (const Piece& piece : group.all()) radius = std::max(radius, max_radius(piece));
+    group.thinnest = std::min(radius, top(group.pieces[group.count - 1]) - bottom(group.pieces[0]));
+  }
   return out;
 }
 
-TurningPoses::TurningPoses(const ConvexGroup& group, const Motion& motion, double t0, double t1, double tolerance)
-    : count_(group.count), motion_(motion), t0_(t0), t1_(t1), origin_(motion.tip(t0).z) {
-  double lever = 0, thinnest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < count_; ++k) {
+TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double from, double to, double tolerance)
+    : count(group.count),
+      leans(false),
+      t0(from),
+      t1(to),
+      origin(motion.tip(from).z),
+      middle((from + to) / 2),
+      angle(motion.angle()) {
+  double lever = 0;
+  for (std::size_t k = 0; k < count; ++k) {
     const Piece& p = group.pieces[k];
-    pieces_[k] = shape_of(p);
+    pieces[k] = shape_of(p);
+    pieces[k].inner0 = k > 0, pieces[k].inner1 = k + 1 < count;
+    leans = leans || pieces[k].slope != 0;
     lever = std::max(lever, std::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
-    thinnest = std::min({thinnest, top(p) - bottom(p), max_radius(p)});
   }
+  const Vec3 velocity = motion.to().tip - motion.from().tip, o = motion.axis(middle), start = motion.from().tip;
+  // The rotation vector is square to the axis, so this is a quarter turn ahead of it.
+  const Vec3 ahead = angle > 0 ? glm::cross(motion.rotation(), o) / angle : Vec3(0);
+  for (int i = 0; i < 3; ++i) {
+    tip[i] = start[i] - (i == 2 ? origin : 0), way[i] = velocity[i];
+    axis[i] = o[i], side[i] = ahead[i], spin[i] = motion.rotation()[i];
+  }
+  speed = glm::length(velocity), pull = angle * angle * angle, drift = 3 * angle * angle * speed;
   // √5 · 0.2 + 0.5 < 1: where a surface is no steeper against the ray than 2, both shares together stay below the
   // tolerance along the ray. A plane may not be behind by more than a small part of the body (docs/methods.md).
-  along_ = 0.5 * tolerance, aside_ = std::min(0.2 * tolerance, 0.02 * thinnest);
-  const Vec3 way = motion.to().tip - motion.from().tip;
-  const Vec3 axis = motion.axis((t0 + t1) / 2);
-  for (int i = 0; i < 3; ++i) {
-    tip_from_[i] = motion.from().tip[i], tip_way_[i] = way[i];
-    rotation_[i] = motion.rotation()[i], axis_[i] = axis[i];
-  }
-  way_ = glm::length(way), spin2_ = motion.angle() * motion.angle();
-  coriolis_ = 2 * glm::length(glm::cross(motion.rotation(), way));
-  const double moved = (way_ + motion.angle() * lever) * (t1 - t0);
-  deepest_ = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(moved / aside_, 1.0)))), 1, kDeepest);
-}
-
-PoseFrame TurningPoses::make(double t) const {
-  const Vec3 tip = motion_.tip(t), axis = motion_.axis(t), way = motion_.to().tip - motion_.from().tip;
-  PoseFrame f{};
-  f.t = t, f.oz = axis.z, f.tilt = std::hypot(axis.x, axis.y);
-  Vec3 e1{1, 0, 0}, e2{0, axis.z, 0};
-  if (f.tilt > 0) {
-    e1 = {-axis.z * axis.x / f.tilt, -axis.z * axis.y / f.tilt, f.tilt};
-    e2 = {axis.y / f.tilt, -axis.x / f.tilt, 0};
-  }
-  const Vec3* frame[3] = {&e1, &e2, &axis};
-  for (int i = 0; i < 3; ++i) {
-    f.tip[i] = tip[i], f.e1[i] = e1[i], f.e2[i] = e2[i], f.axis[i] = axis[i];
-    f.way[i] = glm::dot(way, *frame[i]), f.spin[i] = glm::dot(motion_.rotation(), *frame[i]);
-  }
-  return f;
-}
-
-const PoseFrame& TurningPoses::at(std::uint32_t place, PoseFrame& spare) {
-  const double t =
-      place == kEnd ? t1_ : t0_ + (t1_ - t0_) * (static_cast<double>(place) / static_cast<double>(kEnd));
-  constexpr std::uint32_t kStride = kEnd >> kKept;
-  if (place % kStride != 0) return spare = make(t);
-  const std::uint32_t k = place / kStride;
-  // One bit each; the end pose shares the last bit's word by being made at once.
-  if (k == 1U << kKept ? !(have_ >> 63 & 1U) : !(have_ >> k & 1U)) {
-    kept_[k] = make(t);
-    have_ |= std::uint64_t{1} << (k == 1U << kKept ? 63 : k);
-  }
-  return kept_[k];
+  along = 0.5 * tolerance, aside = std::min(0.2 * tolerance, 0.02 * group.thinnest);
+  const double moved = (speed + angle * lever) * (t1 - t0);
+  deepest = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(moved / aside, 1.0)))), 1, 40);
 }
 
 Vec3 turning_normal(const ConvexGroup& group, const Motion& motion, const Vec3& p, double t) {
