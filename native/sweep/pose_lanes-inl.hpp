@@ -406,10 +406,12 @@ class PoseLanes {
     if (s.e == 0) return beside_ball(s);
     V at = clamped(closest, std::max(s.z0, s.zc - s.r), std::min(s.z1, s.zc + s.r));
     for (int i = 0; i < 2; ++i) {
-      // One step of Newton's method on the squared distance; a step too far only makes the plane worse.
+      // One step of Newton's method on the squared distance, which is convex; over the disc itself its normal is right.
       const Gap g = gap(s, at);
-      const V bend = hn::Add(hn::Mul(o_.z, o_.z), hn::IfThenElseZero(hn::Gt(g.out, zero()), a_));
-      at = hn::Sub(at, hn::Div(hn::Mul(g.d, g.rate), max(bend, set(1e-12))));
+      const V rho = max(g.rho, set(1e-150)), out = radial(at).z, slope = hn::Div(out, rho), square = hn::Mul(slope, slope);
+      const V bend = hn::Add(hn::Add(square, hn::Mul(o_.z, o_.z)), hn::Mul(g.out, hn::Div(hn::Sub(a_, square), rho)));
+      const M bent = hn::Gt(g.out, zero());
+      at = pick(bent, hn::Sub(at, hn::Div(hn::Mul(g.d, g.rate), max(bend, set(1e-12)))), at);
     }
     V3 n = from_disc(s, gap(s, at), at);
     n.z = zero();
