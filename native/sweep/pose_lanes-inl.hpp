@@ -127,7 +127,7 @@ class PoseLanes {
       const PieceShape& s = b_.pieces[k];
       const M mine = k == 0 ? missed : both(missed, hn::Ge(passes, set(s.z0)));
       if (none(mine) && !b_.leans) break;
-      const V3 own = s.ball ? beside_ball(s) : s.round ? beside_round(s, at) : beside_frustum(s, at, along);
+      const V3 own = s.ball ? beside_ball(s) : s.round ? beside_round(s, at, mine) : beside_frustum(s, at, along);
       if (!b_.leans) {
         n = choose(mine, own, n);
         continue;
@@ -402,16 +402,22 @@ class PoseLanes {
   }
 
   /// The direction of least distance from the disc, made square to the ray.
-  V3 beside_round(const PieceShape& s, V closest) const {
+  V3 beside_round(const PieceShape& s, V closest, M mask) const {
     if (s.e == 0) return beside_ball(s);
     V at = clamped(closest, std::max(s.z0, s.zc - s.r), std::min(s.z1, s.zc + s.r));
-    for (int i = 0; i < 2; ++i) {
-      // One step of Newton's method on the squared distance, which is convex; over the disc itself its normal is right.
+    Stretch bracket{set(-kInfinity), set(kInfinity)};
+    for (int i = 0; i < kMostSteps; ++i) {
+      // Newton's method on the squared distance, which is convex; over the disc itself its normal is right.
       const Gap g = gap(s, at);
-      const V rho = max(g.rho, set(1e-150)), out = radial(at).z, slope = hn::Div(out, rho), square = hn::Mul(slope, slope);
+      const M open = both(mask, both(hn::Gt(g.out, zero()), hn::Gt(abs(g.rate), set(1e-7))));
+      if (none(open)) break;
+      const M past = hn::Gt(g.rate, zero());
+      bracket.far = pick(past, at, bracket.far), bracket.near = pick(past, bracket.near, at);
+      const V rho = max(g.rho, set(1e-150)), slope = hn::Div(radial(at).z, rho), square = hn::Mul(slope, slope);
       const V bend = hn::Add(hn::Add(square, hn::Mul(o_.z, o_.z)), hn::Mul(g.out, hn::Div(hn::Sub(a_, square), rho)));
-      const M bent = hn::Gt(g.out, zero());
-      at = pick(bent, hn::Sub(at, hn::Div(hn::Mul(g.d, g.rate), max(bend, set(1e-12)))), at);
+      const V next = hn::Sub(at, hn::Div(hn::Mul(g.d, g.rate), max(bend, set(1e-12))));
+      const M within = both(hn::Gt(next, bracket.near), hn::Lt(next, bracket.far));
+      at = pick(open, pick(within, next, hn::Mul(set(0.5), hn::Add(bracket.near, bracket.far))), at);
     }
     V3 n = from_disc(s, gap(s, at), at);
     n.z = zero();
