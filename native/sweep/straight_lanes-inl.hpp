@@ -7,6 +7,7 @@
 #endif
 
 #include "sweep/cut_lanes-inl.hpp"
+#include "sweep/straight_round-inl.hpp"
 #include "sweep/swept_piece.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -164,8 +165,41 @@ inline Stretch scalar_lanes(RayWindow& w, double u, const Group& g) {
   return {hn::LoadU(kD, near), hn::LoadU(kD, far)};
 }
 
+/// Torus or barrel, whole: from the box about it, itself swept. Ends above the material need not be exact.
+inline Stretch round_lanes(RayWindow& w, double u, Group g, const SweptShape& shape, const StraightLanes& box) {
+  const SectionRays rays = box.rays(u, g.v);
+  const StraightRound round(shape, rays);
+  const V tip = set(shape.tip[2]);
+  Stretch at = box.frustum(rays);
+  const M mask = both(g.active, hn::Lt(at.near, at.far));
+  if (none(mask)) return nothing();
+  M lost_near, lost_far = no_lane();
+  M hit = round.end(mask, 1, at.near, lost_near);
+  // Where the top of the material lies in the body, its far end does not matter.
+  const V top = hn::Sub(g.far, tip);
+  const M rest = without(hit, both(hn::Lt(top, at.far), round.holds(top)));
+  if (!none(rest)) hit = either(without(hit, rest), round.end(rest, -1, at.far, lost_far));
+  w.hits += hn::CountTrue(kD, mask);
+  Stretch out = where(hit, {hn::Add(at.near, tip), hn::Add(at.far, tip)});
+  g.active = either(lost_near, lost_far);
+  if (none(g.active)) return out;
+  const Stretch exact = scalar_lanes(w, u, g);
+  return {pick(g.active, exact.near, out.near), pick(g.active, exact.far, out.far)};
+}
+
+/// The cylinder about a whole Round.
+inline SweptShape box_of(const SweptShape& round) {
+  SweptShape box = round;
+  box.kind = SweptShape::Kind::Frustum;
+  box.z0 = round.zc - round.r, box.z1 = round.zc + round.r, box.r0 = box.r1 = round.e + round.r, box.slope = 0;
+  return box;
+}
+
 inline void cut_straight_lanes(const SweptShape& shape, RayWindow& w) {
   const StraightLanes body(shape);
+  const SweptShape around = box_of(shape);
+  const StraightLanes box(around);
+  const bool whole = !shape.cut_bottom && !shape.cut_top;
   const V tip = set(shape.tip[2]), none_yet = zero();
   // Σ length × (middle − pivot); the direction is the same everywhere.
   double centre[3][kLanes] = {}, before[kLanes];
@@ -173,7 +207,7 @@ inline void cut_straight_lanes(const SweptShape& shape, RayWindow& w) {
   for_groups(w, [&](double u, Group& g) {
     Stretch cut;
     if (shape.kind == SweptShape::Kind::Torus) {
-      cut = scalar_lanes(w, u, g);
+      cut = whole ? round_lanes(w, u, g, shape, box) : scalar_lanes(w, u, g);
     } else {
       w.hits += hn::CountTrue(kD, g.active);
       const SectionRays rays = body.rays(u, g.v);
