@@ -2,9 +2,9 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "bench/scenes.hpp"
 #include "geom/parallel.hpp"
 #include "marching/surface.hpp"
 #include "marching/to_mesh.hpp"
@@ -12,20 +12,10 @@
 namespace riffler {
 namespace {
 
-constexpr double kRadius = 3;
+using bench::centre;
+using bench::kMoves;
 
-/// The ball's centre after n moves.
-const Vec3& centre(int n) {
-  static const std::array<Vec3, 201> centres = [] {
-    std::array<Vec3, 201> c;
-    for (int m = 0; m <= 200; ++m) {
-      const double a = m / 200.0;
-      c[m] = {10 + 80 * a, 30 + 15 * std::sin(12 * a), 30 - 2 * a};
-    }
-    return c;
-  }();
-  return centres[n];
-}
+constexpr double kRadius = 3;
 
 /// Where the line p + s d meets the ball's sweep from a to b; empty where it does not.
 Interval capsule(const Vec3& p, const Vec3& d, const Vec3& a, const Vec3& b) {
@@ -56,7 +46,7 @@ void cut_ray(const Vec3& p, const Vec3& d, const Span& block, TileBuilder& out) 
     int move;
   };
   std::vector<Cut> cuts;
-  for (int n = 0; n < 200; ++n) {
+  for (int n = 0; n < kMoves; ++n) {
     const Interval s = capsule(p, d, centre(n), centre(n + 1));
     if (!s.empty() && s.far > block.near && s.near < block.far) cuts.push_back({s, n});
   }
@@ -76,7 +66,7 @@ void cut_ray(const Vec3& p, const Vec3& d, const Span& block, TileBuilder& out) 
 }
 
 Volume carved_block(double pitch, const char* directions) {
-  Volume volume = Volume::block({{Vec3(0.0), Vec3(100, 60, 30)}, pitch, directions});
+  Volume volume = Volume::block({{Vec3(0.0), bench::kBlock}, pitch, directions});
   for (Grid& grid : volume.grids())
     parallel_for(grid.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {

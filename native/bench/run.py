@@ -1,6 +1,6 @@
 """Runs benchmark jobs and writes their tables: python native/bench/run.py [job ...] [--out out/bench].
 
-Jobs: sweep, b200, random, models, threads. Every figure compares with an independent reference or with a rival measured
+Jobs: b200, random, models, threads. Every figure compares with an independent reference or with a rival measured
 in the same run; a rival that is not installed is named as left out.
 """
 
@@ -16,7 +16,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from report import machine
 
 JOBS = {
-    "sweep": "job_sweep",
     "b200": "job_b200",
     "random": "job_random",
     "models": "job_models",

@@ -22,6 +22,7 @@ void bind_tool(py::module_& m);
 void bind_volume(py::module_& m);
 void bind_program(py::module_& m);
 void bind_journal(py::module_& m);
+void bind_bench(py::module_& m);
 
 /// A numpy array of doubles in C order; any array-like converts.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;

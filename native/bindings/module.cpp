@@ -21,4 +21,5 @@ PYBIND11_MODULE(_core, m) {
   bind_volume(m);
   bind_program(m);
   bind_journal(m);
+  bind_bench(m);
 }

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "support/dense_sweep.hpp"
+#include "bench/dense_sweep.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "support/dense_sweep.hpp"
+#include "bench/dense_sweep.hpp"
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 

@@ -1,0 +1,64 @@
+// riffler._core.bench: what `riffler bench` measures with.
+#include "bench/capsule_loop.hpp"
+#include "bench/scenes.hpp"
+#include "bench/sweep_error.hpp"
+#include "bindings/bindings.hpp"
+#include "bindings/shared_volume.hpp"
+
+namespace riffler {
+
+namespace {
+
+py::array_t<double> from_poses(const std::vector<Pose>& poses) {
+  static_assert(sizeof(Pose) == 6 * sizeof(double));
+  return take<double>(std::vector<Pose>(poses), 6);
+}
+
+py::list cutters() {
+  py::list out;
+  for (const bench::NamedCutter& c : bench::named_cutters())
+    out.append(py::make_tuple(c.name, c.tool.named(c.name), c.centre_height));
+  return out;
+}
+
+py::dict sweep_errors(SharedVolume& volume, const Tool& tool, const Doubles& array, double tolerance, int rays,
+                      std::uint64_t seed) {
+  const std::vector<Pose> poses = to_poses(array, "poses");
+  const Volume state = Reading(volume).volume.snapshot();
+  bench::SweepErrors errors;
+  {
+    const py::gil_scoped_release release;
+    errors = bench::sweep_errors(state, tool, poses, tolerance, rays, seed);
+  }
+  std::vector<double> all;
+  std::vector<bool> grazes;
+  for (const bench::EndError& e : errors.ends) all.push_back(e.error()), grazes.push_back(e.grazes);
+  py::dict out;
+  out["error"] = take<double>(std::move(all));
+  out["grazes"] = py::cast(grazes);
+  out["points"] = errors.points, out["wrong"] = errors.wrong;
+  return out;
+}
+
+}  // namespace
+
+void bind_bench(py::module_& parent) {
+  py::module_ m = parent.def_submodule("bench", "What the benchmark measures with: scenes, yardstick, reference.");
+  m.attr("MOVES") = bench::kMoves;
+  m.def("cutters", &cutters, "[(name, tool, height of the point that follows the path)], one of each kind.");
+  m.def(
+      "path", [](double centre_height, bool turning) { return from_poses(bench::path(centre_height, turning)); },
+      py::arg("centre_height"), py::arg("turning"), "Poses (201, 6) of B200, or of B5X where turning.");
+  m.def(
+      "sweep_errors", &sweep_errors, py::arg("volume"), py::arg("tool"), py::arg("poses"), py::arg("tolerance"),
+      py::arg("rays"), py::arg("seed") = 1,
+      R"(Compares random rays of a carved block with the dense reference: a dict of ``error`` (n,), mm along the ray or,
+where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many of them are ``wrong``.)");
+  py::class_<bench::CapsuleLoop>(m, "CapsuleLoop", "The yardstick: B200 with bare capsules on a plain height map.")
+      .def(py::init<double>(), py::arg("pitch"))
+      .def("reset", &bench::CapsuleLoop::reset)
+      .def("run", &bench::CapsuleLoop::run, py::call_guard<py::gil_scoped_release>())
+      .def_property_readonly("removed", &bench::CapsuleLoop::removed);
+}
+
+}  // namespace riffler
