@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kHalvings = 14;  // 16 384 times a move
 constexpr double kFinest = 1.0 / (1 << kHalvings);
+constexpr int kRefinements = 16;  // where the distance stays the same for a while there is nothing to refine
 
 /// Least of f between a and b, where f has one minimum.
 template <class F>
@@ -58,42 +59,41 @@ DensePath::Near DensePath::near(const Vec3& p, double reach) const {
   return near;
 }
 
-double DensePath::least(const std::vector<std::size_t>& moves, const Vec3& p, double best, double enough,
-                        bool refined) const {
+double DensePath::least(const std::vector<std::size_t>& moves, const Vec3& p, double best, double enough) const {
   for (const std::size_t k : moves) {
-    best = least(motions_[k], p, best, enough, refined);
+    best = least(motions_[k], p, best, enough);
     if (best < enough) break;
   }
   return best;
 }
 
-double DensePath::least(const Motion& motion, const Vec3& p, double best, double enough, bool refined) const {
+double DensePath::least(const Motion& motion, const Vec3& p, double best, double enough) const {
   struct Part {
     double a, b, fa, fb;
   };
   const double rate_here = rate(motion, p);
   const auto f = [&](double t) { return at(motion, p, t); };
-  double where = -1;
-  const auto take = [&](double t, double value) {
-    if (value < best) best = value, where = t;
-  };
+  int refinements = 0;
   Part parts[kHalvings + 2];  // depth first: at most one part waits on each level
   int count = 0;
   parts[count++] = {0, 1, f(0), f(1)};
-  take(0, parts[0].fa), take(1, parts[0].fb);
+  best = std::min({best, parts[0].fa, parts[0].fb});
   while (count > 0 && best >= enough) {
     const Part part = parts[--count];
     const double width = part.b - part.a;
-    if (width <= kFinest || (part.fa + part.fb - rate_here * width) / 2 >= best) continue;
+    if ((part.fa + part.fb - rate_here * width) / 2 >= best) continue;
+    if (width <= kFinest) {
+      if (refinements++ < kRefinements)
+        best = std::min(best, golden_section(f, std::max(0.0, part.a - width), std::min(1.0, part.b + width)));
+      continue;
+    }
     const double t = (part.a + part.b) / 2, ft = f(t);
-    take(t, ft);
+    best = std::min(best, ft);
     const Part low{part.a, t, part.fa, ft}, high{t, part.b, ft, part.fb};
     const bool low_first = part.fa < part.fb;
     parts[count++] = low_first ? high : low;
     parts[count++] = low_first ? low : high;
   }
-  if (refined && where >= 0 && best >= enough)
-    best = std::min(best, golden_section(f, std::max(0.0, where - kFinest), std::min(1.0, where + kFinest)));
   return best;
 }
 

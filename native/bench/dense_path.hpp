@@ -20,13 +20,13 @@ class DensePath {
    public:
     /// Signed distance of `q` from what the moves sweep, or `reach` if that is less: positive outside (then the true
     /// distance), negative inside (then at most the true depth).
-    double distance(const Vec3& q) const { return path_->least(moves_, q, reach_, -1e300, true); }
+    double distance(const Vec3& q) const { return path_->least(moves_, q, reach_, -1e300); }
     /// Whether a move reaches deeper than `depth` over q. Cheaper than the distance.
-    bool deeper(const Vec3& q, double depth) const { return path_->least(moves_, q, -depth, -depth, false) < -depth; }
+    bool deeper(const Vec3& q, double depth) const { return path_->least(moves_, q, -depth, -depth) < -depth; }
     bool inside(const Vec3& q) const { return deeper(q, 0); }
     /// Whether q is further than `distance` (below `reach`) from everything swept.
     bool farther(const Vec3& q, double distance) const {
-      return path_->least(moves_, q, distance, distance, false) >= distance;
+      return path_->least(moves_, q, distance, distance) >= distance;
     }
 
    private:
@@ -42,8 +42,8 @@ class DensePath {
   /// How fast the distance of `p` can change with t.
   double rate(const Motion& motion, const Vec3& p) const;
   /// The least distance over the moves if it is below `best`, else `best`; any value below `enough` ends the search.
-  double least(const std::vector<std::size_t>& moves, const Vec3& p, double best, double enough, bool refined) const;
-  double least(const Motion& motion, const Vec3& p, double best, double enough, bool refined) const;
+  double least(const std::vector<std::size_t>& moves, const Vec3& p, double best, double enough) const;
+  double least(const Motion& motion, const Vec3& p, double best, double enough) const;
 
   const Profile& profile_;
   double size_;  // distance of the cutter's farthest point from the tip

@@ -8,7 +8,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,10 @@ class Console:
         else:
             print(f"riffler: {line}", file=sys.stderr)
 
+    def warning(self, message: str) -> None:
+        """Worth knowing, nothing wrong; on stderr, where ``--json`` leaves it too."""
+        print(f"riffler: {message}", file=sys.stderr)
+
     def result(self, data: Mapping[str, Any], title: str, rows: Rows) -> None:
         """``data`` as JSON or ``rows`` as a table."""
         if self.json_output:
@@ -54,6 +58,27 @@ class Console:
         for name, value in rows:
             table.add_row(Text(name), Text(value))
         Rich(file=sys.stdout, highlight=False).print(table)
+
+    def table(self, title: str, heads: Iterable[str], rows: Iterable[Iterable[str]], notes: Iterable[str] = ()) -> None:
+        """A table of many columns; nothing with ``--json``."""
+        if self.json_output:
+            return
+        from rich import box
+        from rich.console import Console as Rich
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(title=Text(title, style="bold"), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1))
+        for index, head in enumerate(heads):
+            table.add_column(Text(head), justify="right" if index else "left", overflow="fold")
+        for row in rows:
+            table.add_row(*map(Text, row))
+        # In a file or a pipe a table is as wide as it needs.
+        screen = Rich(file=sys.stdout, highlight=False, width=None if sys.stdout.isatty() else 240)
+        screen.print(table)
+        for note in notes:
+            screen.print(Text(note, style="dim"))
+        sys.stdout.flush()
 
     @contextmanager
     def step(self, name: str) -> Iterator[Callable[[float], None] | None]:

@@ -57,6 +57,7 @@ bm.from_mesh(stock.data)
 bmesh.ops.triangulate(bm, faces=bm.faces)
 result = {
     "version": bpy.app.version_string,
+    "solver": name,
     "median": statistics.median(times),
     "triangles": len(bm.faces),
     "volume": bm.calc_volume(),

@@ -1,0 +1,80 @@
+"""What runs in a process of its own, so that its memory can be told: python -m riffler.bench.children WORK ARGUMENTS.
+
+Prints the result as one line of JSON, with the process's peak memory.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import statistics
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import Tool, Volume
+from . import scenes
+
+
+def b200(pitch: float, directions: str, mesh: bool = True) -> dict[str, Any]:
+    """B200 with a ball, thrice: medians of carving and meshing, in s of wall time."""
+    poses, tool = scenes.cutters()[0].path(turning=False), scenes.cutters()[0].tool
+    carve, meshing, triangles = [], [], None
+    for _ in range(3):
+        volume = Volume.block(*scenes.BLOCK, pitch, directions)
+        fresh = volume.nbytes
+        start = time.perf_counter()
+        cut = volume.carve(tool, poses)
+        carve.append(time.perf_counter() - start)
+        if mesh:
+            start = time.perf_counter()
+            triangles = len(volume.to_mesh().triangles)
+            meshing.append(time.perf_counter() - start)
+    return {
+        "carve_s": statistics.median(carve),
+        "mesh_s": statistics.median(meshing) if mesh else None,
+        "triangles": triangles,
+        "removed": float(cut.removed.sum()),
+        "rays": volume.rays,
+        "fresh_bytes": fresh,
+        "carved_bytes": volume.nbytes,
+    }
+
+
+def s500k(moves: int, ramping: bool) -> dict[str, Any]:
+    volume = Volume.block(*scenes.S500K_BLOCK, 0.5)
+    poses, tool = scenes.s500k(moves, ramping), Tool.flat(6, 30)
+    before = volume.volume
+    wall, cpu = time.perf_counter(), time.process_time()
+    cut = volume.carve(tool, poses)
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    removed = float(cut.removed.sum())
+    return {"wall_s": wall, "cpu_s": cpu, "removed": removed, "lost": before - volume.volume, "rays": volume.rays}
+
+
+def files(folder: str) -> dict[str, Any]:
+    """Writes what must not depend on the number of threads: forces, a volume, its mesh, a volume of that mesh."""
+    poses = scenes.upright(scenes.cutters()[0].path(turning=False)[:, :3])
+    k = np.arange(len(poses))
+    axes = np.stack([0.3 * np.sin(0.05 * k), 0.2 * np.cos(0.03 * k), np.ones(len(k))], 1)
+    poses[:, 3:] = axes / np.linalg.norm(axes, axis=1)[:, None]
+    volume = Volume.block(*scenes.BLOCK, 0.4, "xyz")
+    cut = volume.carve(Tool.fillet(8, 1, 30), poses, tolerance=0.01, dt=0.001)
+    mesh = volume.to_mesh()
+    out = Path(folder)
+    np.concatenate([cut.removed[:, None], cut.force, cut.torque], 1).tofile(out / "forces.bin")
+    volume.save(out / "volume.rvol")
+    mesh.write(out / "mesh.stl")
+    Volume.from_mesh(mesh, 0.5, "xyz").save(out / "again.rvol")
+    return {}
+
+
+WORK = {"b200": b200, "s500k": s500k, "files": files}
+
+if __name__ == "__main__":
+    result = WORK[sys.argv[1]](**json.loads(sys.argv[2]))
+    result["peak_bytes"] = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    print(json.dumps(result))

@@ -1,0 +1,36 @@
+"""S500k: half a million short moves, level and ramping: time, moves a second, memory."""
+
+from __future__ import annotations
+
+from .. import report
+from ..measure import Progress, Settings, child, watched
+from ..report import Column, Report
+
+
+def run(settings: Settings, progress: Progress = None) -> Report:
+    moves = 20_000 if settings.quick else 500_000
+    out = Report("s500k", {"moves": moves})
+    table = out.section(
+        "moves",
+        f"{moves:,} moves of 0.4 mm, flat Ø6, h = 0.5, block of 100 × 60 × 20 mm".replace(",", "\u2009"),
+        Column("path", "path"),
+        Column("threads", "threads"),
+        Column("wall time", "wall_s", report.micro),
+        Column("processor time", "cpu_s", report.micro),
+        Column("moves/s", "moves_per_s", lambda n: f"{n:,.0f}".replace(",", "\u2009")),
+        Column("peak memory", "peak_bytes", report.megabytes),
+        Column("removed mm³", "removed", lambda v: f"{v:.1f}"),
+    )
+    cases = [(ramping, threads) for ramping in (False, True) for threads in (1, None)]
+    for ramping, threads in watched(cases, progress):
+        r = child("s500k", threads, moves=moves, ramping=ramping)
+        table.row(
+            path="ramping" if ramping else "level",
+            threads="1" if threads else "all",
+            moves_per_s=moves / r["wall_s"],
+            **r,
+        )
+        off = abs(r["removed"] - r["lost"])
+        out.check(off <= 1e-9 * r["lost"], f"removed sums to {r['removed']}, the volume lost {r['lost']}")
+    table.notes.append("Memory is the peak of a whole process, with Python, numpy and the poses (24 MB).")
+    return out

@@ -1,0 +1,135 @@
+"""Clocks: processor time beside the yardstick, and whole processes of their own where memory counts."""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from .._core import bench as core
+
+T = TypeVar("T")
+Progress = Callable[[float], None] | None
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the command line asked for."""
+
+    quick: bool = False
+    models: Path | None = None
+    blender: Path | None = None
+    openvdb: Path | None = None
+
+
+@contextmanager
+def threads(count: int | None) -> Iterator[None]:
+    """RIFFLER_THREADS for the while; None is as many as there are."""
+    before = os.environ.pop("RIFFLER_THREADS", None)
+    try:
+        if count is not None:
+            os.environ["RIFFLER_THREADS"] = str(count)
+        yield
+    finally:
+        os.environ.pop("RIFFLER_THREADS", None)
+        if before is not None:
+            os.environ["RIFFLER_THREADS"] = before
+
+
+def watched(items: Sequence[T], progress: Progress) -> Iterator[T]:
+    """The items, with the finished share reported."""
+    for done, item in enumerate(items):
+        if progress:
+            progress(done / len(items))
+        yield item
+
+
+@contextmanager
+def steady() -> Iterator[None]:
+    """One thread, and no garbage collection in the middle of a measurement."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        with threads(1):
+            yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Medians over repetitions: seconds of one run, and its ratio to the yardstick's run just before it."""
+
+    seconds: float
+    ratio: float
+    loop: float
+    repeats: int
+
+
+class Yardstick:
+    """The capsule loop of one pitch, and what is measured beside it."""
+
+    def __init__(self, pitch: float, quick: bool) -> None:
+        self._loop = core.CapsuleLoop(pitch)
+        self._budget, self._most = (0.2, 3) if quick else (2.0, 9)
+
+    def _loop_seconds(self) -> float:
+        self._loop.reset()
+        start = time.process_time()
+        self._loop.run()
+        return time.process_time() - start
+
+    def alone(self) -> float:
+        """Median seconds of the loop by itself."""
+        with steady():
+            return statistics.median(self._loop_seconds() for _ in range(self._most))
+
+    def beside(self, prepare: Callable[[], T], work: Callable[[T], Any]) -> tuple[Timing, T]:
+        """Runs the loop and work(prepare()) in turn until the budget is used; one run at least, after a warm-up unless
+        a run takes the whole budget. Returns the prepared thing of the last run too."""
+        seconds, loops = [], []
+        with steady():
+            self._loop_seconds()
+            begun = time.process_time()
+            while not seconds or (len(seconds) <= self._most and time.process_time() - begun < self._budget):
+                loops.append(self._loop_seconds())
+                thing = prepare()
+                start = time.process_time()
+                work(thing)
+                seconds.append(time.process_time() - start)
+        if len(seconds) > 1:
+            del seconds[0], loops[0]
+        ratios = [a / b for a, b in zip(seconds, loops, strict=True)]
+        timing = Timing(statistics.median(seconds), statistics.median(ratios), statistics.median(loops), len(seconds))
+        return timing, thing
+
+
+def child(work: str, threads: int | None = 1, **arguments: Any) -> dict[str, Any]:
+    """What the function `work` of ``children`` returns in a process of its own, and that process's ``peak_bytes``."""
+    root = str(Path(__file__).resolve().parents[2])
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH")]))}
+    environment.pop("RIFFLER_THREADS", None)
+    if threads is not None:
+        environment["RIFFLER_THREADS"] = str(threads)
+    command = [sys.executable, "-m", "riffler.bench.children", work, json.dumps(arguments)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        last = done.stderr.strip().splitlines()[-1:] or ["no message"]
+        raise RuntimeError(f"bench {work} {arguments}: {last[0]}")
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def quantile(values: Iterable[float], share: float) -> float:
+    """The value that `share` of them do not exceed."""
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]

@@ -1,0 +1,153 @@
+"""What others need for B200, in the same run. Each gives rows of figures; one that is not there says so in its row."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import statistics
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import scenes
+from .measure import Settings
+
+BLENDER_SCRIPT = Path(__file__).with_name("blender_boolean.py")
+# mm³ that is left of the block by bare capsules, which do not reach out of it, and by 200 static balls.
+CAPSULES_LEFT, BALLS_LEFT = 177091.43, 177126.8
+
+
+def rivals(settings: Settings) -> Iterator[dict[str, Any]]:
+    """Rows: engine; us_per_move (median); triangles, mesh_s where meshing is a step of its own; removed less than the
+    engine's own exact limit as a share, `removed_short`."""
+    yield z_map(0.5 if settings.quick else 0.25)
+    yield from manifold(10 if settings.quick else scenes.MOVES)
+    yield from openvdb(settings)
+    yield from blender(settings)
+
+
+def left_out(engine: str, why: str) -> dict[str, Any]:
+    return {"engine": f"{engine}: left out, {why}"}
+
+
+def short(left: float, limit: float) -> float:
+    """How much less than the exact limit was removed."""
+    whole = float(np.prod(scenes.BLOCK[1]))
+    return (left - limit) / (whole - limit)
+
+
+def centres() -> np.ndarray:
+    return scenes.cutters()[0].path(turning=False)[:, :3] + [0, 0, 3]
+
+
+def z_map(pitch: float) -> dict[str, Any]:
+    """A height map in numpy: window by window, the same capsules as the yardstick's."""
+    r, (width, depth, height) = 3.0, scenes.BLOCK[1]
+    x, y = (np.arange(round(size / pitch)) * pitch + pitch / 2 for size in (width, depth))
+    top = np.full((len(x), len(y)), height)
+    times = []
+    for a, b in itertools.pairwise(centres()):
+        start = time.perf_counter()
+        v, lower, upper = b - a, np.minimum(a, b) - r, np.maximum(a, b) + r
+        i = slice(*np.searchsorted(x, [lower[0], upper[0]]))
+        j = slice(*np.searchsorted(y, [lower[1], upper[1]]))
+        dx, dy = x[i, None] - a[0], y[None, j] - a[1]
+        low = np.full((dx.shape[0], dy.shape[1]), np.inf)
+        for t in (0, 1):
+            rest = r * r - (dx - t * v[0]) ** 2 - (dy - t * v[1]) ** 2
+            np.minimum(low, a[2] + t * v[2] - np.sqrt(rest, where=rest >= 0, out=np.full_like(rest, -np.inf)), out=low)
+        low[np.isinf(low)] = np.inf
+        vv, along = v @ v, dx * v[0] + dy * v[1]
+        qa, qb = 1 - v[2] ** 2 / vv, -along * v[2] / vv
+        disc = qb * qb - qa * (dx * dx + dy * dy - along * along / vv - r * r)
+        s = (-qb - np.sqrt(np.maximum(disc, 0))) / qa
+        t = (along + s * v[2]) / vv
+        side = (disc >= 0) & (t >= 0) & (t <= 1)
+        low[side] = np.minimum(low, a[2] + s)[side]
+        np.minimum(top[i, j], low, out=top[i, j])
+        times.append(time.perf_counter() - start)
+    left = float(top.sum()) * pitch**2
+    limit = float(np.prod(scenes.BLOCK[1])) - scenes.B200_REMOVED
+    return {
+        "engine": f"numpy height map, h = {pitch:g}",
+        "us_per_move": 1e6 * statistics.median(times),
+        "removed_short": short(left, limit),
+        "note": "3 axes only",
+    }
+
+
+def manifold(moves: int, segments: int = 64) -> Iterator[dict[str, Any]]:
+    try:
+        import manifold3d
+    except ImportError:
+        yield left_out("Manifold", "manifold3d is not installed")
+        return
+    ball = manifold3d.Manifold.sphere(3, segments)
+    solid = manifold3d.Manifold.cube(scenes.BLOCK[1])
+    times = []
+    for a, b in itertools.islice(itertools.pairwise(centres()), moves):
+        start = time.perf_counter()
+        swept = manifold3d.Manifold.batch_hull([ball.translate(a), ball.translate(b)])
+        solid = solid - swept
+        solid.num_tri()
+        times.append(time.perf_counter() - start)
+    yield {
+        "engine": f"Manifold, hulls of two balls of {segments} segments",
+        "us_per_move": 1e6 * statistics.median(times),
+        "triangles": solid.num_tri(),
+        "removed_short": short(solid.volume(), CAPSULES_LEFT) if moves == scenes.MOVES else None,
+        "note": "" if moves == scenes.MOVES else f"first {moves} moves",
+    }
+
+
+def openvdb(settings: Settings) -> Iterator[dict[str, Any]]:
+    if settings.openvdb is None or not settings.openvdb.exists():
+        yield left_out("OpenVDB", "riffler_openvdb_csg was not built")
+        return
+    for pitch in (0.5,) if settings.quick else (0.5, 0.25):
+        done = subprocess.run([settings.openvdb, str(pitch)], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            yield left_out(f"OpenVDB, h = {pitch}", f"it ended with {done.returncode}")
+            continue
+        r = json.loads(done.stdout)
+        yield {
+            "engine": f"OpenVDB {r['version']} CSG, static balls, h = {pitch:g}",
+            "us_per_move": 1e6 * r["median"],
+            "triangles": r["triangles"],
+            "mesh_s": r["mesh"],
+            "removed_short": short(r["volume"], BALLS_LEFT),
+        }
+
+
+def blender(settings: Settings) -> Iterator[dict[str, Any]]:
+    """Modifiers take static balls one by one, as one would by hand; their cost grows with the mesh."""
+    if settings.quick:
+        return
+    for solver, moves in (("FLOAT", 60), ("MANIFOLD", 60), ("EXACT", 20)):
+        if settings.blender is None or not settings.blender.exists():
+            yield left_out(f"Blender {solver}", "there is no Python with bpy (--blender)")
+            continue
+        command = [settings.blender, BLENDER_SCRIPT, solver, str(moves)]
+        environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")}
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment, check=False)
+        except subprocess.TimeoutExpired:
+            yield left_out(f"Blender {solver}", "not finished within 15 min")
+            continue
+        lines = [x for x in done.stdout.splitlines() if x.startswith("{")]
+        if not lines:
+            said = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
+            yield left_out(f"Blender {solver}", said)
+            continue
+        r = json.loads(lines[-1])
+        yield {
+            "engine": f"Blender {r['version']} boolean {r['solver']}, first {moves} static balls",
+            "us_per_move": 1e6 * r["median"],
+            "triangles": r["triangles"],
+            "note": f"volume left {r['volume']:.0f} mm³ of 180 000",
+        }
