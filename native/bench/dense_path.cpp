@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bench/dense_sweep.hpp"
 
@@ -74,7 +75,8 @@ double DensePath::least(const Motion& motion, const Vec3& p, double best, double
   const double rate_here = rate(motion, p);
   const auto f = [&](double t) { return at(motion, p, t); };
   int refinements = 0;
-  Part parts[kHalvings + 2];  // depth first: at most one part waits on each level
+  double lowest = std::numeric_limits<double>::infinity();  // of the finest parts so far
+  Part parts[kHalvings + 2];                                // depth first: at most one part waits on each level
   int count = 0;
   parts[count++] = {0, 1, f(0), f(1)};
   best = std::min({best, parts[0].fa, parts[0].fb});
@@ -83,7 +85,9 @@ double DensePath::least(const Motion& motion, const Vec3& p, double best, double
     const double width = part.b - part.a;
     if ((part.fa + part.fb - rate_here * width) / 2 >= best) continue;
     if (width <= kFinest) {
-      if (refinements++ < kRefinements)
+      const bool record = part.fa + part.fb < lowest;
+      if (record) lowest = part.fa + part.fb;
+      if (record || refinements++ < kRefinements)
         best = std::min(best, golden_section(f, std::max(0.0, part.a - width), std::min(1.0, part.b + width)));
       continue;
     }

@@ -48,9 +48,10 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         )  # fmt: skip
         out.check(force > 0, f"{side}², {axis}: no force was felt")
         first = work.setdefault(axis, counters)
-        out.check(first == counters, f"{axis}: the work grew with the grid, {first} and {counters}")
+        grown = any(counters[name] > 1.1 * first[name] for name in COUNTERS)
+        out.check(not grown, f"{axis}: the work grew with the grid, {first} and {counters}")
     table.notes.append(
-        "Counters are means over the steps and must not grow with the grid. The ball is sunk to its centre along an "
+        "Counters are means over the steps and must not grow with the grid (by more than a tenth). The ball is sunk to its centre along an "
         "inward spiral whose turns overlap. Target: 99 % of the steps within 0.5 ms."
     )
     return out
