@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender bench lint format sanitize docs package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender bench bench-docs lint format sanitize docs package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -40,12 +40,18 @@ test-blender:  ## Run the Blender tests only
 	@$(ready) test
 	@$(python) tools/test.py blender
 
-bench:  ## Measure run time and error: out/bench
+bench:  ## Measure run time and error, of rivals too: out/bench (JOBS="b5x force" for some)
 	@$(ready) bench
 	$(python) tools/preset.py bench
 	mkdir -p out/bench
-	RIFFLER_THREADS=1 build/bench/native/bench/riffler_bench --benchmark_out=out/bench/native.json
-	$(python) native/bench/run.py --out out/bench
+	RIFFLER_THREADS=1 build/bench/native/bench/riffler_bench --benchmark_filter='whole|stage' \
+	  --benchmark_out=out/bench/native.json
+	.venv/bin/riffler bench $(JOBS) --out out/bench $(if $(RIFFLER_MODELS),--models $(RIFFLER_MODELS)) \
+	  --openvdb build/bench/native/bench/riffler_openvdb_csg --blender .envs/bpy-4.5/bin/python
+
+bench-docs:  ## Put figures and plots of the last `make bench` into the documents
+	@$(ready)
+	$(python) tools/bench_docs.py out/bench
 
 lint:  ## Check style, layers, and that every header stands alone
 	@$(ready) cpp-tests

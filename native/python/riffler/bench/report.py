@@ -76,7 +76,7 @@ class Report:
             self.problems.append(problem)
 
     def markdown(self, about: Mapping[str, Any]) -> str:
-        head = f"# {self.job}\n\n{describe(about)}\n"
+        head = f"# {self.job}\n\n<!-- bench {self.job}/about -->\n{describe(about)}\n<!-- end -->\n"
         parts = [
             f"\n## {s.title}\n\n<!-- bench {self.job}/{s.name} -->\n{s.markdown()}<!-- end -->\n" for s in self.sections
         ]

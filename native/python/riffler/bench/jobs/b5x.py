@@ -29,6 +29,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     share = (lambda a, b: lambda x: progress(a + (b - a) * x)) if progress else (lambda a, b: None)
     path(out, settings, share(0, 0.6))
     single(out, settings, share(0.6, 1))
+    summary(out)
     order(out)
     return out
 
@@ -119,6 +120,32 @@ def single(out: Report, settings: Settings, progress: Progress) -> None:
             **compare(out, f"{cutter.name}, {motion.name}", volume, cutter.tool, motion.poses, tolerance, rays),
         )
     table.notes.append("Time: rays along z, one thread. Target: at most 0.5 ms for a move of 60° to 120°.")
+
+
+def summary(out: Report) -> None:
+    """The single moves in a line for each cutter."""
+    table = out.section(
+        "summary",
+        "Single moves, the worst of each cutter",
+        Column("cutter", "cutter"),
+        Column("slowest of 60° to 120°, tolerance 0.01", "slowest_s", report.micro),
+        Column("turning: largest error ÷ tolerance", "share", report.mm),
+        Column("straight: largest error mm", "straight_mm", report.mm),
+        Column("ends compared", "ends"),
+        Column("points compared", "points"),
+        Column("wrong points", "wrong"),
+    )
+    rows = next(s for s in out.sections if s.name == "single").rows
+    for cutter in dict.fromkeys(r["cutter"] for r in rows):
+        mine = [r for r in rows if r["cutter"] == cutter]
+        table.row(
+            cutter=cutter,
+            slowest_s=max(r["move_s"] for r in mine if r["angle"] >= 60 and r["tolerance"] == 0.01),
+            share=max(r["share"] for r in mine if r["angle"]),
+            straight_mm=max(r["max_mm"] for r in mine if not r["angle"]),
+            **{key: sum(r[key] for r in mine) for key in ("ends", "points", "wrong")},
+        )
+    table.notes.append("Target: at most 0.5 ms for a move of 60° to 120°.")
 
 
 def order(out: Report) -> None:

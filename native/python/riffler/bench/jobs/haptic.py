@@ -51,8 +51,8 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         grown = any(counters[name] > 1.1 * first[name] for name in COUNTERS)
         out.check(not grown, f"{axis}: the work grew with the grid, {first} and {counters}")
     table.notes.append(
-        "Counters are means over the steps and must not grow with the grid (by more than a tenth). The ball is sunk to its centre along an "
-        "inward spiral whose turns overlap. Target: 99 % of the steps within 0.5 ms."
+        "Counters are means over the steps and must not grow with the grid (by more than a tenth). The ball is sunk to "
+        "its centre along an inward spiral whose turns overlap. Target: 99 % of the steps within 0.5 ms."
     )
     return out
 
