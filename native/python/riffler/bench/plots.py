@@ -127,7 +127,7 @@ def b5x(data: Data) -> Figure:
         if 0.25 in pitches:
             goal = data["settings"]["targets"]["ball_s" if name.startswith("ball") else "other_s"]
             target(axis, x=1e6 * goal, text=f"target at 0.01, h = 0.25: {1e6 * goal:.0f} µs")
-        logarithmic(axis.xaxis)
+        logarithmic(axis.xaxis, sub=True)
         logarithmic(axis.yaxis)
         axis.set_title(name, fontsize=10, loc="left")
     for axis in axes[-1]:
@@ -199,7 +199,8 @@ def single(data: Data) -> Figure | None:
     angles = values(turning, "angle")
     left.set_xticks(angles, [f"{a:g}" for a in angles])
     left.xaxis.minorticks_off()
-    left.legend(title=f"tolerance {asked:g}; solid about the tip, dashed 50 mm up", title_fontsize=8)
+    left.set_title(f"tolerance {asked:g} mm; solid: about the tip, dashed: 50 mm up", fontsize=9, loc="left")
+    figure.legend(*left.get_legend_handles_labels(), loc="lower center", ncols=6, bbox_to_anchor=(0.5, 0.0))
     shares = [row for row in table if row["angle"] and row["share"] > 0]
     motions = values(shares, "motion")
     for name, (colour, mark) in colours(values(table, "cutter")).items():
@@ -214,7 +215,7 @@ def single(data: Data) -> Figure | None:
     right.annotate("allowed", (1, 1), xycoords=("data", "axes fraction"), rotation=90, va="top", ha="right",
                    fontsize=8, color=TARGET, xytext=(-2, -2), textcoords="offset points")  # fmt: skip
     title(figure, data, f"Single rotations (h = {table[0]['pitch']:g} mm)")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    figure.tight_layout(rect=(0, 0.06, 1, 0.97))
     return figure
 
 
@@ -336,11 +337,13 @@ def pitch(data: Data) -> Figure:
         axis.invert_xaxis()
         axis.set_xticks(ticks, [f"{h:g}" for h in ticks])
         axis.xaxis.minorticks_off()
+        axis.margins(y=0.25)
         axis.legend(loc="upper left")
+    right.legend(loc="lower right")
     if 0.15 in ticks:
         right.plot([0.15], [100], "_", color=TARGET, markersize=14, markeredgewidth=1.5)
-        right.annotate("target: below 100 MB\nin all at 0.15", (0.15, 100), xytext=(6, -4), textcoords="offset points",
-                       fontsize=7.5, color=TARGET, va="top")  # fmt: skip
+        right.annotate("target: below 100 MB\nin all at 0.15", (0.15, 100), xytext=(-4, 8), textcoords="offset points",
+                       fontsize=7.5, color=TARGET, ha="right")  # fmt: skip
     title(figure, data, "B200 with a Ø6 ball: time and memory against pitch")
     figure.tight_layout(rect=(0, 0.02, 1, 0.97))
     return figure

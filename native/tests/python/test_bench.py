@@ -1,0 +1,181 @@
+"""`riffler bench`: that a short run of everything works, that its figures are what they say, and that it can fail."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import riffler
+from riffler import cli
+from riffler._core import bench as core
+from riffler.bench import errors, measure, report, scenes
+from riffler.bench.jobs import JOBS, b5x, force
+from riffler.command import bench as command
+
+PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
+PLOTS = {"b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch"}
+
+
+def bench(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
+    command = [sys.executable, "-m", "riffler", "bench", *map(str, words)]
+    return subprocess.run(
+        command, cwd=cwd, env=ENVIRONMENT | more, capture_output=True, text=True, timeout=300, check=False
+    )
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory) -> Path:
+    """The folder of one quick run of every job."""
+    folder = tmp_path_factory.mktemp("bench")
+    done = bench("--quick", "--no-plots", "--json", "--out", "out", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert set(json.loads(done.stdout)["jobs"]) == set(JOBS)
+    return folder / "out"
+
+
+def rows(folder: Path, job: str, section: str) -> list[dict]:
+    return json.loads((folder / f"{job}.json").read_text())["sections"][section]["rows"]
+
+
+def test_every_job_leaves_its_figures(quick):
+    for job in JOBS:
+        data = json.loads((quick / f"{job}.json").read_text())
+        assert data["quick"] and data["problems"] == [] and data["processor"] and data["cores"] >= 1
+        for name, section in data["sections"].items():
+            assert section["rows"] or section["notes"], f"{job}/{name}"
+            text = (quick / f"{job}.md").read_text()
+            assert f"<!-- bench {job}/{name} -->" in text
+    assert "**Failed:**" not in "".join(path.read_text() for path in quick.glob("*.md"))
+
+
+def test_five_axis_errors_are_measured_and_within_their_tolerance(quick):
+    table = rows(quick, "b5x", "path")
+    assert {row["cutter"] for row in table} == {cutter.name for cutter in scenes.cutters()}
+    for row in table:
+        assert 0 < row["rms_mm"] <= row["max_mm"] <= row["tolerance"]
+        assert row["wrong"] == 0 and row["ends"] > 20
+        assert row["move_s"] > 0 and row["ratio"] > 0
+    assert all(row["max_mm"] < 1e-6 for row in rows(quick, "b5x", "single") if not row["angle"])
+
+
+def test_rivals_that_are_missing_are_named(quick):
+    engines = [row["engine"] for row in rows(quick, "b200", "rivals")]
+    assert any(engine.startswith("OpenVDB: left out") for engine in engines)
+    assert any(engine.startswith("numpy height map") for engine in engines)
+
+
+def test_haptic_work_does_not_follow_the_grid(quick):
+    table = rows(quick, "haptic", "steps")
+    small, large = (next(r for r in table if r["side"] == side and r["axis"] == "upright") for side in (1024, 1280))
+    assert small["rays_tested"] == large["rays_tested"] > 25_000
+    assert len(small["times_s"]) == small["count"]
+
+
+def test_plots_are_drawn_from_the_figures(quick):
+    pytest.importorskip("matplotlib")
+    done = bench("--redraw", "--out", quick, "--json", cwd=quick)
+    assert done.returncode == 0, done.stderr
+    drawn = {Path(name).stem for names in json.loads(done.stdout)["plots"].values() for name in names}
+    assert drawn == PLOTS
+    for name in PLOTS:
+        data = (quick / f"{name}.png").read_bytes()
+        assert data.startswith(b"\x89PNG") and len(data) > 10_000
+
+
+def test_without_matplotlib_it_says_so_and_measures(tmp_path):
+    (tmp_path / "matplotlib.py").write_text("raise ModuleNotFoundError('no matplotlib', name='matplotlib')\n")
+    hidden = os.pathsep.join([str(tmp_path), ENVIRONMENT["PYTHONPATH"]])
+    done = bench("threads", "--quick", "--out", "out", cwd=tmp_path, PYTHONPATH=hidden)
+    assert done.returncode == 0
+    assert "no plots: matplotlib is not installed" in done.stderr
+    assert (tmp_path / "out" / "threads.json").exists()
+    assert bench("--redraw", "--out", "out", cwd=tmp_path, PYTHONPATH=hidden).returncode == 2
+
+
+def test_an_unknown_job_is_bad_input(tmp_path):
+    done = bench("b2000", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "b2000" in done.stderr and "b5x" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_wrong_result_is_exit_status_1(tmp_path, monkeypatch, capsys):
+    class Wrong:
+        @staticmethod
+        def run(settings, progress):
+            out = report.Report("wrong")
+            out.section("table", "A table", report.Column("x", "x")).row(x=1)
+            out.check(False, "the bytes differ")
+            return out
+
+    monkeypatch.setitem(JOBS, "wrong", Wrong)
+    assert cli.main(["bench", "wrong", "--no-plots", "--out", str(tmp_path)]) == 1
+    assert "the bytes differ" in capsys.readouterr().err
+    assert "**Failed:** the bytes differ" in (tmp_path / "wrong.md").read_text()
+
+
+def test_a_coarser_carve_is_seen_as_an_error():
+    cutter = scenes.cutters()[0]
+    poses = cutter.path(turning=True)
+    volume = riffler.Volume.block(*scenes.BLOCK, 1.0)
+    volume.carve(cutter.tool, poses, tolerance=1.0)
+    out = report.Report("b5x")
+    figures = b5x.compare(out, "coarse", volume, cutter.tool, poses, 1e-4, 100)
+    assert figures["max_mm"] > 1e-4 and len(out.problems) == 1
+    assert errors.measured(volume, cutter.tool, poses, 1.0, 100)["max_mm"] <= 1.0
+
+
+def test_scenes_are_what_they_are_described_as():
+    path = scenes.cutters()[0].path(turning=False)
+    a = np.linspace(0, 1, 201)
+    centres = np.stack([10 + 80 * a, 30 + 15 * np.sin(12 * a), 30 - 2 * a], 1)
+    np.testing.assert_allclose(path[:, :3] + [0, 0, 3], centres, atol=1e-12)
+    for cutter in scenes.cutters():
+        turning = cutter.path(turning=True)
+        np.testing.assert_allclose(turning[:, :3] + cutter.centre_height * turning[:, 3:], centres, atol=1e-12)
+        np.testing.assert_allclose(np.linalg.norm(turning[:, 3:], axis=1), 1, atol=1e-12)
+        assert math.degrees(np.arccos(turning[:, 5].min())) == pytest.approx(30, abs=1)
+    for ramping in (False, True):
+        tips = scenes.s500k(500_000, ramping)[:, :3]
+        way = np.linalg.norm(np.diff(tips[:, :2], axis=0), axis=1)
+        assert np.count_nonzero(abs(way - 0.4) > 1e-9) == 13  # the plunges from layer to layer
+        assert tips.min() > 0 - 1e-9 and np.all(tips <= np.array([100, 60, 20]) + 1e-9)
+    for motion in scenes.motions():
+        before, after = motion.poses[:, 3:]
+        turned = math.atan2(float(np.linalg.norm(np.cross(before, after))), float(before @ after))
+        assert math.degrees(turned) == pytest.approx(motion.angle, abs=1e-9)
+
+
+def test_the_yardstick_is_timed_beside_the_work():
+    yardstick = measure.Yardstick(1.0, quick=True)
+    loop = core.CapsuleLoop(1.0)
+
+    def ten_loops(_):
+        for _ in range(10):
+            loop.run()
+
+    timing, _ = yardstick.beside(loop.reset, ten_loops)
+    assert timing.repeats >= 1
+    assert 4 < timing.ratio < 25  # ten; the machine is shared
+
+
+def test_force_of_a_groove_in_closed_form():
+    times, felt = force.stroke(riffler.Tool.ball(6, 30), 0.1, 200)
+    steady = felt[times > 0.15]
+    assert steady.mean() == pytest.approx(force.CONSTANT * force.SPEED * force.section("ball"), rel=2e-3)
+
+
+def test_figures_are_written_in_units_that_suit_them():
+    assert [report.micro(s) for s in (2.5, 0.0123, 45.6e-6, 7e-9)] == ["2.5 s", "12.3 ms", "45.6 µs", "7 ns"]
+    assert measure.quantile([3, 1, 2, 4], 0.99) == 4
+    assert b5x.slope([{"tolerance": t, "e": 3 * t**1.5} for t in (0.1, 0.01, 0.001)], "e") == pytest.approx(1.5)
+    table = report.Section("t", "T", [report.Column("a", "a"), report.Column("b", "b", report.ratio)])
+    table.row(a="x", b=np.float64(3.14159))
+    table.row(a="y")
+    assert table.markdown() == "| a | b |\n|---|---|\n| x | 3.14 × |\n| y |  |\n"
+    assert command.HELP
