@@ -144,7 +144,7 @@ def b5x(data: Data) -> Figure:
     ]
     title(figure, data, "Five-axis moves (B5X): time against measured error")
     figure.tight_layout(rect=(0, 0.05, 1, 0.97))
-    figure.legend(handles=marks, loc="lower center", ncols=len(marks), bbox_to_anchor=(0.5, 0.0))
+    figure.legend(handles=marks, loc="lower right", ncols=len(marks), bbox_to_anchor=(1.0, 0.0))
     return figure
 
 
@@ -200,7 +200,7 @@ def single(data: Data) -> Figure | None:
     left.set_xticks(angles, [f"{a:g}" for a in angles])
     left.xaxis.minorticks_off()
     left.set_title(f"tolerance {asked:g} mm; solid: about the tip, dashed: 50 mm up", fontsize=9, loc="left")
-    figure.legend(*left.get_legend_handles_labels(), loc="lower center", ncols=6, bbox_to_anchor=(0.5, 0.0))
+    figure.legend(*left.get_legend_handles_labels(), loc="lower right", ncols=6, bbox_to_anchor=(1.0, 0.0))
     shares = [row for row in table if row["angle"] and row["share"] > 0]
     motions = values(shares, "motion")
     for name, (colour, mark) in colours(values(table, "cutter")).items():
@@ -313,9 +313,9 @@ def force(data: Data) -> Figure:
 
 
 def pitch(data: Data) -> Figure:
-    """Time and memory against pitch."""
+    """Time, memory and error of the mesh against pitch."""
     table = rows(data, "b200")
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 4.6))
+    figure, ((left, middle), (right, last)) = plt.subplots(2, 2, figsize=(12, 8.4))
     for (directions, label), (colour, mark) in zip(
         (("z", "one direction"), ("xyz", "tri-dexel")), colours("ab").values(), strict=True
     ):
@@ -328,9 +328,18 @@ def pitch(data: Data) -> Figure:
                    label=f"process with mesh, {label}")  # fmt: skip
     mine = pick(table, directions="z")
     left.plot(column(mine, "pitch"), column(mine, "loop_s", 1e6), "--", color="#777777", label="plain capsule loop")
-    labels = ("carving, one move  µs", "whole volume to mesh  ms", "memory  MB")
+    surface = rows(data, "surface")
+    for directions, (colour, mark) in colours(values(surface, "directions")).items():
+        mine = pick(surface, directions=directions)
+        for which, line, fill in (("max", "-", colour), ("rms", ":", "white")):
+            worst = np.max([column(mine, f"{slope}_{which}_mm") for slope in ("gentle", "middling", "steep")], axis=0)
+            label = f"{'one direction' if directions == 'z' else 'tri-dexel'}, {'largest' if which == 'max' else 'RMS'}"
+            last.plot(column(mine, "pitch"), worst, f"{line}{mark}", color=colour, markerfacecolor=fill, label=label)
+    last.plot(column(mine, "pitch"), column(mine, "half_mm"), "--", color="#777777", linewidth=1, label="h ÷ 2")
+    last.plot(column(mine, "pitch"), column(mine, "sag_mm"), "-.", color="#777777", linewidth=1, label="h² ÷ 4 R")
+    labels = ("carving, one move  µs", "whole volume to mesh  ms", "memory  MB", "error of the mesh, R = 3 mm  mm")
     ticks = sorted(values(table, "pitch"))
-    for axis, label in zip((left, middle, right), labels, strict=True):
+    for axis, label in zip((left, middle, right, last), labels, strict=True):
         axis.set(xlabel="pitch  mm", ylabel=label)
         logarithmic(axis.xaxis)
         logarithmic(axis.yaxis)
@@ -340,11 +349,12 @@ def pitch(data: Data) -> Figure:
         axis.margins(y=0.25)
         axis.legend(loc="upper left")
     right.legend(loc="lower right")
+    last.legend(loc="lower left", ncols=2)
     if 0.15 in ticks:
         right.plot([0.15], [100], "_", color=TARGET, markersize=14, markeredgewidth=1.5)
         right.annotate("target: below 100 MB\nin all at 0.15", (0.15, 100), xytext=(-4, 8), textcoords="offset points",
                        fontsize=7.5, color=TARGET, ha="right")  # fmt: skip
-    title(figure, data, "B200 with a Ø6 ball: time and memory against pitch")
+    title(figure, data, "Time, memory and the mesh's error against pitch (Ø6 ball)")
     figure.tight_layout(rect=(0, 0.02, 1, 0.97))
     return figure
 
