@@ -60,8 +60,8 @@ def b200(out: Report, settings: Settings, pitches: tuple[float, ...], progress: 
             removed_short=(removed - whole["removed"]) / removed,
         )  # fmt: skip
     table.notes.append(
-        "Equal tiles of a fresh block are held once. Targets: at most 24 bytes a ray of one span; below 100 MB in all at "
-        "h = 0.15."
+        "Equal tiles of a fresh block are held once. Targets: at most 24 bytes a ray of one span; below 100 MB in all "
+        "at h = 0.15."
     )
 
 
