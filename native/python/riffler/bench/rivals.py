@@ -20,6 +20,7 @@ from .measure import Settings
 BLENDER_SCRIPT = Path(__file__).with_name("blender_boolean.py")
 # mm³ that is left of the block by bare capsules, which do not reach out of it, and by 200 static balls.
 CAPSULES_LEFT, BALLS_LEFT = 177091.43, 177126.8
+WHOLE = float(np.prod(scenes.BLOCK[1]))
 
 
 def rivals(settings: Settings) -> Iterator[dict[str, Any]]:
@@ -37,8 +38,7 @@ def left_out(engine: str, why: str) -> dict[str, Any]:
 
 def short(left: float, limit: float) -> float:
     """How much less than the exact limit was removed."""
-    whole = float(np.prod(scenes.BLOCK[1]))
-    return (left - limit) / (whole - limit)
+    return (left - limit) / (WHOLE - limit)
 
 
 def centres() -> np.ndarray:
@@ -72,7 +72,7 @@ def z_map(pitch: float) -> dict[str, Any]:
         np.minimum(top[i, j], low, out=top[i, j])
         times.append(time.perf_counter() - start)
     left = float(top.sum()) * pitch**2
-    limit = float(np.prod(scenes.BLOCK[1])) - scenes.B200_REMOVED
+    limit = WHOLE - scenes.B200_REMOVED
     return {
         "engine": f"numpy height map, h = {pitch:g}",
         "us_per_move": 1e6 * statistics.median(times),
@@ -120,7 +120,7 @@ def openvdb(settings: Settings) -> Iterator[dict[str, Any]]:
             "us_per_move": 1e6 * r["median"],
             "triangles": r["triangles"],
             "mesh_s": r["mesh"],
-            "removed_short": short(r["volume"], BALLS_LEFT),
+            "removed_short": short(WHOLE - (r["volume_before"] - r["volume"]), BALLS_LEFT),
         }
 
 

@@ -113,7 +113,7 @@ def spiral(steps: int, step: float, middle: tuple[float, float], turning: bool) 
     """
     angle, points = 0.0, []
     for _ in range(steps + 1):
-        radius = 26 - 6 * angle / (2 * math.pi)
+        radius = 20 - 4 * angle / (2 * math.pi)
         points.append([middle[0] + radius * math.cos(angle), middle[1] + radius * math.sin(angle), 0.0])
         angle += step / radius
     centres = np.array(points)
