@@ -110,6 +110,8 @@ def b5x(data: Data) -> Figure:
     """Time of one move against largest and RMS error: a panel for each cutter, a point for each tolerance."""
     table = rows(data, "path")
     names, pitches = values(table, "cutter"), values(table, "pitch")
+    times = column(table, "move_s")
+    few = times.max() < 50 * times.min()  # room for more than the powers of ten
     figure, axes = plt.subplots(2, 3, figsize=(12.5, 7.4), sharex=True, sharey=True)
     for axis, name in zip(axes.flat, names, strict=True):
         for pitch, colour in zip(pitches, COLOURS, strict=False):
@@ -127,7 +129,7 @@ def b5x(data: Data) -> Figure:
         if 0.25 in pitches:
             goal = data["settings"]["targets"]["ball_s" if name.startswith("ball") else "other_s"]
             target(axis, x=1e6 * goal, text=f"target at 0.01, h = 0.25: {1e6 * goal:.0f} µs")
-        logarithmic(axis.xaxis, sub=True)
+        logarithmic(axis.xaxis, sub=few)
         logarithmic(axis.yaxis)
         axis.set_title(name, fontsize=10, loc="left")
     for axis in axes[-1]:
@@ -161,8 +163,8 @@ def tolerance(data: Data) -> Figure:
         right.plot(asked, column(mine, "move_s", 1e6), f"-{mark}", color=colour, label=name)
     ends = np.array([min(column(table, "tolerance")), max(column(table, "tolerance"))])
     left.plot(ends, ends, color=TARGET, linewidth=1, linestyle=":")
-    left.annotate("allowed", (ends[-1], ends[-1]), xytext=(-6, -4), textcoords="offset points", ha="right", va="top",
-                  rotation=32, fontsize=8, color=TARGET)  # fmt: skip
+    middle = np.sqrt(ends.prod())
+    left.annotate("allowed", (middle, middle), xytext=(2, 4), textcoords="offset points", fontsize=8, color=TARGET)
     for axis in (left, right):
         axis.set_xlabel("tolerance asked  mm")
         logarithmic(axis.xaxis)
@@ -270,9 +272,9 @@ def haptic(data: Data) -> Figure | None:
     logarithmic(left.yaxis, sub=True)
     logarithmic(right.xaxis, sub=True)
     logarithmic(right.yaxis)
-    left.legend(loc="center right")
+    figure.legend(*left.get_legend_handles_labels(), loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     title(figure, data, "Haptic step: Ø20 ball, 0.5 mm a step, h = 0.1 mm, force and torque included")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    figure.tight_layout(rect=(0, 0.06, 1, 0.97))
     return figure
 
 

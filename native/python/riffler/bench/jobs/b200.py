@@ -81,6 +81,6 @@ def others(out: Report, settings: Settings) -> None:
         table.row(**figures)
     table.notes.append(
         "Each engine is compared with its own exact limit: swept balls that reach out of the block (2 944.75 mm³), "
-        "bare capsules (2 908.57) or static balls (2 873.2); of OpenVDB it is what its own block lost. Riffler's memory "
-        "is a whole process with Python and numpy."
+        "bare capsules (2 908.57) or static balls (2 873.2); of OpenVDB it is what its own block lost. Riffler's "
+        "memory is a whole process with Python and numpy."
     )
