@@ -18,7 +18,8 @@ struct Stats {
   std::uint64_t bytes_copied = 0;      ///< bytes of tiles copied on write
 
   Stats& operator+=(const Stats& o) {
-    moves += o.moves, steps += o.steps, tiles_visited += o.tiles_visited, hits += o.hits, tiles_changed += o.tiles_changed;
+    moves += o.moves, steps += o.steps, tiles_visited += o.tiles_visited, hits += o.hits,
+        tiles_changed += o.tiles_changed;
     rays_tested += o.rays_tested, rays_changed += o.rays_changed, tiles_meshed += o.tiles_meshed;
     triangles_tested += o.triangles_tested, bytes_copied += o.bytes_copied;
     return *this;

@@ -15,11 +15,11 @@ namespace riffler::HWY_NAMESPACE {
 
 /// A group of neighbouring rays of one row.
 struct Group {
-  int ray;       // index of the first in the tile
-  int slot;      // of the sums
-  V v;           // their coordinate; u is the row's
-  V near, far;   // their material
-  M active;      // lanes that the step may touch
+  int ray;      // index of the first in the tile
+  int slot;     // of the sums
+  V v;          // their coordinate; u is the row's
+  V near, far;  // their material
+  M active;     // lanes that the step may touch
 };
 
 /// Rays in a tool's frame: their point at height s over the tip is (x + s tilt, y, z + s oz).
@@ -33,7 +33,11 @@ HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
   const V low = set(w.low), high = set(w.high);
   for (int a = w.first_row; a <= w.last_row; ++a)
     for (int b = w.first[a]; b < w.end[a]; b += lanes()) {
-      Group g{a * kTileSide + b, (b - w.first[a]) % kLanes, hn::LoadU(kD, w.v + b), zero(), zero(),
+      Group g{a * kTileSide + b,
+              (b - w.first[a]) % kLanes,
+              hn::LoadU(kD, w.v + b),
+              zero(),
+              zero(),
               hn::FirstN(kD, static_cast<std::size_t>(w.end[a] - b))};
       g.near = hn::LoadU(kD, w.near + g.ray), g.far = hn::LoadU(kD, w.far + g.ray);
       g.active = both(g.active, both(hn::Lt(g.near, high), hn::Gt(g.far, low)));
@@ -51,7 +55,9 @@ HWY_INLINE void add_to(double* slots, int slot, V x) {
 /// is told what every lane lost.
 template <class Add>
 HWY_INLINE void subtract(RayWindow& w, const Group& g, M mask, Stretch cut, V t_near, V t_far, const Add& add) {
-  const M touched = both(both(mask, hn::Lt(cut.near, cut.far)), both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.near)));
+  // A cut thinner than what vanishes is none: it would leave two spans that touch.
+  const M touched = both(both(mask, hn::Gt(hn::Sub(cut.far, cut.near), set(w.thinnest))),
+                         both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.near)));
   if (none(touched)) return;
   w.changed += hn::CountTrue(kD, touched);
   const V thinnest = set(w.thinnest);

@@ -1,5 +1,5 @@
-// A convex group of pieces at poses of its motion, a pose of its own for every lane: where the rays meet it, the normals
-// there, and planes between it and rays that it misses.
+// A convex group of pieces at poses of its motion, a pose of its own for every lane: where the rays meet it, the
+// normals there, and planes between it and rays that it misses.
 #if defined(RIFFLER_SWEEP_POSE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_POSE_LANES_INL_HPP
 #undef RIFFLER_SWEEP_POSE_LANES_INL_HPP
@@ -137,7 +137,10 @@ class PoseLanes {
       n = choose(better, own, n), height = k == 0 ? out : pick(better, out, height);
     }
     if (!b_.leans) height = above(n);
-    for (int i = 0; i < 6 && !none(both(missed, hn::Le(height, zero()))); ++i) steer(both(missed, hn::Le(height, zero())), n, height);
+    // Rarely, a direction is not good enough to tell that the ray misses.
+    for (int i = 0; i < 3 && !none(both(missed, hn::Le(height, zero()))); ++i)
+      steer(both(missed, hn::Le(height, zero())), n, height);
+    if (const M lost = both(missed, hn::Le(height, zero())); !none(lost)) search(lost, n, height);
     return n;
   }
 
@@ -235,9 +238,7 @@ class PoseLanes {
     return less(scaled(n, cosine), lean, o_);
   }
 
-  V3 from_centre(const PieceShape& s, V at) const {
-    return scaled(less(point(at), set(s.zc), o_), set(s.inverse));
-  }
+  V3 from_centre(const PieceShape& s, V at) const { return scaled(less(point(at), set(s.zc), o_), set(s.inverse)); }
 
   void ball(const PieceShape& s, std::size_t k) {
     const V3 c = less(w_, set(s.zc), o_);
@@ -270,8 +271,8 @@ class PoseLanes {
   }
 
   /// The distance is convex along the ray, so Newton's method from outside walks to the root without passing it. Starts
-  /// where the ray enters the cylinder and slab about the piece. `sign` 1: near end, −1: far end. `flat`: lanes that are
-  /// deep inside at once, so that it is the slab's own plane through which they come.
+  /// where the ray enters the cylinder and slab about the piece. `sign` 1: near end, −1: far end. `flat`: lanes that
+  /// are deep inside at once, so that it is the slab's own plane through which they come.
   M walk(const PieceShape& s, M mask, double sign, V& at, V until, M& flat) const {
     M hit = no_lane(), open = mask;
     flat = no_lane();
@@ -321,9 +322,9 @@ class PoseLanes {
     return common(side, slab(std::max(s.z0, s.zc - s.r), std::min(s.z1, s.zc + s.r)));
   }
 
-  /// Turns n, square to the ray, towards where the height over its plane is greatest: one step of Newton's method on the
-  /// angle. With p the point of the group that the plane touches and r the radius of its outline's curvature there, the
-  /// height H changes with the angle as H′ = n′ · (ray − p), H″ = −(H + r).
+  /// Turns n, square to the ray, towards where the height over its plane is greatest: one step of Newton's method on
+  /// the angle. With p the point of the group that the plane touches and r the radius of its outline's curvature there,
+  /// the height H changes with the angle as H′ = n′ · (ray − p), H″ = −(H + r).
   void steer(M mask, V3& n, V& height) const {
     const V rise = dot(n, o_), across = sqrt(max(hn::Sub(set(1), hn::Mul(rise, rise)), set(1e-12)));
     V most = set(-kInfinity), z = zero(), rho = zero(), thick = zero();
@@ -343,8 +344,8 @@ class PoseLanes {
       }
       const V at = hn::Mul(rise, set(s.r));
       const M high = hn::Gt(at, set(s.z1 - s.zc)), low = hn::Lt(at, set(s.z0 - s.zc)), end = either(high, low);
-      disc(pick(high, set(s.z1), pick(low, set(s.z0), set(s.zc))), pick(high, set(s.r1), pick(low, set(s.r0), set(s.e))),
-           pick(end, zero(), set(s.r)));
+      disc(pick(high, set(s.z1), pick(low, set(s.z0), set(s.zc))),
+           pick(high, set(s.r1), pick(low, set(s.r0), set(s.e))), pick(end, zero(), set(s.r)));
     }
     const V3 tangent{hn::Neg(n.y), n.x, zero()};
     // n′ · p: the thickness is along n, the disc's point along n less its part along the axis.
@@ -358,6 +359,31 @@ class PoseLanes {
     const V there = above(next);
     const M better = both(mask, hn::Gt(there, height));
     n = choose(better, next, n), height = pick(better, there, height);
+  }
+
+  /// Looks for the direction square to the ray in which its height is greatest: all round, then by golden section.
+  void search(M mask, V3& n, V& height) const {
+    const auto better = [&](const V3& other) {
+      const V there = above(other);
+      const M more = both(mask, hn::Gt(there, height));
+      n = choose(more, other, n), height = pick(more, there, height);
+    };
+    constexpr double kDiagonal = 0.7071067811865476, kLong = 0.9238795325112867, kShort = 0.3826834323650898;
+    for (const auto& [x, y] : {std::pair{1.0, 0.0}, {kLong, kShort}, {kDiagonal, kDiagonal}, {kShort, kLong}})
+      for (const double sign : {-1.0, 1.0})
+        better({set(sign * x), set(sign * y), zero()}), better({set(-sign * y), set(sign * x), zero()});
+    const V3 middle = n, aside{hn::Neg(n.y), n.x, zero()};
+    const auto at = [&](V x) {
+      return unit({hn::Add(middle.x, hn::Mul(x, aside.x)), hn::Add(middle.y, hn::Mul(x, aside.y)), zero()});
+    };
+    const V golden = set(0.6180339887498949);
+    V low = set(-0.42), high = set(0.42);  // beyond the neighbours' directions
+    for (int i = 0; i < 40; ++i) {
+      const V part = hn::Mul(golden, hn::Sub(high, low)), a = hn::Sub(high, part), b = hn::Add(low, part);
+      const M left = hn::Gt(above(at(a)), above(at(b)));
+      high = pick(left, b, high), low = pick(left, low, a);
+    }
+    better(at(hn::Mul(set(0.5), hn::Add(low, high))));
   }
 
   /// `at` moved to where the ray is between two heights over the tip.

@@ -36,12 +36,12 @@ struct RayWindow {
   std::uint8_t first[kTileSide], end[kTileSide];
   double low, high;
   // What is wanted.
-  bool in_place;     ///< cut single spans here; otherwise every cut goes to `cut`
-  bool measured;     ///< add up the lengths taken
-  bool with_force;   ///< and the directions
-  double pivot[3];   ///< of the moment
+  bool in_place;    ///< cut single spans here; otherwise every cut goes to `cut`
+  bool measured;    ///< add up the lengths taken
+  bool with_force;  ///< and the directions
+  double pivot[3];  ///< of the moment
   void* self;
-  void (*cut)(void* self, int ray, const RayCut& cut);                    ///< what is not cut here
+  void (*cut)(void* self, int ray, const RayCut& cut);                       ///< what is not cut here
   bool (*exact)(void* self, double u, double v, double& near, double& far);  ///< the scalar way, where lanes give up
   RemovedSums* sums;
   // What was done.

@@ -49,8 +49,7 @@ class StraightLanes {
     for (const V s : {side.near, side.far}) {
       const V t = hn::Add(p0, hn::Mul(s, set(p1)));
       M good = on_way(t);
-      if (p_.cut_bottom || p_.cut_top)
-        good = both(good, in_slab(less(hn::Add(r.z, hn::Mul(s, set(p_.oz))), t, p_.mo)));
+      if (p_.cut_bottom || p_.cut_top) good = both(good, in_slab(less(hn::Add(r.z, hn::Mul(s, set(p_.oz))), t, p_.mo)));
       add(out, good, s);
     }
     return out;
@@ -119,8 +118,8 @@ class StraightLanes {
     const V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), set(radius * radius));
     const Stretch disc = at_most_zero(da * da + db * db, hn::Add(hn::Mul(a, set(da)), hn::Mul(b, set(db))), q0);
     const Stretch line = common(disc, slab(t0, dt, p_.way));
-    const M good = both(hn::Le(line.near, line.far),
-                        both(hn::Gt(line.near, set(-kInfinity)), hn::Lt(line.far, set(kInfinity))));
+    const M good =
+        both(hn::Le(line.near, line.far), both(hn::Gt(line.near, set(-kInfinity)), hn::Lt(line.far, set(kInfinity))));
     for (const V l : {line.near, line.far}) add(out, good, hn::Add(s0, hn::Mul(l, set(ds))));
   }
 

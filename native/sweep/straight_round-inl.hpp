@@ -47,8 +47,8 @@ class StraightRound {
  private:
   static constexpr int kSteps = 12;
   struct Gap {
-    V distance;          // negative inside
-    V along, across;     // ∂D/∂s, ∂D/∂τ
+    V distance;           // negative inside
+    V along, across;      // ∂D/∂s, ∂D/∂τ
     V pull, bend, mixed;  // ½ ∂D²/∂τ, ½ ∂²D²/∂τ², ½ ∂²D²/∂s∂τ
   };
 
@@ -71,8 +71,7 @@ class StraightRound {
     // Second derivatives of ½ (out² + z²): ρ_i ρ_j + out ρ_ij beside the disc, and those of z.
     const V tt = hn::Add(hn::Mul(rho_t, rho_t),
                          hn::Mul(share, hn::Sub(set(p_.m1 * p_.m1 + p_.m2 * p_.m2), hn::Mul(rho_t, rho_t))));
-    const V st = hn::Add(hn::Mul(rho_s, rho_t),
-                         hn::Mul(share, hn::Sub(set(-p_.tilt * p_.m1), hn::Mul(rho_s, rho_t))));
+    const V st = hn::Add(hn::Mul(rho_s, rho_t), hn::Mul(share, hn::Sub(set(-p_.tilt * p_.m1), hn::Mul(rho_s, rho_t))));
     g.bend = hn::Add(set(p_.mo * p_.mo), hn::Mul(along, tt));
     g.mixed = hn::Sub(hn::Mul(along, st), set(p_.oz * p_.mo));
     return g;

@@ -23,17 +23,17 @@ struct SweptHit {
   Surface surface = Surface::Lateral;
 };
 
-/// The numbers of a SweptPiece, for kernels. Frame: three vectors e1, e2, axis with e1 × e2 = axis, the rays in the plane
-/// of axis and e1: their direction is tilt e1 + oz axis.
+/// The numbers of a SweptPiece, for kernels. Frame: three vectors e1, e2, axis with e1 × e2 = axis, the rays in the
+/// plane of axis and e1: their direction is tilt e1 + oz axis.
 struct SweptShape {
   enum class Kind : unsigned char { Frustum, Ball, Torus } kind;
-  bool cut_bottom, cut_top;         ///< a Round that ends in a flat face there
+  bool cut_bottom, cut_top;  ///< a Round that ends in a flat face there
   double tip[3], axis[3], e1[3], e2[3];
   double tilt, oz;
-  double way, m1, m2, mo;           ///< length of the motion and its unit vector in the frame
-  double z0, z1, r0, r1, slope;     ///< ends and dr/dz
-  double e, zc, r;                  ///< Round
-  double direction[3];              ///< of the force: against the motion, along the axis where there is none
+  double way, m1, m2, mo;        ///< length of the motion and its unit vector in the frame
+  double z0, z1, r0, r1, slope;  ///< ends and dr/dz
+  double e, zc, r;               ///< Round
+  double direction[3];           ///< of the force: against the motion, along the axis where there is none
 };
 
 /// The body that a convex piece sweeps on a straight way at fixed orientation. It is convex, so a ray meets it in one

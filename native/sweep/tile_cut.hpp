@@ -71,9 +71,9 @@ class TileCut {
   double thinnest_;
   alignas(64) double near_[kTileRays + kLanes], far_[kTileRays + kLanes];
   std::uint32_t many_[kTileSide];
-  std::vector<SpanNormals> normals_;         // of the planes
+  std::vector<SpanNormals> normals_;          // of the planes
   std::vector<std::uint32_t> begin_, count_;  // of rays with several spans, in the pool
-  std::vector<Span> pool_;                   // rays that grew lie at the end; their old places are forgotten
+  std::vector<Span> pool_;                    // rays that grew lie at the end; their old places are forgotten
   std::vector<SpanNormals> pool_normals_;
   std::vector<Span> kept_;
   std::vector<SpanNormals> kept_normals_;

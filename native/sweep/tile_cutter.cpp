@@ -10,7 +10,8 @@ namespace riffler {
 
 std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n) {
   if (range.empty()) return {0, -1};
-  const double first = std::ceil((range.near - lower) / pitch - 0.5), last = std::floor((range.far - lower) / pitch - 0.5);
+  const double first = std::ceil((range.near - lower) / pitch - 0.5),
+               last = std::floor((range.far - lower) / pitch - 0.5);
   return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(n))),
           static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
 }
@@ -48,7 +49,8 @@ bool TileCutter::set_window(const Footprint& footprint) {
   for (int a = w.first_row; a <= w.last_row; ++a) {
     const auto [v0, v1] = ray_indices(footprint.row(w.u[a]), grid_.box().lower.y, h, grid_.nv());
     const int first = std::max(v0 - first_column_, 0), end = std::min(v1 - first_column_ + 1, kTileSide);
-    w.first[a] = static_cast<std::uint8_t>(std::min(first, kTileSide)), w.end[a] = static_cast<std::uint8_t>(std::max(end, 0));
+    w.first[a] = static_cast<std::uint8_t>(std::min(first, kTileSide)),
+    w.end[a] = static_cast<std::uint8_t>(std::max(end, 0));
     any = any || first < end;
   }
   w.low = footprint.height().near, w.high = footprint.height().far;

@@ -84,7 +84,11 @@ class TurningLanes {
   Plane plane(const V3& w, const V3& n) const {
     const V3 m = cross(n, b_.spin), c = cross(m, b_.spin);
     const V drift = dot(m, b_.way);
-    return {zero(),      n.z, hn::Neg(hn::Add(dot(n, b_.way), dot(m, w))), hn::Neg(m.z), hn::Add(dot(c, w), hn::Add(drift, drift)),
+    return {zero(),
+            n.z,
+            hn::Neg(hn::Add(dot(n, b_.way), dot(m, w))),
+            hn::Neg(m.z),
+            hn::Add(dot(c, w), hn::Add(drift, drift)),
             c.z};
   }
 
@@ -206,8 +210,9 @@ class TurningLanes {
     const M moves = hn::Gt(square, zero());
     back = scaled(back, hn::Div(length, pick(moves, sqrt(square), set(1))));
     // Along the axis where that point stands still: it lies on the axis of rotation, which crosses the tip.
-    const V3 f = choose(moves, back, {hn::Mul(length, set(b_.axis[0])), hn::Mul(length, set(b_.axis[1])),
-                                      hn::Mul(length, set(b_.axis[2]))});
+    const V3 f =
+        choose(moves, back,
+               {hn::Mul(length, set(b_.axis[0])), hn::Mul(length, set(b_.axis[1])), hn::Mul(length, set(b_.axis[2]))});
     const V3 r{set(u_ - w_.pivot[0]), hn::Sub(group_->v, set(w_.pivot[1])), hn::Sub(middle, set(w_.pivot[2]))};
     RemovedSums& sums = *w_.sums;
     const int slot = group_->slot;

@@ -13,7 +13,8 @@ PieceShape shape_of(const Piece& piece) {
   PieceShape s{};
   s.z0 = bottom(piece), s.z1 = top(piece);
   s.r0 = radius_at(piece, s.z0), s.r1 = radius_at(piece, s.z1);
-  s.slope = std::holds_alternative<Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0, s.cosine = 1 / std::hypot(1.0, s.slope);
+  s.slope = std::holds_alternative<Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0,
+  s.cosine = 1 / std::hypot(1.0, s.slope);
   s.inverse = 1 / s.r0;
   if (const auto* round = std::get_if<Round>(&piece)) {
     s.round = true, s.e = round->e, s.zc = round->zc, s.r = round->r;
@@ -40,6 +41,29 @@ bool convex_together(const Piece& below, const Piece& above) {
   return slope_at(below, z) >= slope_at(above, z) - 1e-9;
 }
 
+/// Lets `above` reach into `below`, or `below` into `above`, along its own line, where the tool is hollow between them.
+/// Their ends on a ray are found separately, each up to the tolerance, so that what only touched might leave a crumb.
+void overlap(Piece& below, Piece& above) {
+  for (int k = 1; k <= 8; ++k) {
+    if (auto* f = std::get_if<Frustum>(&above)) {
+      const double z = f->z0 - (top(below) - bottom(below)) / (1 << k);
+      const double r = f->r0 - (f->r1 - f->r0) / (f->z1 - f->z0) * (f->z0 - z);
+      if (r >= 0 && r <= radius_at(below, z) && f->r0 <= radius_at(below, f->z0) * (1 + 1e-12)) {
+        f->z0 = z, f->r0 = r;
+        return;
+      }
+    }
+    if (auto* f = std::get_if<Frustum>(&below)) {
+      const double z = f->z1 + (top(above) - bottom(above)) / (1 << k);
+      const double r = f->r1 + (f->r1 - f->r0) / (f->z1 - f->z0) * (z - f->z1);
+      if (r >= 0 && r <= radius_at(above, z) && f->r1 <= radius_at(above, f->z1) * (1 + 1e-12)) {
+        f->z1 = z, f->r1 = r;
+        return;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
@@ -50,6 +74,7 @@ std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
     if (!joins) out.emplace_back();
     out.back().pieces[out.back().count++] = piece;
   }
+  for (std::size_t k = 0; k + 1 < out.size(); ++k) overlap(out[k].pieces[out[k].count - 1], out[k + 1].pieces[0]);
   for (ConvexGroup& group : out) {
     double radius = 0;
     for (const Piece& piece : group.all()) radius = std::max(radius, max_radius(piece));

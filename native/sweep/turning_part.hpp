@@ -12,12 +12,12 @@ namespace riffler {
 
 /// Frustum or Round (piece.hpp) in numbers; all fields are set for both, unless they say otherwise.
 struct PieceShape {
-  bool round, ball;             ///< ball: a Round that is a whole ball
-  double z0, r0, z1, r1;        ///< ends
-  double slope, cosine;         ///< Frustum: dr/dz and 1 / √(1 + slope²)
-  double e, zc, r;              ///< Round
-  double inverse;               ///< 1 / r0 of a cylinder, 1 / r of a Round
-  bool inner0, inner1;          ///< its lower or upper end lies within the group
+  bool round, ball;       ///< ball: a Round that is a whole ball
+  double z0, r0, z1, r1;  ///< ends
+  double slope, cosine;   ///< Frustum: dr/dz and 1 / √(1 + slope²)
+  double e, zc, r;        ///< Round
+  double inverse;         ///< 1 / r0 of a cylinder, 1 / r of a Round
+  bool inner0, inner1;    ///< its lower or upper end lies within the group
 };
 
 /// Pieces whose union is convex, from the tip upwards; perhaps without what cannot reach the material.
@@ -29,7 +29,7 @@ struct ConvexGroup {
   std::span<const Piece> all() const { return {pieces.data(), count}; }
 };
 
-/// Splits pieces, from the tip upwards, into groups whose unions are convex.
+/// Splits pieces, from the tip upwards, into groups whose unions are convex; neighbours overlap a little.
 std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces);
 
 /// The group and its motion in plain numbers. Heights along the rays count from the tip's at the start of the part.
@@ -38,17 +38,17 @@ struct TurningBody {
 
   std::size_t count;
   std::array<PieceShape, ConvexGroup::kMost> pieces;
-  bool leans;                 ///< whether some piece is a cone
+  bool leans;  ///< whether some piece is a cone
   double t0, t1, origin;
-  double tip[3], way[3];      ///< tip(t) = tip + t way, its height from the origin; way also is its velocity
-  double axis[3], side[3];    ///< axis(t) = cos θ axis + sin θ side, θ = angle (t − middle)
+  double tip[3], way[3];    ///< tip(t) = tip + t way, its height from the origin; way also is its velocity
+  double axis[3], side[3];  ///< axis(t) = cos θ axis + sin θ side, θ = angle (t − middle)
   double middle, angle;
-  double spin[3];             ///< Ω, per unit of t
-  double pull, drift;         ///< |Ω|³ and 3 |Ω|² |V|: bounds of the third derivative (docs/methods.md)
-  double speed;               ///< |V|
-  double along;               ///< mm along the ray that an end may miss
-  double aside;               ///< mm in space that a supporting plane may be behind
-  int deepest;                ///< halvings after which no point moves more than `aside`
+  double spin[3];      ///< Ω, per unit of t
+  double pull, drift;  ///< |Ω|³ and 3 |Ω|² |V|: bounds of the third derivative (docs/methods.md)
+  double speed;        ///< |V|
+  double along;        ///< mm along the ray that an end may miss
+  double aside;        ///< mm in space that a supporting plane may be behind
+  int deepest;         ///< halvings after which no point moves more than `aside`
 };
 
 /// Unit normal, out of the group, where the sweep has its boundary at p at time t.

@@ -37,11 +37,14 @@ void add_hollow(const Vec2& from, const Vec2& to, const Vec2& centre, std::vecto
   const double widest = 2 * std::acos(r / (r + Profile::kConcaveTolerance));
   const int n = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / widest)));
   const double half = turn / n / 2, far = r / std::cos(half);
+  const double thinnest = 1e-9 * r;  // what rounding leaves of a level tangent is no cone
   Vec2 last = from;
   for (int k = 0; k <= n; ++k) {
     const double angle = start + (2 * k + 1) * half;
     Vec2 next = k == n ? to : centre + far * Vec2(std::cos(angle), std::sin(angle));
     next = {std::max(next.x, 0.0), std::clamp(next.y, last.y, to.y)};
+    if (to.y - next.y <= thinnest) next.y = to.y;
+    if (next.y - last.y <= thinnest) next.y = last.y;
     if (next.y > last.y) out.push_back(Frustum{last.y, last.x, next.y, next.x});
     last = next;
   }
