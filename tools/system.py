@@ -85,6 +85,7 @@ BUILD = [
     Need("a C++20 compiler", "g++", "GCC 12 or Clang 16, or later", lambda: preprocesses("#include <span>\n")),
     Need("pkg-config", "pkg-config", "https://www.freedesktop.org/wiki/Software/pkg-config/", program("pkg-config")),
     Need("GLM headers", "libglm-dev", "https://github.com/g-truc/glm", header("glm/glm.hpp")),
+    Need("Highway", "libhwy-dev", "https://github.com/google/highway", header("hwy/highway.h")),
     Need("OpenMesh", "libopenmesh-dev", "https://www.graphics.rwth-aachen.de/software/openmesh/",
          header("OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh")),
     Need("hidapi (hidraw)", "libhidapi-dev", "https://github.com/libusb/hidapi", header("hidapi/hidapi.h")),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -18,26 +19,25 @@ namespace {
 /// Steps that are cut in one go: enough to fill all threads, few enough to stay in the cache.
 constexpr std::size_t kBatch = 512;
 /// Rays below which starting threads costs more than it gains.
-constexpr double kSerialRays = 2e4;
+constexpr double kSerialRays = 1e5;
 
 std::string row(std::size_t i) {
   return "poses, row " + std::to_string(i) + ": ";
 }
 
-std::vector<Pose> checked(std::span<const Pose> poses) {
-  std::vector<Pose> out(poses.begin(), poses.end());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    Pose& p = out[i];
+void check(std::span<const Pose> poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose& p = poses[i];
     if (!finite(p.tip) || !finite(p.axis)) throw std::invalid_argument(row(i) + "not finite");
     const double length = glm::length(p.axis);
     if (!(std::abs(length - 1) < 1e-6))
       throw std::invalid_argument(row(i) + "the axis must be a unit vector; its length is " + std::to_string(length));
-    p.axis /= length;
-    if (i > 0 && glm::dot(out[i - 1].axis, p.axis) < 0 && glm::length(glm::cross(out[i - 1].axis, p.axis)) < 1e-14)
+    if (i == 0) continue;
+    const Vec3 axis = p.axis / length, before = glm::normalize(poses[i - 1].axis);
+    if (glm::dot(before, axis) < 0 && glm::length(glm::cross(before, axis)) < 1e-14)
       throw std::invalid_argument(row(i) + "the axis is exactly opposite to that of the row before, so the way it " +
                                   "turns is undefined; put a pose between");
   }
-  return out;
 }
 
 void check(const CarveOptions& options, std::size_t moves) {
@@ -75,20 +75,21 @@ class Rollback {
 /// Cuts one grid, batch by batch.
 class GridCarver {
  public:
-  GridCarver(Grid& grid, bool measured, const std::vector<Pose>& poses, const CarveOptions& options, Cut& cut,
-             Rollback& rollback)
-      : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback), poses_(poses) {
-    for (Pose& p : poses_) p = {to_local(grid.axis(), p.tip), to_local(grid.axis(), p.axis)};
-    for (std::size_t m = 0; m + 1 < poses_.size(); ++m) motions_.emplace_back(poses_[m], poses_[m + 1]);
-  }
+  GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback& rollback)
+      : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback) {}
 
-  void run(const Tool& tool, const std::function<void(std::size_t)>& moves_done) {
+  /// Holds no more of the program than one batch, so its length costs no memory here.
+  void run(const Tool& tool, std::span<const Pose> poses, const std::function<void(std::size_t)>& moves_done) {
     const Cutter cutter(tool.cutter());
-    for (std::size_t m = 0; m < motions_.size(); ++m)
-      for_each_step(cutter, motions_[m], static_cast<std::uint32_t>(m), grid_.box(), [&](Step&& step) {
-        steps_.push_back(std::move(step));
-        if (steps_.size() == kBatch) flush(), moves_done(m);
-      });
+    Pose from = poses.empty() ? Pose{} : local(poses[0]);
+    for (std::size_t m = 0; m + 1 < poses.size(); ++m) {
+      const Pose to = local(poses[m + 1]);
+      const Motion& motion = motions_.emplace_back(from, to);
+      for_each_step(cutter, motion, static_cast<std::uint32_t>(m), grid_.box(), options_.tolerance,
+                    [&](Step&& step) { steps_.push_back(std::move(step)); });
+      if (steps_.size() >= kBatch || motions_.size() >= kBatch) flush(), moves_done(m);
+      from = to;
+    }
     flush();
   }
 
@@ -100,8 +101,17 @@ class GridCarver {
     TileResult done;
   };
 
+  Pose local(const Pose& p) const {
+    return {to_local(grid_.axis(), p.tip), glm::normalize(to_local(grid_.axis(), p.axis))};
+  }
+
   void flush() {
-    if (steps_.empty()) return;
+    if (!steps_.empty()) cut_steps();
+    stats_.steps += steps_.size();
+    steps_.clear(), motions_.clear();
+  }
+
+  void cut_steps() {
     std::vector<Work> work = assign();
     double rays = 0;
     for (const Step& s : steps_) rays += s.footprint.rows().length() * s.footprint.columns().length();
@@ -114,8 +124,6 @@ class GridCarver {
     else
       parallel_for(work.size(), 1, body);
     for (Work& w : work) collect(w);
-    stats_.steps += steps_.size();
-    steps_.clear();
   }
 
   /// Tiles of the batch with the steps that may touch them, both in ascending order.
@@ -147,7 +155,7 @@ class GridCarver {
       const Step& step = steps_[pairs_[k].second];
       if (tile.reach.cut(step.footprint.height()).empty()) continue;  // the tool stays above or below the tile
       if (!cutter) cutter.emplace(grid_, work.tile, measured_, options_);
-      cutter->cut(step, motions_[step.move]);
+      cutter->cut(step);
     }
     if (cutter) work.done = cutter->finish();
   }
@@ -169,8 +177,7 @@ class GridCarver {
   const CarveOptions& options_;
   Cut& cut_;
   Rollback& rollback_;
-  std::vector<Pose> poses_;  // in the grid's cyclic frame
-  std::vector<Motion> motions_;
+  std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   std::vector<Step> steps_;
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // (tile, step)
   Stats stats_;
@@ -180,7 +187,7 @@ class GridCarver {
 
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options) {
   const std::size_t moves = poses.empty() ? 0 : poses.size() - 1;
-  const std::vector<Pose> path = checked(poses);
+  check(poses);
   check(options, moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   Rollback rollback;
@@ -189,8 +196,8 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   const std::size_t grids = volume.grids().size();
   for (std::size_t g = 0; g < grids; ++g) {
     Grid& grid = volume.grids()[g];
-    GridCarver carver(grid, &grid == &volume.reference(), path, options, cut, rollback);
-    carver.run(tool, [&](std::size_t done) {
+    GridCarver carver(grid, &grid == &volume.reference(), options, cut, rollback);
+    carver.run(tool, poses, [&](std::size_t done) {
       report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
                                    static_cast<double>(grids));
     });

@@ -51,10 +51,33 @@ HWY_INLINE void add_to(double* slots, int slot, V x) {
   hn::StoreU(hn::Add(hn::LoadU(kD, slots + slot), x), kD, slots + slot);
 }
 
-/// Takes `cut` from the lanes of `mask`; `t_near` and `t_far` are the motion's t at its ends. `add(length, middle, t)`
-/// is told what every lane lost.
-template <class Add>
-HWY_INLINE void subtract(RayWindow& w, const Group& g, M mask, Stretch cut, V t_near, V t_far, const Add& add) {
+/// (3.20)–(3.22) in one: against the velocity of the tool's material point at the middle of what is taken.
+HWY_INLINE void add_force(RayWindow& w, double u, const Group& g, V length, V middle, V t) {
+  const ForceLaw& law = *w.law;
+  const V p[3] = {set(u), g.v, middle};
+  V arm[3], force[3], moment[3], square = zero();
+  for (int i = 0; i < 3; ++i) arm[i] = hn::Sub(p[i], hn::Add(set(law.tip[i]), hn::Mul(t, set(law.way[i]))));
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const V turn = hn::Sub(hn::Mul(set(law.spin[k]), arm[j]), hn::Mul(set(law.spin[j]), arm[k]));
+    force[i] = hn::Sub(turn, set(law.way[i])), square = hn::Add(square, hn::Mul(force[i], force[i]));
+  }
+  // Along the axis where that point stands still.
+  const M moves = hn::Gt(square, zero());
+  const V scale = hn::Div(length, sqrt(pick(moves, square, set(1))));
+  for (int i = 0; i < 3; ++i) {
+    force[i] = pick(moves, hn::Mul(force[i], scale), hn::Mul(length, set(law.axis[i])));
+    arm[i] = hn::Sub(p[i], set(law.pivot[i]));
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    moment[i] = hn::Sub(hn::Mul(arm[j], force[k]), hn::Mul(arm[k], force[j]));
+    add_to(w.sums->direction[i], g.slot, force[i]), add_to(w.sums->moment[i], g.slot, moment[i]);
+  }
+}
+
+/// Takes `cut` from the lanes of `mask`; `t_near` and `t_far` are the motion's t at its ends.
+HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, Stretch cut, V t_near, V t_far) {
   // A cut thinner than what vanishes is none: it would leave two spans that touch.
   const M touched = both(both(mask, hn::Gt(hn::Sub(cut.far, cut.near), set(w.thinnest))),
                          both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.near)));
@@ -77,7 +100,7 @@ HWY_INLINE void subtract(RayWindow& w, const Group& g, M mask, Stretch cut, V t_
       add_to(w.sums->length, g.slot, length);
       // Lanes that lose nothing may hold infinities.
       const V middle = hn::IfThenElseZero(simple, hn::Mul(set(0.5), hn::Add(low, high)));
-      if (w.with_force) add(length, middle, hn::Mul(set(0.5), hn::Add(t_near, t_far)));
+      if (w.with_force) add_force(w, u, g, length, middle, hn::Mul(set(0.5), hn::Add(t_near, t_far)));
     }
   }
   const unsigned rest = bits(without(touched, simple));

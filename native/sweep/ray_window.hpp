@@ -23,6 +23,14 @@ struct RemovedSums {
   double moment[3][kLanes] = {};     ///< Σ length × (middle − pivot) × direction
 };
 
+/// The tool's motion, for the direction of the force: the velocity of its material point at p and time t is
+/// way + spin × (p − tip − t way).
+struct ForceLaw {
+  double tip[3], way[3], spin[3];
+  double axis[3];   ///< direction where nothing moves
+  double pivot[3];  ///< of the moment
+};
+
 struct RayWindow {
   // The tile (tile_cut.hpp): the only span of every ray, or the hull of several.
   double* near;
@@ -39,7 +47,8 @@ struct RayWindow {
   bool in_place;    ///< cut single spans here; otherwise every cut goes to `cut`
   bool measured;    ///< add up the lengths taken
   bool with_force;  ///< and the directions
-  double pivot[3];  ///< of the moment
+  const ForceLaw* law;
+  double time;  ///< of straight steps: the motion's t in their middle
   void* self;
   void (*cut)(void* self, int ray, const RayCut& cut);                       ///< what is not cut here
   bool (*exact)(void* self, double u, double v, double& near, double& far);  ///< the scalar way, where lanes give up

@@ -57,18 +57,47 @@ double lever_of(const ConvexGroup& group) {
   return lever;
 }
 
+/// Share of the tolerance by which chords may leave the path of a ball's centre; √5 times that along the ray.
+constexpr double kChordShare = 0.4;
+
+bool is_ball(const Piece& piece) {
+  const auto* r = std::get_if<Round>(&piece);
+  return r && r->e == 0 && r->z0 <= r->zc - r->r && r->z1 >= r->zc + r->r;
+}
+
+/// The centre of a ball moves on an arc about the tip: |c″| = zc φ², so n chords leave it by at most zc φ² / (8 n²).
+void ball_chords(const Piece& ball, const Motion& motion, double t0, double t1, std::uint32_t move, const Box3& box,
+                 double tolerance, const std::function<void(Step&&)>& sink) {
+  const double centre = std::get<Round>(ball).zc, angle = motion.angle() * (t1 - t0);
+  const int n = std::max(1, static_cast<int>(std::ceil(angle * std::sqrt(centre / (8 * kChordShare * tolerance)))));
+  Pose from = motion.at(t0);
+  for (int k = 0; k < n; ++k) {
+    const double a = t0 + (t1 - t0) * k / n, b = k + 1 == n ? t1 : t0 + (t1 - t0) * (k + 1) / n;
+    const Pose to = motion.at(b);
+    const Footprint footprint({&ball, 1}, {from, to}, 0);
+    const Vec3 way = (to.tip - from.tip) + centre * (to.axis - from.axis);
+    if (footprint.overlaps(box))
+      sink({move, &motion, footprint, StraightPart{SweptPiece(ball, from.tip, from.axis, way), (a + b) / 2}});
+    from = to;
+  }
+}
+
 void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t move, const Box3& box,
-                   const std::function<void(Step&&)>& sink) {
+                   double tolerance, const std::function<void(Step&&)>& sink) {
   const int n = static_cast<int>(std::ceil(motion.angle() / kWidestPart));
   const double angle = motion.angle() / n;
   Pose from = motion.from();
   for (int k = 0; k < n; ++k) {
     const double t0 = static_cast<double>(k) / n, t1 = static_cast<double>(k + 1) / n;
     const Pose to = motion.at(t1);
-    const ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
+    ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
+    if (group.count > 0 && is_ball(group.pieces[0])) {
+      ball_chords(group.pieces[0], motion, t0, t1, move, box, tolerance, sink);
+      std::shift_left(group.pieces.begin(), group.pieces.end(), 1), --group.count;
+    }
     if (group.count > 0) {
       const Footprint footprint(group.all(), {from, to}, lever_of(group) * angle * angle / 8);
-      if (footprint.overlaps(box)) sink({move, footprint, TurningPart{group, &motion, t0, t1}});
+      if (footprint.overlaps(box)) sink({move, &motion, footprint, TurningPart{group, t0, t1}});
     }
     from = to;
   }
@@ -76,10 +105,10 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
 
 }  // namespace
 
-void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t move, const Box3& box,
+void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t move, const Box3& box, double tolerance,
                    const std::function<void(Step&&)>& sink) {
   if (motion.angle() > 0) {
-    for (const ConvexGroup& group : cutter.groups) turning_parts(group, motion, move, box, sink);
+    for (const ConvexGroup& group : cutter.groups) turning_parts(group, motion, move, box, tolerance, sink);
     return;
   }
   const Pose &from = motion.from(), &to = motion.to();
@@ -88,7 +117,8 @@ void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t mov
     if (low.count == 0) continue;
     const Footprint footprint(low.all(), {from, to}, 0);
     if (footprint.overlaps(box))
-      sink({move, footprint, SweptPiece(low.pieces[0], from.tip, from.axis, to.tip - from.tip)});
+      sink({move, &motion, footprint,
+            StraightPart{SweptPiece(low.pieces[0], from.tip, from.axis, to.tip - from.tip), 0.5}});
   }
 }
 

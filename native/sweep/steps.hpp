@@ -13,17 +13,23 @@
 
 namespace riffler {
 
+/// A piece on a straight step; `time`: the move's t in its middle.
+struct StraightPart {
+  SweptPiece body;
+  double time;
+};
+
 struct TurningPart {
   ConvexGroup group;
-  const Motion* motion;
   double t0, t1;
 };
 
 /// One step of the tool, in the cyclic frame of one grid.
 struct Step {
   std::uint32_t move;
+  const Motion* motion;
   Footprint footprint;
-  std::variant<SweptPiece, TurningPart> body;
+  std::variant<StraightPart, TurningPart> body;
 };
 
 /// Cutter pieces in the two forms that steps need.
@@ -34,8 +40,9 @@ struct Cutter {
 };
 
 /// Calls `sink` for every step of the cutter on `motion` that can touch `box`, in order of t. Poses, box and steps are
-/// in the cyclic frame of one grid; `motion` must outlive the steps.
-void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t move, const Box3& box,
+/// in the cyclic frame of one grid; `motion` must outlive the steps. Of a turning ball only the centre's path matters:
+/// it is cut as straight steps along chords, by at most `tolerance` beside it.
+void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t move, const Box3& box, double tolerance,
                    const std::function<void(Step&&)>& sink);
 
 }  // namespace riffler

@@ -199,10 +199,7 @@ inline void cut_straight_lanes(const SweptShape& shape, RayWindow& w) {
   const SweptShape around = box_of(shape);
   const StraightLanes box(around);
   const bool whole = !shape.cut_bottom && !shape.cut_top;
-  const V tip = set(shape.tip[2]), none_yet = zero();
-  // Σ length × (middle − pivot); the direction is the same everywhere.
-  double centre[3][kLanes] = {}, before[kLanes];
-  std::copy_n(w.sums->length, kLanes, before);
+  const V tip = set(shape.tip[2]), time = set(w.time);
   for_groups(w, [&](double u, Group& g) {
     Stretch cut;
     if (shape.kind == SweptShape::Kind::Torus) {
@@ -213,20 +210,8 @@ inline void cut_straight_lanes(const SweptShape& shape, RayWindow& w) {
       cut = shape.kind == SweptShape::Kind::Ball ? body.ball(rays) : body.frustum(rays);
       cut = {hn::Add(cut.near, tip), hn::Add(cut.far, tip)};
     }
-    subtract(w, g, g.active, cut, none_yet, none_yet, [&](V length, V middle, V) {
-      add_to(centre[0], g.slot, hn::Mul(length, set(u - w.pivot[0])));
-      add_to(centre[1], g.slot, hn::Mul(length, hn::Sub(g.v, set(w.pivot[1]))));
-      add_to(centre[2], g.slot, hn::Mul(length, hn::Sub(middle, set(w.pivot[2]))));
-    });
+    subtract(w, u, g, g.active, cut, time, time);
   });
-  if (!w.with_force) return;
-  const double* direction = shape.direction;
-  for (int k = 0; k < kLanes; ++k)
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, l = (i + 2) % 3;
-      w.sums->direction[i][k] += (w.sums->length[k] - before[k]) * direction[i];
-      w.sums->moment[i][k] += centre[j][k] * direction[l] - centre[l][k] * direction[j];
-    }
 }
 
 }  // namespace riffler::HWY_NAMESPACE

@@ -188,12 +188,8 @@ void SweptPiece::ball(const Ray& ray, Extremes& out) const {
 
 SweptShape SweptPiece::shape() const {
   SweptShape s{kind_, cut_bottom_, cut_top_, {},  {},  {},  {},     tilt_, axis_.z, way_, m1_,
-               m2_,   mo_,         z0_,      z1_, r0_, r1_, slope_, e_,    zc_,     r_,   {}};
-  const Vec3 against = way_ > 0 ? -direction_ : axis_;
-  for (int i = 0; i < 3; ++i) {
-    s.tip[i] = tip_[i], s.axis[i] = axis_[i], s.e1[i] = e1_[i], s.e2[i] = e2_[i];
-    s.direction[i] = against[i];
-  }
+               m2_,   mo_,         z0_,      z1_, r0_, r1_, slope_, e_,    zc_,     r_};
+  for (int i = 0; i < 3; ++i) s.tip[i] = tip_[i], s.axis[i] = axis_[i], s.e1[i] = e1_[i], s.e2[i] = e2_[i];
   return s;
 }
 

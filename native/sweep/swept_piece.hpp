@@ -33,7 +33,6 @@ struct SweptShape {
   double way, m1, m2, mo;        ///< length of the motion and its unit vector in the frame
   double z0, z1, r0, r1, slope;  ///< ends and dr/dz
   double e, zc, r;               ///< Round
-  double direction[3];           ///< of the force: against the motion, along the axis where there is none
 };
 
 /// The body that a convex piece sweeps on a straight way at fixed orientation. It is convex, so a ray meets it in one

@@ -45,22 +45,49 @@ void TileCut::store(int r) {
   put(r, kept_.data(), kept_normals_.data(), static_cast<std::uint32_t>(kept_.size()));
 }
 
-std::shared_ptr<Tile> TileCut::finish() const {
-  auto tile = std::make_shared<Tile>();
+/// No ray holds several spans.
+void TileCut::pack_single(Tile& tile) const {
+  tile.spans.resize(kTileRays);
+  if (with_normals_) tile.normals.resize(kTileRays);
   std::uint32_t total = 0;
-  for (int r = 0; r < kTileRays; ++r) tile->offset[r] = total, total += count(r);
-  tile->offset[kTileRays] = total;
-  tile->spans.resize(total);
-  if (with_normals_) tile->normals.resize(total);
+  double low = kNone, high = -kNone;
   for (int r = 0; r < kTileRays; ++r) {
-    const std::uint32_t n = tile->offset[r + 1] - tile->offset[r];
+    tile.offset[r] = total;
+    tile.spans[total] = {near_[r], far_[r]};
+    if (with_normals_) tile.normals[total] = normals_[r];
+    low = std::min(low, near_[r]), high = std::max(high, far_[r]);  // empty rays do not count: near is infinite
+    total += near_[r] < far_[r];
+  }
+  tile.offset[kTileRays] = total;
+  if (low < high) tile.reach = {low, high};
+  if (total == kTileRays) return;
+  tile.spans.resize(total), tile.spans.shrink_to_fit();
+  if (with_normals_) tile.normals.resize(total), tile.normals.shrink_to_fit();
+}
+
+void TileCut::pack_all(Tile& tile) const {
+  std::uint32_t total = 0;
+  for (int r = 0; r < kTileRays; ++r) tile.offset[r] = total, total += count(r);
+  tile.offset[kTileRays] = total;
+  tile.spans.resize(total);
+  if (with_normals_) tile.normals.resize(total);
+  for (int r = 0; r < kTileRays; ++r) {
+    const std::uint32_t n = tile.offset[r + 1] - tile.offset[r];
     if (n == 0) continue;
-    tile->reach.include(near_[r]), tile->reach.include(far_[r]);
+    tile.reach.include(near_[r]), tile.reach.include(far_[r]);
     for (std::uint32_t k = 0; k < n; ++k) {
-      tile->spans[tile->offset[r] + k] = span(r, k);
-      if (with_normals_) tile->normals[tile->offset[r] + k] = normal(r, k);
+      tile.spans[tile.offset[r] + k] = span(r, k);
+      if (with_normals_) tile.normals[tile.offset[r] + k] = normal(r, k);
     }
   }
+}
+
+std::shared_ptr<Tile> TileCut::finish() const {
+  auto tile = std::make_shared<Tile>();
+  if (pool_.empty())
+    pack_single(*tile);
+  else
+    pack_all(*tile);
   tile->revision = next_revision();
   return tile;
 }

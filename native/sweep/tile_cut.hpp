@@ -66,6 +66,8 @@ class TileCut {
   }
   void put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n);
   void store(int r);
+  void pack_single(Tile& tile) const;
+  void pack_all(Tile& tile) const;
 
   bool with_normals_, changed_ = false;
   double thinnest_;

@@ -29,12 +29,12 @@ TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const 
   for (int k = 0; k < kTileSide + kLanes; ++k) w.v[k] = grid.shifted_v(first_column_ + k);
   w.thinnest = 1e-9 * grid.pitch();
   w.in_place = !grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
-  w.self = this, w.sums = &sums_;
+  w.self = this, w.sums = &sums_, w.law = &law_;
   w.cut = [](void* self, int ray, const RayCut& cut) { static_cast<TileCutter*>(self)->cut_one(ray, cut); };
   w.exact = [](void* self, double u, double v, double& near, double& far) {
     SweptHit a, b;
     const auto* me = static_cast<const TileCutter*>(self);
-    if (!std::get<SweptPiece>(me->step_->body).hit(u, v, a, b)) return false;
+    if (!std::get<StraightPart>(me->step_->body).body.hit(u, v, a, b)) return false;
     return near = a.s, far = b.s, true;
   };
 }
@@ -57,18 +57,29 @@ bool TileCutter::set_window(const Footprint& footprint) {
   return any;
 }
 
-void TileCutter::cut(const Step& step, const Motion& motion) {
-  step_ = &step, motion_ = &motion;
+void TileCutter::set_motion(const Motion& motion) {
+  motion_ = &motion;
+  const Vec3 from = motion.from().tip, to = motion.to().tip, axis = motion.axis(0.5);
+  for (int i = 0; i < 3; ++i) {
+    law_.tip[i] = from[i], law_.way[i] = to[i] - from[i], law_.spin[i] = motion.rotation()[i];
+    law_.axis[i] = axis[i], law_.pivot[i] = to[i];
+  }
+}
+
+void TileCutter::cut(const Step& step) {
+  step_ = &step;
+  if (motion_ != step.motion) set_motion(*step.motion);
   if (!set_window(step.footprint)) return;
   result_.stats.tiles_visited += step.move != last_move_;
   last_move_ = step.move;
   RayWindow& w = window_;
   w.tested = w.changed = w.hits = 0;
-  for (int i = 0; i < 3; ++i) w.pivot[i] = motion.to().tip[i];
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
-    cut_turning(TurningBody(part->group, *part->motion, part->t0, part->t1, options_.tolerance), w);
+    cut_turning(TurningBody(part->group, *step.motion, part->t0, part->t1, options_.tolerance), w);
   } else {
-    cut_straight(std::get<SweptPiece>(step.body).shape(), w);
+    const auto& straight = std::get<StraightPart>(step.body);
+    w.time = straight.time;
+    cut_straight(straight.body.shape(), w);
   }
   if (w.changed > 0) {
     rays_.touch();
@@ -105,9 +116,9 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
 /// Normals of the swept body at both ends of a cut.
 std::pair<Vec3, Vec3> TileCutter::ends(double u, double v, const RayCut& cut) const {
   if (const auto* part = std::get_if<TurningPart>(&step_->body))
-    return {turning_normal(part->group, *part->motion, {u, v, cut.near}, cut.near_t),
-            turning_normal(part->group, *part->motion, {u, v, cut.far}, cut.far_t)};
-  const auto& body = std::get<SweptPiece>(step_->body);
+    return {turning_normal(part->group, *motion_, {u, v, cut.near}, cut.near_t),
+            turning_normal(part->group, *motion_, {u, v, cut.far}, cut.far_t)};
+  const SweptPiece& body = std::get<StraightPart>(step_->body).body;
   SweptHit near, far;
   if (!body.hit(u, v, near, far)) return {Vec3(0, 0, -1), Vec3(0, 0, 1)};
   return {body.normal(u, v, near), body.normal(u, v, far)};

@@ -34,10 +34,11 @@ class TileCutter {
   /// `measured`: what is taken counts towards Cut::removed.
   TileCutter(const Grid& grid, std::size_t tile, bool measured, const CarveOptions& options);
 
-  void cut(const Step& step, const Motion& motion);
+  void cut(const Step& step);
   TileResult finish();
 
  private:
+  void set_motion(const Motion& motion);
   bool set_window(const Footprint& footprint);
   void cut_one(int ray, const RayCut& cut);
   std::pair<Vec3, Vec3> ends(double u, double v, const RayCut& cut) const;
@@ -49,6 +50,7 @@ class TileCutter {
   TileCut rays_;
   RayWindow window_;
   RemovedSums sums_;
+  ForceLaw law_{};
   TileResult result_;
   std::uint32_t last_move_ = ~0U;
   const Step* step_ = nullptr;

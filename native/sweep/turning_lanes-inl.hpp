@@ -138,7 +138,7 @@ class TurningLanes {
     Group& g = *group_;
     if (emitted_) g.near = hn::LoadU(kD, w_.near + g.ray), g.far = hn::LoadU(kD, w_.far + g.ray);
     const Stretch cut{hn::Add(found_.near, origin), hn::Add(found_.far, origin)};
-    subtract(w_, g, mask, cut, t_near_, t_far_, [&](V length, V middle, V t) { add(length, middle, t); });
+    subtract(w_, u_, g, mask, cut, t_near_, t_far_);
   }
 
   /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, between the
@@ -197,29 +197,6 @@ class TurningLanes {
     const M p_part = hn::Ge(min(p0.after(until), p1.after(until)), limit);
     const M q_part = hn::Ge(min(q0.after(rest), q1.after(rest)), limit);
     return either(either(p_all, q_all), both(both(p_now, q_now), both(p_part, q_part)));
-  }
-
-  /// (3.20)–(3.22) in one: against the velocity of the tool's material point.
-  void add(V length, V middle, V t) {
-    const V3 arm{hn::Sub(set(u_), hn::Add(set(b_.tip[0]), hn::Mul(t, set(b_.way[0])))),
-                 hn::Sub(group_->v, hn::Add(set(b_.tip[1]), hn::Mul(t, set(b_.way[1])))),
-                 hn::Sub(hn::Sub(middle, set(b_.origin)), hn::Add(set(b_.tip[2]), hn::Mul(t, set(b_.way[2]))))};
-    const V3 turn = cross(arm, b_.spin);
-    V3 back{hn::Sub(turn.x, set(b_.way[0])), hn::Sub(turn.y, set(b_.way[1])), hn::Sub(turn.z, set(b_.way[2]))};
-    const V square = dot(back, back);
-    const M moves = hn::Gt(square, zero());
-    back = scaled(back, hn::Div(length, pick(moves, sqrt(square), set(1))));
-    // Along the axis where that point stands still: it lies on the axis of rotation, which crosses the tip.
-    const V3 f =
-        choose(moves, back,
-               {hn::Mul(length, set(b_.axis[0])), hn::Mul(length, set(b_.axis[1])), hn::Mul(length, set(b_.axis[2]))});
-    const V3 r{set(u_ - w_.pivot[0]), hn::Sub(group_->v, set(w_.pivot[1])), hn::Sub(middle, set(w_.pivot[2]))};
-    RemovedSums& sums = *w_.sums;
-    const int slot = group_->slot;
-    add_to(sums.direction[0], slot, f.x), add_to(sums.direction[1], slot, f.y), add_to(sums.direction[2], slot, f.z);
-    add_to(sums.moment[0], slot, hn::Sub(hn::Mul(r.y, f.z), hn::Mul(r.z, f.y)));
-    add_to(sums.moment[1], slot, hn::Sub(hn::Mul(r.z, f.x), hn::Mul(r.x, f.z)));
-    add_to(sums.moment[2], slot, hn::Sub(hn::Mul(r.x, f.y), hn::Mul(r.y, f.x)));
   }
 
   static constexpr int kGuided = 8;
