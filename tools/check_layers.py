@@ -1,5 +1,5 @@
-"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core never touches Python,
-and addon/core never touches Blender. Prints every line that breaks a rule and exits 1."""
+"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core never touches Python nor
+what it is judged by, and addon/core never touches Blender. Prints every line that breaks a rule and exits 1."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from pathlib import Path
 from shell import ROOT, StepError, main
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+# Folders beside the topics, and all that they may include. The reference must not share code with what it judges.
+BESIDE = {"reference": ["geom", "tool"]}
 IMPORTS_BLENDER = re.compile(r"^\s*(?:import|from)\s+(?:bpy|bmesh|gpu|mathutils|blf|bl_\w+)\b")
 
 
@@ -49,13 +51,25 @@ def core_problems() -> list[str]:
     return problems
 
 
+def beside_problems() -> list[str]:
+    problems = []
+    for judge, allowed in BESIDE.items():
+        for place, quote, name in includes(ROOT / "native" / judge):
+            if quote == '"' and name.split("/")[0] not in [judge, *allowed]:
+                problems.append(f"{place}: {judge} includes {name}; it may use {', '.join(allowed)} only")
+        for place, quote, name in includes(ROOT / "native" / "bindings"):
+            if quote == '"' and name.split("/")[0] == judge:
+                problems.append(f"{place}: the bindings include {name}")
+    return problems
+
+
 def addon_problems() -> list[str]:
     core = ROOT / "addon" / "core"
     return [f"{place}: addon/core imports Blender" for place, line in lines(core, ".py") if IMPORTS_BLENDER.match(line)]
 
 
 def entry() -> None:
-    problems = core_problems() + addon_problems()
+    problems = core_problems() + beside_problems() + addon_problems()
     print("\n".join(problems) or "layers: every include points upwards")
     sys.exit(bool(problems))
 

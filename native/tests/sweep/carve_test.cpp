@@ -5,13 +5,11 @@
 #include <cstdlib>
 #include <random>
 
-#include "bench/dense_sweep.hpp"
+#include "reference/swept_distance.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
-
-using reference::swept_distance;
 
 struct Named {
   const char* name;
@@ -88,7 +86,7 @@ void expect_carved_right(const Tool& tool, const Path& path, double tolerance, d
   CarveOptions options;
   options.tolerance = along_tolerance > 0 ? along_tolerance : 0.01;
   carve(volume, tool, poses, options);
-  const Motion motion(path.from, path.to);
+  const reference::SweptDistance swept(tool.profile(), Motion(path.from, path.to));
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> share(0, 1);
   const double exact = along_tolerance > 0 ? tolerance : tolerance + concave;
@@ -96,8 +94,8 @@ void expect_carved_right(const Tool& tool, const Path& path, double tolerance, d
     const double lower = grid.box().lower.z, upper = grid.box().upper.z;
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
-        const auto distance = [&](double s) {
-          return swept_distance(tool.profile(), motion, to_world(grid.axis(), {grid.u(i), grid.v(j), s}), 96);
+        const auto distance = [&](double s) {  // no closer than the comparisons ask
+          return swept.bracket(to_world(grid.axis(), {grid.u(i), grid.v(j), s}), exact / 50, 4 * exact).upper;
         };
         const std::span<const Span> ray = grid.ray(i, j);
         std::vector<double> ends;

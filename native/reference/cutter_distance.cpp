@@ -1,0 +1,196 @@
+#include "reference/cutter_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler::reference {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+/// The nearest foot on the edges seen so far.
+class CutterDistance::Search {
+ public:
+  Search(const Vec2& p, bool inside, double scale) : p_(p), inside_(inside), scale_(scale) {}
+
+  void add(const Edge& e) {
+    const bool faced = e.arc ? add_arc(e) : add_line(e);
+    if (!faced) add_corner(e.from), add_corner(e.to);
+  }
+  Nearest found() const { return {inside_ ? -distance_ : distance_, normal_}; }
+  bool on_corner() const { return on_corner_; }
+
+ private:
+  bool add_line(const Edge& e) {
+    const Vec2 w = p_ - e.from;
+    const double along = glm::dot(w, e.way);
+    if (along < 0 || along > e.length || e.length == 0) return false;
+    add_face(std::abs(glm::dot(w, e.normal)), e.normal);
+    return true;
+  }
+
+  /// Heights rise along the arc and it stays on one side of its centre: nearest at the same angle if in range.
+  bool add_arc(const Edge& e) {
+    const Arc& arc = *e.arc;
+    const Vec2 d = p_ - arc.centre;
+    const double length = glm::length(d);
+    const Vec2 out = length > 0 ? d / length : (e.from - arc.centre) / arc.radius;
+    const Vec2 foot = arc.centre + out * arc.radius;
+    if (arc.side * (foot.x - arc.centre.x) < 0 || foot.y < e.from.y || foot.y > e.to.y) return false;
+    add_face(std::abs(length - arc.radius), out * arc.side);
+    return true;
+  }
+
+  void add_face(double distance, const Vec2& normal) {
+    if (distance < distance_) distance_ = distance, normal_ = normal, on_corner_ = false;
+  }
+
+  /// A corner's normal is the direction to the point, which rounding hides close by.
+  void add_corner(const Vec2& corner) {
+    const Vec2 to_point = p_ - corner;
+    const double d = glm::length(to_point);
+    if (d >= distance_) return;
+    distance_ = d, on_corner_ = true;
+    normal_.reset();
+    if (d > 1e-7 * scale_) normal_ = to_point / (inside_ ? -d : d);
+  }
+
+  Vec2 p_;
+  bool inside_;
+  double scale_;
+  double distance_ = kInfinity;
+  std::optional<Vec2> normal_;
+  bool on_corner_ = false;
+};
+
+CutterDistance::Edge CutterDistance::edge(const Vec2& from, const Vec2& to, const std::optional<Vec2>& centre) {
+  const double length = glm::length(to - from);
+  const Vec2 way = length > 0 ? (to - from) / length : Vec2(1, 0);
+  Edge e{from, to, {}, length, way, {way.y, -way.x}};
+  if (centre) e.arc = Arc{*centre, glm::length(from - *centre), from.x + to.x >= 2 * centre->x ? 1.0 : -1.0};
+  return e;
+}
+
+CutterDistance::CutterDistance(const Profile& profile) : reach_(std::hypot(profile.max_radius(), profile.length())) {
+  Vec2 from{0, 0};
+  for (const ProfileSegment& s : profile.segments()) {
+    edges_.push_back(edge(from, s.to, s.centre));
+    from = s.to;
+  }
+  edges_.push_back(edge(from, {0, from.y}, {}));
+  convex_ = convex(edges_);
+  if (convex_) return;
+  for (const Edge& e : edges_)
+    if (e.to.y > e.from.y) add_slices(e);
+}
+
+/// One slice, or several under a hollow arc: the shorter the arc, the nearer is the slice to its hull.
+void CutterDistance::add_slices(const Edge& e) {
+  const int parts = e.arc && e.arc->side < 0 ? 8 : 1;
+  Vec2 from = e.from;
+  for (int k = 1; k <= parts; ++k) {
+    Vec2 to = e.to;
+    if (k < parts) {
+      const Vec2 onwards = glm::normalize(glm::mix(e.from, e.to, static_cast<double>(k) / parts) - e.arc->centre);
+      to = e.arc->centre + onwards * e.arc->radius;
+    }
+    slices_.push_back({edge({0, from.y}, from, {}), edge(from, to, e.arc ? std::optional(e.arc->centre) : std::nullopt),
+                       edge(to, {0, to.y}, {})});
+    from = to;
+  }
+}
+
+/// Whether the outline never turns back on its way from the axis round to the axis.
+bool CutterDistance::convex(const std::vector<Edge>& edges) {
+  double heading = 0;
+  const auto turns_on = [&](const Vec2& way) {
+    const double before = heading;
+    heading = std::atan2(way.y, way.x);
+    return heading > before - 1e-12;
+  };
+  for (const Edge& e : edges) {
+    if (!(e.length > 0)) continue;
+    if (!e.arc) {
+      if (!turns_on(e.way)) return false;
+      continue;
+    }
+    const Vec2 a = e.from - e.arc->centre, b = e.to - e.arc->centre;
+    if (e.arc->side < 0 || !turns_on({-a.y, a.x}) || !turns_on({-b.y, b.x})) return false;
+  }
+  return true;
+}
+
+bool CutterDistance::inside(double rho, double z) const {
+  for (const Edge& e : edges_) {
+    if (z < e.from.y || z >= e.to.y) continue;
+    if (!e.arc) return rho < e.from.x + (e.to.x - e.from.x) * (z - e.from.y) / (e.to.y - e.from.y);
+    const double up = z - e.arc->centre.y, r = e.arc->radius;
+    return rho < e.arc->centre.x + e.arc->side * std::sqrt(std::max(0.0, (r - up) * (r + up)));
+  }
+  return false;
+}
+
+Nearest CutterDistance::nearest(double rho, double z) const {
+  Search search({rho, z}, inside(rho, z), reach_);
+  for (const Edge& e : edges_) search.add(e);
+  return search.found();
+}
+
+Nearest CutterDistance::with_free_radius(double rho, double z, Nearest at) const {
+  if (!at.normal) return at;
+  at.free_radius = convex_ ? kInfinity : 0;
+  const Vec2 foot = Vec2(rho, z) - at.distance * *at.normal;
+  // The ball about the point itself, up to the foot, is free; one hardly larger would be of no use.
+  const double least = std::max({1.05 * at.distance, -0.25 * at.distance, 1e-3 * reach_});
+  for (double radius = 8 * reach_; at.free_radius == 0 && radius > least; radius *= 0.6) {
+    const Vec2 centre = foot + radius * *at.normal;
+    if (distance(std::abs(centre.x), centre.y) >= radius - 1e-12 * reach_) at.free_radius = radius;
+  }
+  return at;
+}
+
+Nearest CutterDistance::nearest_in_slice(std::size_t k, double rho, double z) const {
+  Search search({rho, z}, false, reach_);
+  for (const Edge& e : slices_[k]) search.add(e);
+  Nearest at = search.found();
+  if (!at.normal) return at;
+  const Edge& outside = slices_[k][1];
+  const bool hollow = outside.arc && outside.arc->side < 0;
+  if (!hollow)
+    at.free_radius = kInfinity;
+  else if (!search.on_corner() && at.normal->x > 0)
+    at.free_radius = outside.arc->radius;
+  else
+    at.free_radius = beside_hollow(outside, Vec2(rho, z) - at.distance * *at.normal, *at.normal);
+  return at;
+}
+
+/// Free radius at the foot of `normal` on a flat end, or a corner, of a slice under the hollow arc of `e`.
+double CutterDistance::beside_hollow(const Edge& e, const Vec2& foot, const Vec2& normal) const {
+  // The slice lies within the hull of its corners.
+  double behind = kInfinity;
+  for (const Vec2& corner : {e.from, e.to})
+    for (const double side : {1.0, -1.0})
+      behind = std::min(behind, glm::dot(foot - Vec2(side * corner.x, corner.y), normal));
+  if (behind > -1e-12 * reach_) return kInfinity;
+  // The slice lies outside of the arc's circle, and behind its flat end and, if the corner is its widest, within the
+  // cylinder there. Where normal = share · arc's + rest · either of theirs, any ball that touches with that share of
+  // the circle's curvature is free.
+  const bool upper = glm::length(foot - e.to) < glm::length(foot - e.from);
+  const Vec2 corner = upper ? e.to : e.from, to_centre = (e.arc->centre - corner) / e.arc->radius;
+  const auto radius_with = [&](const Vec2& other) {
+    const double area = to_centre.x * other.y - to_centre.y * other.x;
+    if (std::abs(area) < 1e-9) return 0.0;
+    const double share = (normal.x * other.y - normal.y * other.x) / area,
+                 rest = (to_centre.x * normal.y - to_centre.y * normal.x) / area;
+    return share > 0 && rest >= 0 ? e.arc->radius / share : 0.0;
+  };
+  if (normal.x < 0) return 0;
+  const bool widest = corner.x >= std::max(e.from.x, e.to.x);
+  return std::max(radius_with({0, upper ? 1 : -1}), widest ? radius_with({1, 0}) : 0.0);
+}
+
+}  // namespace riffler::reference

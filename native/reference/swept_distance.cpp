@@ -1,0 +1,95 @@
+#include "reference/swept_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace riffler::reference {
+
+namespace {
+
+/// Any unit vector square to `o`.
+Vec3 across(const Vec3& o) {
+  const Vec3 other = std::abs(o.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  return glm::normalize(glm::cross(o, other));
+}
+
+}  // namespace
+
+/// How the point moves in the tool's frame over an interval of half-width `half`.
+struct SweptDistance::Approach {
+  Vec3 velocity, radial, axis;  // at its middle; radial: unit vector from the axis to the point
+  double half, speed, acceleration;
+
+  /// The least that the distance can be, from its value in the middle alone.
+  double by_speed(double distance) const { return distance - speed * half; }
+  /// The same from its slope, and from the free ball; never better than its tangent.
+  double by_slope(const Nearest& at) const {
+    const double bend = at.free_radius - at.distance;
+    if (!at.normal || !(bend > 0)) return by_speed(at.distance);
+    const double slope = std::abs(glm::dot(at.normal->x * radial + at.normal->y * axis, velocity));
+    return at.distance - slope * half - (acceleration + speed * speed / bend) / 2 * half * half;
+  }
+};
+
+/// Outside of a cutter that is not convex: slice by slice. A bound below 0 holds if one slice alone can be met, since
+/// then the point leaves the cutter where it leaves that slice.
+double SweptDistance::by_slices(const Approach& approach, double rho, double z, double best) const {
+  double lower = std::numeric_limits<double>::infinity(), others = lower;
+  for (std::size_t k = 0; k < cutter_.slices(); ++k) {
+    const Nearest at = cutter_.nearest_in_slice(k, rho, z);
+    const double far = approach.by_speed(at.distance);
+    if (far >= std::max(best, 0.0)) {
+      others = std::min(others, far);
+      continue;
+    }
+    const double bound = std::max(far, approach.by_slope(at));
+    others = std::min(others, std::max(lower, bound));
+    lower = std::min(lower, bound);
+  }
+  return lower >= 0 || others > -lower ? lower : -std::numeric_limits<double>::infinity();
+}
+
+/// `from_start`: the point, from the tip at t = 0. Differences first: coordinates far from the origin lose nothing.
+SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double half, double& best) const {
+  const Vec3 way = motion_.to().tip - motion_.from().tip, turn = motion_.rotation(), axis = motion_.axis(t);
+  const Vec3 w = from_start - t * way;
+  const double z = glm::dot(w, axis);
+  const Vec3 radial = w - z * axis;
+  const double rho = glm::length(radial);
+  const Nearest at = cutter_.nearest(rho, z);
+  best = std::min(best, at.distance);
+
+  const Vec3 turning = glm::cross(turn, w), bend = glm::cross(turn, way), velocity = way + turning;
+  const double speed = std::max(glm::length(velocity - half * bend), glm::length(velocity + half * bend));
+  double lower = at.distance - speed * half;
+  if (lower >= best) return {t, half, lower};  // left out already
+  const Approach approach{
+      velocity, rho > 0 ? radial / rho : across(axis),
+      axis,     half,
+      speed,    2 * glm::length(bend) + glm::length(turn) * (glm::length(turning) + half * glm::length(bend))};
+  lower = std::max(lower, approach.by_slope(cutter_.with_free_radius(rho, z, at)));
+  if (cutter_.slices() > 0 && at.distance > 0) lower = std::max(lower, by_slices(approach, rho, z, best));
+  return {t, half, lower};
+}
+
+Bracket SweptDistance::bracket(const Vec3& p, double gap, double enough) const {
+  const Vec3 from_start = p - motion_.from().tip;
+  double best = std::numeric_limits<double>::infinity();
+  node(from_start, 0, 0, best);
+  node(from_start, 1, 0, best);
+  int poses = 3;
+  std::priority_queue<Node> open;
+  open.push(node(from_start, 0.5, 0.5, best));
+  for (;;) {
+    const Node least = open.top();
+    const double lower = std::min(least.lower, best);
+    if (best - lower <= gap || lower > enough || best < -enough || least.half < 1e-16) return {lower, best, poses};
+    open.pop();
+    for (const double side : {-0.5, 0.5})
+      open.push(node(from_start, least.t + side * least.half, least.half / 2, best));
+    poses += 2;
+  }
+}
+
+}  // namespace riffler::reference

@@ -1,0 +1,230 @@
+#include "reference/swept_distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "tool/cutters.hpp"
+
+namespace riffler::reference {
+namespace {
+
+using Random = std::mt19937_64;
+
+Vec3 point(Random& random, double size) {
+  std::uniform_real_distribution<double> d(-size, size);
+  const double x = d(random), y = d(random), z = d(random);
+  return {x, y, z};
+}
+
+Vec3 unit(double x, double y, double z) {
+  return glm::normalize(Vec3(x, y, z));
+}
+
+/// A whole ball of radius 3 whose centre is 3 above the tip.
+Profile ball() {
+  return Profile({{{3, 3}, Vec2(0, 3)}, {{0, 6}, Vec2(0, 3)}});
+}
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double t = std::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
+  return glm::length(p - a - t * (b - a));
+}
+
+/// Signed distance from the box |x| ≤ half.
+double distance_to_box(const Vec3& p, const Vec3& half) {
+  const Vec3 out = glm::abs(p) - half;
+  return glm::length(glm::max(out, Vec3(0))) + std::min(0.0, std::max({out.x, out.y, out.z}));
+}
+
+TEST(SweptDistance, OfATravellingBallIsThatOfACapsule) {
+  Random random(1);
+  for (const double offset : {0.0, 1e5}) {
+    const Vec3 a{offset + 1, 2 - offset, 3}, b = a + Vec3(11, -4, 2);
+    const Vec3 axis = unit(0.3, 0.2, 1);
+    const SweptDistance swept(ball(), Motion({a - 3.0 * axis, axis}, {b - 3.0 * axis, axis}));
+    for (int k = 0; k < 500; ++k) {
+      const Vec3 p = (a + b) / 2.0 + point(random, 12);
+      EXPECT_NEAR(swept(p), distance_to_segment(p, a, b) - 3, 1e-9 + 1e-15 * offset * 8) << offset;
+    }
+  }
+}
+
+TEST(SweptDistance, OfABallTurningAboutItsTipIsThatOfAnArc) {
+  Random random(2);
+  const Vec3 tip{1, 2, 3};
+  for (const double angle : {1e-6, 0.3, 2.0, 3.1}) {
+    // The centre runs round the tip in the plane y = 2, from angle −¼ on.
+    const auto axis = [](double a) { return Vec3(std::sin(a), 0, std::cos(a)); };
+    const SweptDistance swept(ball(), Motion({tip, axis(-0.25)}, {tip, axis(angle - 0.25)}));
+    for (int k = 0; k < 500; ++k) {
+      const Vec3 p = tip + point(random, 7), w = p - tip;
+      double at = std::atan2(w.x, w.z);
+      if (at < -0.25 && at + 2 * std::acos(-1.0) < angle - 0.25) at += 2 * std::acos(-1.0);
+      double expected = std::min(glm::length(w - 3.0 * axis(-0.25)), glm::length(w - 3.0 * axis(angle - 0.25)));
+      if (at >= -0.25 && at <= angle - 0.25) expected = std::min(expected, glm::length(w - 3.0 * axis(at)));
+      EXPECT_NEAR(swept(p), expected - 3, 1e-9) << angle;
+    }
+  }
+}
+
+TEST(SweptDistance, OfABallTurningAboutItsCentreIsThatOfTheBall) {
+  Random random(3);
+  const Vec3 from = unit(0.1, 0.2, 1), to = unit(1, -0.5, 0.2);
+  const SweptDistance swept(ball(), Motion({-3.0 * from, from}, {-3.0 * to, to}));
+  for (int k = 0; k < 30; ++k) {
+    const Vec3 p = point(random, 6);
+    // The tip moves on its chord, not round the centre: the ball's centre leaves the origin by the arc's rise.
+    const double rise = 3 * (1 - std::cos(Motion({{}, from}, {{}, to}).angle() / 2));
+    EXPECT_LE(swept(p), glm::length(p) - 3 + 1e-9);
+    EXPECT_GE(swept(p), glm::length(p) - 3 - rise - 1e-9);
+  }
+}
+
+TEST(SweptDistance, OfACylinderPlungingIsThatOfALongerCylinder) {
+  Random random(4);
+  const Tool tool = cutters::flat(6, 10);
+  const SweptDistance swept(tool.profile(), Motion({{0, 0, 8}, {0, 0, 1}}, {{0, 0, -2}, {0, 0, 1}}));
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 p = point(random, 14) + Vec3(0, 0, 8);
+    const double radial = glm::length(Vec2(p.x, p.y)) - 3, along = std::abs(p.z - 8) - 10;
+    const double outside = glm::length(Vec2(std::max(radial, 0.0), std::max(along, 0.0)));
+    const double whole = outside + std::min(0.0, std::max(radial, along));
+    // Inside, the depth in the swept body is more than the depth in the tool ever was.
+    if (whole > 0)
+      EXPECT_NEAR(swept(p), whole, 1e-9);
+    else
+      EXPECT_LE(std::max(radial, -5.0), swept(p) + 1e-9);
+    if (std::abs(whole) > 1e-9) {
+      EXPECT_EQ(swept(p) > 0, whole > 0);
+    }
+  }
+}
+
+TEST(SweptDistance, OfACylinderTravellingAcrossItsAxisIsThatOfASlot) {
+  Random random(5);
+  const Tool tool = cutters::flat(6, 40);
+  const SweptDistance swept(tool.profile(), Motion({{-10, 0, 0}, {0, 0, 1}}, {{10, 0, 0}, {0, 0, 1}}));
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 p = point(random, 17) + Vec3(0, 0, 20);
+    const double radial = distance_to_segment({p.x, p.y, 0}, {-10, 0, 0}, {10, 0, 0}) - 3,
+                 along = std::abs(p.z - 20) - 20;
+    const double outside = glm::length(Vec2(std::max(radial, 0.0), std::max(along, 0.0)));
+    EXPECT_NEAR(swept(p), outside + std::min(0.0, std::max(radial, along)), 1e-9);
+  }
+}
+
+/// Where samples in time would find nothing.
+TEST(SweptDistance, FindsWhatPassesInAMoment) {
+  // A disc of 0.02 mm flies 4 m: it is at each point for five millionths of the time.
+  const Tool tool = cutters::flat(6, 0.02);
+  const SweptDistance swept(tool.profile(), Motion({{0, 0, -2000}, {0, 0, 1}}, {{0, 0, 2000}, {0, 0, 1}}));
+  Random random(6);
+  for (int k = 0; k < 50; ++k) {
+    const Vec3 p = point(random, 2);
+    EXPECT_NEAR(swept(p), -0.01, 1e-9);
+  }
+  // The same turning, with its edge on the way.
+  const SweptDistance turning(tool.profile(), Motion({{0, 0, -2000}, {0, 0, 1}}, {{0, 0, 2000}, unit(1, 0, 0.3)}));
+  for (int k = 0; k < 50; ++k) EXPECT_LT(turning(point(random, 1)), -0.0099);
+}
+
+std::vector<Tool> tools() {
+  return {cutters::ball(6, 20),
+          cutters::flat(6, 0.3),
+          cutters::fillet(8, 1, 20),
+          cutters::taper(0.5, 0.2, 8, 30),
+          cutters::cone_end(1.0, 1, 0.4, 8, 30),
+          cutters::profile({{{1.5, 0}, {}}, {{3, 1.5}, Vec2(1.5, 1.5)}, {{2, 6}, {}}, {{4, 8}, {}}}, 20),
+          cutters::profile({{{1, 0}, {}}, {{1, 1}, {}}, {{4, 4}, Vec2(4, 1)}}, 12)};
+}
+
+/// No sample is below the lower bound, and some samples come near the upper one, which is a distance that was met.
+TEST(SweptDistance, BracketsWhatSamplesFind) {
+  Random random(7);
+  for (const Tool& tool : tools()) {
+    const CutterDistance cutter(tool.profile());
+    for (int k = 0; k < 60; ++k) {
+      const Vec3 a = glm::normalize(point(random, 1)), b = glm::normalize(point(random, 1));
+      const Vec3 start = point(random, 4), end = start + (k % 3 ? point(random, 4) : Vec3(0));
+      const Motion motion({start, a}, {end, b});
+      const Vec3 p = start + point(random, 8);
+      const double gap = k % 2 ? 1e-9 : 1e-3;
+      const Bracket found = SweptDistance(tool.profile(), motion).bracket(p, gap);
+      EXPECT_LE(found.upper - found.lower, gap);
+      double sampled = std::numeric_limits<double>::infinity();
+      constexpr int kSamples = 20000;
+      for (int i = 0; i <= kSamples; ++i) {
+        const double t = static_cast<double>(i) / kSamples;
+        const Vec3 w = p - motion.tip(t), o = motion.axis(t);
+        const double z = glm::dot(w, o);
+        sampled = std::min(sampled, cutter.distance(glm::length(w - z * o), z));
+      }
+      EXPECT_GE(sampled, found.lower - 1e-12);
+      EXPECT_LE(sampled, found.upper + 60.0 / kSamples + gap);
+    }
+  }
+}
+
+TEST(SweptDistance, StopsWhereEnoughIsKnown) {
+  const Tool tool = cutters::fillet(8, 1, 20);
+  const SweptDistance swept(tool.profile(), Motion({{0, 0, 0}, {0, 0, 1}}, {{9, 2, 1}, unit(1, 0.2, 0.3)}));
+  Random random(8);
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 p = point(random, 20);
+    const Bracket whole = swept.bracket(p, 1e-9), quick = swept.bracket(p, 1e-9, 0.01);
+    EXPECT_LE(quick.lower, whole.upper + 1e-12);
+    EXPECT_GE(quick.upper, whole.lower - 1e-12);
+    EXPECT_LE(quick.poses, whole.poses);
+    EXPECT_TRUE(quick.upper - quick.lower <= 1e-9 || quick.lower > 0.01 || quick.upper < -0.01);
+  }
+}
+
+TEST(SweptDistance, NeedsFewPoses) {
+  // Counted, so that a bound that became loose is seen: dense sampling would take some hundred and prove nothing.
+  Random random(9);
+  long poses = 0, queries = 0;
+  for (const Tool& tool : tools())
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 start = point(random, 4), a = glm::normalize(point(random, 1));
+      const Motion motion({start, a}, {start + point(random, 3), glm::normalize(a + point(random, 0.5))});
+      poses += SweptDistance(tool.profile(), motion).bracket(start + point(random, 8), 1e-9).poses, ++queries;
+    }
+  EXPECT_LT(poses, 120 * queries);
+}
+
+TEST(CutterDistance, OfAFlatCutterIsThatOfACylinder) {
+  const CutterDistance cutter(cutters::flat(6, 10).profile());
+  Random random(10);
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 p = point(random, 8);
+    const double rho = std::abs(p.x), z = p.z + 5;
+    // A cylinder's half-section is that of a box whose third side has no end.
+    EXPECT_NEAR(cutter.distance(rho, z), distance_to_box({rho, 0, z - 5}, {3, 100, 5}), 1e-14);
+  }
+}
+
+TEST(CutterDistance, FreeBallsStayOutOfTheCutter) {
+  Random random(11);
+  for (const Tool& tool : tools()) {
+    const CutterDistance cutter(tool.profile());
+    int found = 0;
+    for (int k = 0; k < 300; ++k) {
+      const Vec3 p = point(random, 10);
+      const double rho = std::abs(p.x), z = p.z + 6;
+      const Nearest at = cutter.with_free_radius(rho, z, cutter.nearest(rho, z));
+      const double radius = std::min(at.free_radius, 1e3);
+      if (!(radius > 0)) continue;
+      ++found;
+      const Vec2 foot = Vec2(rho, z) - at.distance * *at.normal;
+      EXPECT_NEAR(cutter.distance(foot.x, foot.y), 0, 1e-12);
+      const Vec2 centre = foot + radius * *at.normal;
+      EXPECT_GE(cutter.distance(std::abs(centre.x), centre.y), radius - 1e-10);
+    }
+    EXPECT_GT(found, 200);
+  }
+}
+
+}  // namespace
+}  // namespace riffler::reference
