@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender bench bench-docs lint format sanitize docs package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender stress scenes bench bench-docs lint format sanitize docs package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -40,6 +40,11 @@ test-blender:  ## Run the Blender tests only
 	@$(ready) test
 	@$(python) tools/test.py blender
 
+stress:  ## Carve MOVES random moves per cutter from the degenerate limits, from SEED, and check each
+	@$(ready) cpp-tests
+	$(python) tools/preset.py release riffler_stress
+	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
+
 bench:  ## Measure run time and error, of rivals too: out/bench (JOBS="b5x force" for some)
 	@$(ready) bench
 	$(python) tools/preset.py bench
@@ -59,7 +64,8 @@ lint:  ## Check style, layers, and that every header stands alone
 	$(python) -m ruff format --check .
 	find native -name '*.[ch]pp' | xargs .venv/bin/clang-format --dry-run -Werror
 	$(python) tools/check_layers.py
-	$(python) tools/preset.py release riffler_core_verify_interface_header_sets
+	$(python) tools/preset.py release riffler_core_verify_interface_header_sets \
+	  riffler_reference_verify_interface_header_sets
 
 format:  ## Bring all sources into style
 	@$(ready)

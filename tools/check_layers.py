@@ -1,5 +1,5 @@
-"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core never touches Python nor
-what it is judged by, and addon/core never touches Blender. Prints every line that breaks a rule and exits 1."""
+"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core touches neither Python
+nor what it is judged by, and addon/core never touches Blender. Prints every line that breaks a rule and exits 1."""
 
 from __future__ import annotations
 

@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "reference/swept_distance.hpp"
+#include "stress/checks.hpp"
+
+namespace riffler::stress {
+
+namespace {
+
+constexpr double kGrazing = 0.44721359549995793;  // 1/√5: below it an end is measured in space, not along the ray
+
+struct RayName {
+  std::size_t grid;
+  int i, j;
+};
+
+bool inside(std::span<const Span> ray, double s) {
+  return std::any_of(ray.begin(), ray.end(), [s](const Span& x) { return s >= x.near && s <= x.far; });
+}
+
+bool is_end(std::span<const Span> ray, double s) {
+  return std::any_of(ray.begin(), ray.end(), [s](const Span& x) { return s == x.near || s == x.far; });
+}
+
+/// Up to `count` rays that differ, chosen evenly, and a few that may not.
+std::vector<RayName> choose_rays(Random& random, const Volume& before, const Volume& after, int count) {
+  std::vector<RayName> changed, chosen;
+  for (std::size_t g = 0; g < after.grids().size(); ++g) {
+    const Grid &a = before.grids()[g], &b = after.grids()[g];
+    for (int i = 0; i < b.nu(); ++i)
+      for (int j = 0; j < b.nv(); ++j)
+        if (!std::ranges::equal(a.ray(i, j), b.ray(i, j))) changed.push_back({g, i, j});
+  }
+  for (int k = 0; k < count && !changed.empty(); ++k) {
+    const std::size_t at = random.bits() % changed.size();
+    chosen.push_back(changed[at]);
+    changed[at] = changed.back();
+    changed.pop_back();
+  }
+  for (int k = 0; k < 1 + count / 4; ++k) {
+    const std::size_t g = random.bits() % after.grids().size();
+    const Grid& grid = after.grids()[g];
+    const int i = random.below(grid.nu());
+    chosen.push_back({g, i, random.below(grid.nv())});
+  }
+  return chosen;
+}
+
+/// Compares one ray.
+class RayComparison {
+ public:
+  RayComparison(const reference::SweptDistance& swept, const Allowed& allowed, const Grid& before, const Grid& after,
+                const RayName& ray, Comparison& out)
+      : swept_(swept),
+        allowed_(allowed.error),
+        along_rays_(allowed.along_rays),
+        grid_(after),
+        before_(before.ray(ray.i, ray.j)),
+        after_(after.ray(ray.i, ray.j)),
+        ray_(ray),
+        out_(out) {}
+
+  void run(Random& random) {
+    for (const Span& s : after_)
+      for (const bool near : {true, false}) {
+        const double end = near ? s.near : s.far;
+        if (!is_end(before_, end)) compare_end(end, near);
+      }
+    for (const double s : places(random)) compare_point(s);
+  }
+
+ private:
+  /// Signed distance, as closely as the comparison with `allowed_` asks.
+  double distance(double s) const {
+    const Vec3 p = to_world(grid_.axis(), {grid_.u(ray_.i), grid_.v(ray_.j), s});
+    return swept_.bracket(p, allowed_ / 50, 4 * allowed_).upper;
+  }
+
+  /// Middles of spans and gaps, the ends' neighbourhood, and anywhere.
+  std::vector<double> places(Random& random) const {
+    const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
+    std::vector<double> out;
+    double last = lower;
+    for (const Span& s : after_) {
+      out.push_back((last + s.near) / 2);
+      out.push_back((s.near + s.far) / 2);
+      for (const double d : {-3.0, 3.0}) out.push_back(s.near + d * allowed_), out.push_back(s.far + d * allowed_);
+      last = s.far;
+    }
+    out.push_back((last + upper) / 2);
+    for (int k = 0; k < 3; ++k) out.push_back(random.uniform(lower, upper));
+    std::erase_if(out, [&](double s) { return !(s > lower && s < upper); });
+    return out;
+  }
+
+  void compare_end(double end, bool near) {
+    ++out_.ends;
+    const double off = distance(end);
+    double error = std::abs(off);
+    if (along_rays_ && error <= allowed_) error = along(end, near, off);
+    out_.worst = std::max(out_.worst, error / allowed_);
+    if (error > allowed_) fail("the end", end, error);
+  }
+
+  /// Distance from an end, which is `off` mm outside of the swept volume, to the surface along the ray: into the
+  /// material if too little was cut, else away from it. Where the ray grazes, in space.
+  double along(double end, bool near, double off) const {
+    const double least = std::abs(off), step = allowed_ / 4;
+    const double slope = std::abs(distance(end + step) - distance(end - step)) / (2 * step);
+    if (slope < kGrazing) return least;
+    if (least < allowed_ / 20) return least / slope;
+    const double onwards = (off <= 0) == near ? 1 : -1;
+    for (double reach = least; reach < allowed_; reach *= 1.25)
+      if ((distance(end + onwards * reach) <= 0) != (off <= 0)) return reach;
+    return (distance(end + onwards * allowed_) <= 0) != (off <= 0) ? allowed_ : 1.25 * allowed_;
+  }
+
+  void compare_point(double s) {
+    const double off = distance(s);
+    ++out_.points;
+    if (std::abs(off) <= allowed_) return;
+    const bool solid = inside(after_, s);
+    if (off < 0 && solid) fail("lost to the cut, the point", s, off);
+    if (off > 0 && solid != inside(before_, s)) fail("cut too much, the point", s, off);
+  }
+
+  void fail(const char* what, double s, double off) {
+    if (!out_.problem.empty()) return;
+    std::ostringstream text;
+    text.precision(17);
+    text << what << " " << s << " of ray " << ray_.i << ", " << ray_.j << " of direction "
+         << "xyz"[static_cast<int>(grid_.axis())] << " is " << off << " mm from the swept surface; allowed are "
+         << allowed_;
+    out_.problem = text.str();
+  }
+
+  const reference::SweptDistance& swept_;
+  double allowed_;
+  bool along_rays_;
+  const Grid& grid_;
+  std::span<const Span> before_, after_;
+  RayName ray_;
+  Comparison& out_;
+};
+
+}  // namespace
+
+Comparison compare_with_reference(Random& random, const Stage& stage, const Move& move, const Volume& before,
+                                  const Volume& after, int rays) {
+  Comparison out;
+  const reference::SweptDistance swept(stage.tool.profile(), Motion(move.from, move.to));
+  const Allowed allowed = allowed_error(stage, move);
+  for (const RayName& ray : choose_rays(random, before, after, rays))
+    RayComparison(swept, allowed, before.grids()[ray.grid], after.grids()[ray.grid], ray, out).run(random);
+  return out;
+}
+
+}  // namespace riffler::stress

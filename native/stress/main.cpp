@@ -1,0 +1,160 @@
+// Carves random moves from the degenerate limits with every cutter and checks each of them; see usage().
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "stress/run.hpp"
+
+using namespace riffler::stress;
+
+namespace {
+
+struct Arguments {
+  Options options;
+  long moves = 2000;
+  std::optional<std::string> cutter;
+  std::optional<std::uint64_t> session;
+  bool table = false;
+};
+
+void usage() {
+  std::puts(
+      "riffler_stress [options]\n"
+      "  --moves N          moves per cutter (2000)\n"
+      "  --seed N           (1)\n"
+      "  --cutter NAME      one cutter only\n"
+      "  --session N        one session of it only, with every move compared: what a failure's reproducer says\n"
+      "  --compare-every N  moves from one comparison with the reference to the next (8)\n"
+      "  --table            errors by cutter and kind of degeneracy\n"
+      "Cutters:");
+  for (const char* cutter : cutter_names()) std::printf(" %s", cutter);
+  std::puts("");
+}
+
+std::uint64_t whole_number(const char* name, const char* text) {
+  char* end = nullptr;
+  const unsigned long long value = text ? std::strtoull(text, &end, 10) : 0;
+  if (!text || end == text || *end != '\0') throw std::invalid_argument(std::string(name) + " needs a whole number");
+  return value;
+}
+
+Arguments parse(int argc, char** argv) {
+  Arguments out;
+  for (int k = 1; k < argc; ++k) {
+    const std::string key = argv[k];
+    const char* value = k + 1 < argc ? argv[k + 1] : nullptr;
+    if (key == "--table") {
+      out.table = true;
+      continue;
+    }
+    if (key == "--moves")
+      out.moves = static_cast<long>(whole_number("--moves", value));
+    else if (key == "--seed")
+      out.options.seed = whole_number("--seed", value);
+    else if (key == "--session")
+      out.session = whole_number("--session", value);
+    else if (key == "--compare-every")
+      out.options.compare_every = static_cast<int>(whole_number("--compare-every", value));
+    else if (key == "--cutter" && value)
+      out.cutter = value;
+    else
+      throw std::invalid_argument("unknown or incomplete option " + key);
+    ++k;
+  }
+  if (out.session && !out.cutter) throw std::invalid_argument("--session needs --cutter");
+  bool known = !out.cutter;
+  for (const char* name : cutter_names()) known = known || *out.cutter == name;
+  if (!known) throw std::invalid_argument("there is no cutter " + *out.cutter);
+  return out;
+}
+
+void print_row(const char* cutter, const char* what, const Tally& t) {
+  std::printf("%-15s %-16s %9ld %9ld %10ld %10ld %8.3f %8ld\n", cutter, what, t.moves, t.compared, t.ends, t.points,
+              t.worst, t.failures);
+}
+
+void print_heading() {
+  std::printf("%-15s %-16s %9s %9s %10s %10s %8s %8s\n", "cutter", "kind", "moves", "compared", "ends", "points",
+              "worst", "failed");
+}
+
+void print_failures(const Results& results) {
+  for (const Failure& f : results.failures)
+    std::printf("FAILED: %s, move %d of session %llu: %s\n  again: %s\n", f.cutter.c_str(), f.move,
+                static_cast<unsigned long long>(f.session), f.text.c_str(), reproducer(f).c_str());
+}
+
+/// Tells how far a cutter has come, on the standard error, every other second.
+class Progress {
+ public:
+  Progress(std::string cutter, long moves) : cutter_(std::move(cutter)), moves_(moves) {}
+  bool operator()(const Results& results) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - told_ < std::chrono::seconds(2)) return true;
+    told_ = now;
+    const Tally t = results.total();
+    const double rate = static_cast<double>(t.moves) / std::chrono::duration<double>(now - start_).count();
+    std::fprintf(stderr, "%s: %ld of %ld moves, %.0f/s, %ld failed\n", cutter_.c_str(), t.moves, moves_, rate,
+                 t.failures);
+    return true;
+  }
+
+ private:
+  std::string cutter_;
+  long moves_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), told_ = start_;
+};
+
+int run_one_session(const Arguments& arguments) {
+  Options options = arguments.options;
+  options.compare_every = 1, options.threads_every = 1;
+  Results results;
+  run_session(options, *arguments.cutter, *arguments.session, results);
+  print_failures(results);
+  const Tally t = results.total();
+  std::printf("%ld moves, %ld compared, worst %.3f of what is allowed, %ld failed\n", t.moves, t.compared, t.worst,
+              t.failures);
+  return t.failures > 0;
+}
+
+int run_all(const Arguments& arguments) {
+  Results all;
+  std::printf("seed %llu; worst: error / allowed error\n", static_cast<unsigned long long>(arguments.options.seed));
+  print_heading();
+  for (const char* cutter : cutter_names()) {
+    if (arguments.cutter && *arguments.cutter != cutter) continue;
+    const Results results = run(arguments.options, cutter, arguments.moves, Progress(cutter, arguments.moves));
+    if (arguments.table)
+      for (std::size_t k = 0; k < results.kinds.size(); ++k)
+        print_row(cutter, name(static_cast<Kind>(k)), results.kinds[k]);
+    print_row(cutter, "all", results.total());
+    print_failures(results);
+    std::fflush(stdout);
+    for (std::size_t k = 0; k < all.kinds.size(); ++k) all.kinds[k] += results.kinds[k];
+    for (std::size_t k = 0; k < all.settings.size(); ++k) all.settings[k] += results.settings[k];
+    all.thread_checks += results.thread_checks;
+  }
+  for (std::size_t k = 0; k < all.kinds.size(); ++k) print_row("all", name(static_cast<Kind>(k)), all.kinds[k]);
+  for (std::size_t k = 0; k < all.settings.size(); ++k)
+    print_row("all", name(static_cast<Setting>(k)), all.settings[k]);
+  print_row("all", "all", all.total());
+  std::printf("%ld sessions carved again with 1 and with 4 threads\n", all.thread_checks);
+  return all.total().failures > 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc > 1 && std::strcmp(argv[1], "--help") == 0) return usage(), 0;
+    const Arguments arguments = parse(argc, argv);
+    return arguments.session ? run_one_session(arguments) : run_all(arguments);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "riffler_stress: %s\n", e.what());
+    return 2;
+  }
+}
