@@ -45,6 +45,12 @@ stress:  ## Carve MOVES random moves per cutter from the degenerate limits, from
 	$(python) tools/preset.py release riffler_stress
 	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
 
+scenes:  ## Write the hashes of the replayed journals anew: native/tests/scenes/hashes.txt
+	@$(ready) cpp-tests
+	$(python) tools/preset.py release riffler_scene_hashes
+	build/release/native/tests/riffler_scene_hashes native/tests/scenes > build/hashes.txt
+	mv build/hashes.txt native/tests/scenes/hashes.txt
+
 bench:  ## Measure run time and error, of rivals too: out/bench (JOBS="b5x force" for some)
 	@$(ready) bench
 	$(python) tools/preset.py bench

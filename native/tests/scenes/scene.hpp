@@ -1,0 +1,78 @@
+// Journals of this folder, replayed, and what comes out as one number.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <iomanip>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "dexel/file.hpp"
+#include "session/journal_file.hpp"
+#include "sweep/carve.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler::scenes {
+
+/// A named cutter from its JSON text, which has no other parts here.
+inline Tool read_tool(const std::string& json) {
+  std::map<std::string, std::string> values;
+  const std::regex entry(R"re("(\w+)":\s*"?([^",}]+)"?)re");
+  for (std::sregex_iterator it(json.begin(), json.end(), entry), end; it != end; ++it) values[(*it)[1]] = (*it)[2];
+  const auto get = [&](const char* key) { return std::stod(values.at(key)); };
+  const std::string kind = values.at("kind");
+  if (kind == "ball") return cutters::ball(get("diameter"), get("length"));
+  if (kind == "flat") return cutters::flat(get("diameter"), get("length"));
+  if (kind == "fillet") return cutters::fillet(get("diameter"), get("corner_radius"), get("length"));
+  if (kind == "taper")
+    return cutters::taper(get("tip_radius"), get("half_angle"), get("diameter"), get("length"),
+                          values.at("flat_tip") == "true");
+  if (kind == "cone_end")
+    return cutters::cone_end(get("tip_half_angle"), get("tip_height"), get("half_angle"), get("diameter"),
+                             get("length"));
+  throw std::invalid_argument("scenes have no cutter '" + kind + "'");
+}
+
+inline Volume replay(const std::filesystem::path& path) {
+  const Journal journal = read_journal(path);
+  const JournalStock& stock = journal.stock().value();
+  Volume volume = stock.snapshot.empty() ? Volume::block({stock.box, stock.pitch, stock.directions})
+                                         : load(path.parent_path() / stock.snapshot);
+  for (const JournalStroke& stroke : journal.strokes()) {
+    CarveOptions options;
+    options.tolerance = stroke.tolerance;
+    carve(volume, read_tool(journal.tools().at(stroke.tool)), stroke.poses, options);
+  }
+  return volume;
+}
+
+/// FNV-1a (Fowler, Noll and Vo) over the spans of all rays, tile by tile, and where each ray's begin.
+inline std::uint64_t hash(const Volume& volume) {
+  std::uint64_t h = 0xCBF29CE484222325;
+  const auto add = [&](const void* data, std::size_t size) {
+    for (std::size_t k = 0; k < size; ++k) h = (h ^ static_cast<const unsigned char*>(data)[k]) * 0x100000001B3;
+  };
+  for (const Grid& grid : volume.grids())
+    for (std::size_t t = 0; t < grid.tile_count(); ++t) {
+      const Tile& tile = grid.tile(t);
+      add(tile.offset.data(), sizeof tile.offset);
+      for (const Span& s : tile.spans) add(&s.near, sizeof s.near), add(&s.far, sizeof s.far);
+    }
+  return h;
+}
+
+/// One line of hashes.txt: name, hash, spans, volume.
+inline std::string describe(const std::string& name, const Volume& volume) {
+  std::size_t spans = 0;
+  for (const Grid& grid : volume.grids()) spans += grid.span_count();
+  std::ostringstream out;
+  out << name << " " << std::hex << std::setw(16) << std::setfill('0') << hash(volume) << std::dec << " " << spans
+      << " " << std::setprecision(12) << volume.volume();
+  return out.str();
+}
+
+}  // namespace riffler::scenes
