@@ -101,7 +101,7 @@ class RayComparison {
     double error = std::abs(off);
     if (along_rays_ && error <= allowed_) error = along(end, near, off);
     out_.worst = std::max(out_.worst, error / allowed_);
-    if (error > allowed_) fail("the end", end, error);
+    if (error > allowed_) fail(off < 0 ? "too little cut, the end" : "cut too deep, the end", end, error);
   }
 
   /// Distance from an end, which is `off` mm outside of the swept volume, to the surface along the ray: into the
