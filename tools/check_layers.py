@@ -10,8 +10,14 @@ from pathlib import Path
 from shell import ROOT, StepError, main
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
-# Folders beside the topics, and all that they may include. The reference must not share code with what it judges.
-BESIDE = {"reference": ["geom", "tool"]}
+# Folders beside the topics, and which topics and other such folders they may include. The reference must not share code
+# with what it judges; `None` is every topic.
+BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
+    "reference": (["geom", "tool"], []),
+    "bench": (None, ["reference"]),
+    "stress": (None, ["reference"]),
+    "bindings": (None, ["bench"]),
+}
 IMPORTS_BLENDER = re.compile(r"^\s*(?:import|from)\s+(?:bpy|bmesh|gpu|mathutils|blf|bl_\w+)\b")
 
 
@@ -52,14 +58,16 @@ def core_problems() -> list[str]:
 
 
 def beside_problems() -> list[str]:
+    order = topics()
     problems = []
-    for judge, allowed in BESIDE.items():
-        for place, quote, name in includes(ROOT / "native" / judge):
-            if quote == '"' and name.split("/")[0] not in [judge, *allowed]:
-                problems.append(f"{place}: {judge} includes {name}; it may use {', '.join(allowed)} only")
-        for place, quote, name in includes(ROOT / "native" / "bindings"):
-            if quote == '"' and name.split("/")[0] == judge:
-                problems.append(f"{place}: the bindings include {name}")
+    for name, (above, beside) in BESIDE.items():
+        allowed = [name, *(order if above is None else above), *beside]
+        for place, quote, header in includes(ROOT / "native" / name):
+            folder = header.split("/")[0]
+            if quote == '"' and "/" in header and folder not in allowed:
+                problems.append(
+                    f"{place}: {name} includes {header}; of native/ it may use {', '.join(allowed[1:])} only"
+                )
     return problems
 
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <random>
 
-#include "bench/dense_path.hpp"
 #include "geom/parallel.hpp"
+#include "reference/swept_path.hpp"
 
 namespace riffler::bench {
 
 namespace {
 
-using reference::DensePath;
+using reference::SweptPath;
 
 /// Below, a ray grazes: moving it sideways moves its end more than twice as far. Sine of the angle to the surface,
 /// 1/√5.
@@ -48,7 +48,7 @@ std::vector<Ray> chosen(const Grid& grid, int count, std::mt19937_64& random) {
 
 class Comparison {
  public:
-  Comparison(const Ray& ray, const DensePath& path, double tolerance)
+  Comparison(const Ray& ray, const SweptPath& path, double tolerance)
       : ray_(ray), path_(path), tolerance_(tolerance), reach_(8 * tolerance) {}
 
   SweepErrors run() {
@@ -76,13 +76,13 @@ class Comparison {
     bool solid = false;
     for (const Span& span : ray_.grid->ray(ray_.i, ray_.j)) solid = solid || (s >= span.near && s <= span.far);
     const Vec3 p = on_ray(s);
-    const DensePath::Near near = path_.near(p, reach_);
+    const SweptPath::Near near = path_.near(p, reach_);
     ++out_.points;
     out_.wrong += solid ? near.deeper(p, tolerance_) : near.farther(p, tolerance_);
   }
 
   /// Distance from p, along ±d, to where inside and outside meet; `reach` if that is farther.
-  double crossing(const DensePath::Near& near, const Vec3& p, const Vec3& d, double reach) const {
+  double crossing(const SweptPath::Near& near, const Vec3& p, const Vec3& d, double reach) const {
     const double fine = std::max(1e-9, 1e-5 * tolerance_);
     for (double e = reach / 4096; e <= reach; e *= 2) {
       const bool low = near.inside(p - e * d);
@@ -99,7 +99,7 @@ class Comparison {
 
   EndError end(double s) const {
     const Vec3 p = on_ray(s), d = world({0, 0, 1});
-    const DensePath::Near near = path_.near(p, 4 * reach_);
+    const SweptPath::Near near = path_.near(p, 4 * reach_);
     const auto slope = [&](const Vec3& direction) {
       const double step = std::min(1e-5, 0.01 * tolerance_);
       return (near.distance(p + step * direction) - near.distance(p - step * direction)) / (2 * step);
@@ -117,14 +117,14 @@ class Comparison {
   }
 
   /// Whether some ray one tolerance beside has no exact end within two tolerances.
-  bool moves_with_the_ray(const DensePath::Near& near, const Vec3& p, const Vec3& d) const {
+  bool moves_with_the_ray(const SweptPath::Near& near, const Vec3& p, const Vec3& d) const {
     for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}})
       if (crossing(near, p + tolerance_ * world(side), d, reach_) > 2 * tolerance_) return true;
     return false;
   }
 
   const Ray ray_;
-  const DensePath& path_;
+  const SweptPath& path_;
   const double tolerance_, reach_;
   SweepErrors out_;
 };
@@ -139,7 +139,7 @@ SweepErrors sweep_errors(const Volume& volume, const Tool& tool, std::span<const
     const std::vector<Ray> some = chosen(grid, rays, random);
     sample.insert(sample.end(), some.begin(), some.end());
   }
-  const DensePath path(tool.profile(), poses);
+  const SweptPath path(tool.profile(), poses);
   std::vector<SweepErrors> parts(sample.size());
   parallel_for(sample.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) parts[k] = Comparison(sample[k], path, tolerance).run();

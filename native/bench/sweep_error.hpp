@@ -1,4 +1,4 @@
-// How far the ends of carved rays are from the exact swept surface, by the dense reference.
+// How far the ends of carved rays are from the exact swept surface, by the independent reference.
 #pragma once
 
 #include <cstdint>

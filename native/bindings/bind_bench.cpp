@@ -52,8 +52,8 @@ void bind_bench(py::module_& parent) {
   m.def(
       "sweep_errors", &sweep_errors, py::arg("volume"), py::arg("tool"), py::arg("poses"), py::arg("tolerance"),
       py::arg("rays"), py::arg("seed") = 1,
-      R"(Compares random rays of a carved block with the dense reference: a dict of ``error`` (n,), mm along the ray or,
-where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many of them are ``wrong``.)");
+      R"(Compares random rays of a carved block with the independent reference: a dict of ``error`` (n,), mm along the ray
+or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many of them are ``wrong``.)");
   py::class_<bench::CapsuleLoop>(m, "CapsuleLoop", "The yardstick: B200 with bare capsules on a plain height map.")
       .def(py::init<double>(), py::arg("pitch"))
       .def("reset", &bench::CapsuleLoop::reset)

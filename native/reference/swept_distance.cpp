@@ -34,10 +34,10 @@ struct SweptDistance::Approach {
 
 /// Outside of a cutter that is not convex: slice by slice. A bound below 0 holds if one slice alone can be met, since
 /// then the point leaves the cutter where it leaves that slice.
-double SweptDistance::by_slices(const Approach& approach, double rho, double z, double best) const {
+double SweptDistance::by_slices(const Approach& approach, const Place& place, double best) const {
   double lower = std::numeric_limits<double>::infinity(), others = lower;
-  for (std::size_t k = 0; k < cutter_.slices(); ++k) {
-    const Nearest at = cutter_.nearest_in_slice(k, rho, z);
+  for (std::size_t k = 0; k < cutter_->slices(); ++k) {
+    const Nearest at = cutter_->nearest_in_slice(k, place.rho, place.z);
     const double far = approach.by_speed(at.distance);
     if (far >= std::max(best, 0.0)) {
       others = std::min(others, far);
@@ -51,45 +51,60 @@ double SweptDistance::by_slices(const Approach& approach, double rho, double z, 
 }
 
 /// `from_start`: the point, from the tip at t = 0. Differences first: coordinates far from the origin lose nothing.
-SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double half, double& best) const {
-  const Vec3 way = motion_.to().tip - motion_.from().tip, turn = motion_.rotation(), axis = motion_.axis(t);
-  const Vec3 w = from_start - t * way;
+SweptDistance::Place SweptDistance::place(const Vec3& from_start, double t) const {
+  const Vec3 w = from_start - t * (motion_.to().tip - motion_.from().tip), axis = motion_.axis(t);
   const double z = glm::dot(w, axis);
   const Vec3 radial = w - z * axis;
-  const double rho = glm::length(radial);
-  const Nearest at = cutter_.nearest(rho, z);
+  return {w, axis, radial, glm::length(radial), z};
+}
+
+/// A bound above `above` is no better than another one above it.
+SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double half, double above,
+                                        double& best) const {
+  const Place here = place(from_start, t);
+  const Nearest at = cutter_->nearest(here.rho, here.z);
   best = std::min(best, at.distance);
 
-  const Vec3 turning = glm::cross(turn, w), bend = glm::cross(turn, way), velocity = way + turning;
+  const Vec3 way = motion_.to().tip - motion_.from().tip, turn = motion_.rotation();
+  const Vec3 turning = glm::cross(turn, here.from_tip), bend = glm::cross(turn, way), velocity = way + turning;
   const double speed = std::max(glm::length(velocity - half * bend), glm::length(velocity + half * bend));
   double lower = at.distance - speed * half;
-  if (lower >= best) return {t, half, lower};  // left out already
+  if (lower >= best || lower > above) return {t, half, lower};  // left out already
   const Approach approach{
-      velocity, rho > 0 ? radial / rho : across(axis),
-      axis,     half,
-      speed,    2 * glm::length(bend) + glm::length(turn) * (glm::length(turning) + half * glm::length(bend))};
-  lower = std::max(lower, approach.by_slope(cutter_.with_free_radius(rho, z, at)));
-  if (cutter_.slices() > 0 && at.distance > 0) lower = std::max(lower, by_slices(approach, rho, z, best));
+      velocity,  here.rho > 0 ? here.radial / here.rho : across(here.axis),
+      here.axis, half,
+      speed,     2 * glm::length(bend) + glm::length(turn) * (glm::length(turning) + half * glm::length(bend))};
+  lower = std::max(lower, approach.by_slope(cutter_->with_free_radius(here.rho, here.z, at)));
+  if (cutter_->slices() > 0 && at.distance > 0) lower = std::max(lower, by_slices(approach, here, best));
   return {t, half, lower};
 }
 
-Bracket SweptDistance::bracket(const Vec3& p, double gap, double enough) const {
+Bracket SweptDistance::bracket(const Vec3& p, double gap, double below, double above) const {
   const Vec3 from_start = p - motion_.from().tip;
   double best = std::numeric_limits<double>::infinity();
-  node(from_start, 0, 0, best);
-  node(from_start, 1, 0, best);
+  node(from_start, 0, 0, above, best);
+  node(from_start, 1, 0, above, best);
   int poses = 3;
   std::priority_queue<Node> open;
-  open.push(node(from_start, 0.5, 0.5, best));
+  open.push(node(from_start, 0.5, 0.5, above, best));
   for (;;) {
     const Node least = open.top();
     const double lower = std::min(least.lower, best);
-    if (best - lower <= gap || lower > enough || best < -enough || least.half < 1e-16) return {lower, best, poses};
+    if (best - lower <= gap || lower > above || best < below || least.half < 1e-16) return {lower, best, poses};
     open.pop();
     for (const double side : {-0.5, 0.5})
-      open.push(node(from_start, least.t + side * least.half, least.half / 2, best));
+      open.push(node(from_start, least.t + side * least.half, least.half / 2, above, best));
     poses += 2;
   }
+}
+
+/// No point of the cutter moves faster than its tip does and its farthest point turns; seen from near by, turning
+/// counts for less.
+double SweptDistance::lower_bound(const Vec3& p) const {
+  const Place middle = place(p - motion_.from().tip, 0.5);
+  const double way = glm::length(motion_.to().tip - motion_.from().tip);
+  const double arm = std::min(cutter_->reach(), glm::length(middle.from_tip) + way / 2);
+  return cutter_->distance(middle.rho, middle.z) - (way + motion_.angle() * arm) / 2;
 }
 
 }  // namespace riffler::reference

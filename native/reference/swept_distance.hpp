@@ -4,6 +4,8 @@
 #pragma once
 
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "geom/pose.hpp"
 #include "reference/cutter_distance.hpp"
@@ -26,26 +28,41 @@ struct Bracket {
 /// cutter's from below. Unlike samples, however dense, this cannot pass over a minimum.
 class SweptDistance {
  public:
-  SweptDistance(const Profile& profile, const Motion& motion) : cutter_(profile), motion_(motion) {}
+  SweptDistance(const Profile& profile, const Motion& motion)
+      : SweptDistance(std::make_shared<const CutterDistance>(profile), motion) {}
+  /// Many moves of one cutter share it.
+  SweptDistance(std::shared_ptr<const CutterDistance> cutter, const Motion& motion)
+      : cutter_(std::move(cutter)), motion_(motion) {}
 
-  /// Until the bracket is no wider than `gap`, or all of it lies below −`enough` or above `enough`. (Not narrower than
+  /// Until the bracket is no wider than `gap`, or all of it lies below `below` or above `above`. (Not narrower than
   /// rounding, some 1e-15 of the sizes.)
-  Bracket bracket(const Vec3& p, double gap, double enough = std::numeric_limits<double>::infinity()) const;
+  Bracket bracket(const Vec3& p, double gap, double below, double above) const;
+  Bracket bracket(const Vec3& p, double gap, double enough = std::numeric_limits<double>::infinity()) const {
+    return bracket(p, gap, -enough, enough);
+  }
 
   /// Positive outside of the swept volume, and then the distance from it; negative inside: no deeper than the point's
   /// depth in the swept volume, and as deep as it ever was in the tool. Within 1e-9 mm.
   double operator()(const Vec3& p) const { return bracket(p, 1e-9).upper; }
 
+  /// No more than the least distance, from one pose: for telling what is far.
+  double lower_bound(const Vec3& p) const;
+
  private:
+  struct Place {  // of the point in the tool's frame
+    Vec3 from_tip, axis, radial;
+    double rho, z;
+  };
   struct Node {
     double t, half, lower;
     bool operator<(const Node& o) const { return lower > o.lower; }  // the least lower bound is looked at first
   };
   struct Approach;
-  double by_slices(const Approach& approach, double rho, double z, double best) const;
-  Node node(const Vec3& from_start, double t, double half, double& best) const;
+  Place place(const Vec3& from_start, double t) const;
+  double by_slices(const Approach& approach, const Place& place, double best) const;
+  Node node(const Vec3& from_start, double t, double half, double above, double& best) const;
 
-  CutterDistance cutter_;
+  std::shared_ptr<const CutterDistance> cutter_;
   Motion motion_;
 };
 

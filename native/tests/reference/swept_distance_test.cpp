@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tool/cutters.hpp"
@@ -202,6 +203,49 @@ TEST(CutterDistance, OfAFlatCutterIsThatOfACylinder) {
     const double rho = std::abs(p.x), z = p.z + 5;
     // A cylinder's half-section is that of a box whose third side has no end.
     EXPECT_NEAR(cutter.distance(rho, z), distance_to_box({rho, 0, z - 5}, {3, 100, 5}), 1e-14);
+  }
+}
+
+/// The outline as a polygon of many corners.
+std::vector<Vec2> outline(const Profile& profile, int parts) {
+  std::vector<Vec2> corners{{0, 0}};
+  for (const ProfileSegment& s : profile.segments()) {
+    const Vec2 from = corners.back();
+    for (int k = 1; k <= parts; ++k) {
+      const double t = static_cast<double>(k) / parts;
+      Vec2 corner = glm::mix(from, s.to, t);
+      if (s.centre) {
+        const Vec2 a = from - *s.centre, b = s.to - *s.centre;
+        const double turn = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b)), c = std::cos(turn * t),
+                     d = std::sin(turn * t);
+        corner = *s.centre + Vec2(c * a.x - d * a.y, d * a.x + c * a.y);
+      }
+      corners.push_back(corner);
+    }
+  }
+  const Vec2 top = corners.back();
+  for (int k = 1; k <= parts; ++k) corners.push_back({top.x * (parts - k) / parts, top.y});
+  return corners;
+}
+
+TEST(CutterDistance, OfEveryCutterIsThatOfItsOutline) {
+  Random random(12);
+  for (const Tool& tool : tools()) {
+    const CutterDistance cutter(tool.profile());
+    const std::vector<Vec2> corners = outline(tool.profile(), 4000);
+    const double step = tool.profile().length() / 4000;  // the longest segment's, about
+    for (int k = 0; k < 60; ++k) {
+      const Vec3 p = point(random, 10);
+      const Vec2 q{std::abs(p.x), p.z + 6};
+      double nearest = glm::length(q);
+      bool inside = false;
+      for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+        const Vec2 &a = corners[i], &b = corners[i + 1];
+        nearest = std::min(nearest, glm::length(q - b));
+        if ((a.y > q.y) != (b.y > q.y) && q.x < a.x + (b.x - a.x) * (q.y - a.y) / (b.y - a.y)) inside = !inside;
+      }
+      EXPECT_NEAR(cutter.distance(q.x, q.y), inside ? -nearest : nearest, step);
+    }
   }
 }
 
