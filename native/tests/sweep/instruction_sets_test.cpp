@@ -1,0 +1,74 @@
+// The kernels give the same bits on every instruction set that this machine has, whole and in part of a group of lanes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sweep/carve.hpp"
+#include "sweep/kernels.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler {
+namespace {
+
+struct Result {
+  Volume volume;
+  Cut cut;
+};
+
+std::vector<Pose> winding_path() {
+  std::vector<Pose> poses;
+  for (int k = 0; k <= 60; ++k) {
+    const Vec3 axis{0.5 * std::sin(0.2 * k), 0.4 * std::cos(0.13 * k), 1};
+    // Every third move keeps its orientation.
+    const Vec3 held = k % 3 == 1 ? poses.back().axis : glm::normalize(axis);
+    poses.push_back({{4 + 0.4 * k, 15 + 8 * std::sin(0.1 * k), 6 + std::cos(0.3 * k)}, held});
+  }
+  return poses;
+}
+
+Result carved(const Tool& tool, const char* directions) {
+  Result out{Volume::block({{{0, 0, 0}, {31, 29, 11}}, 0.37, directions}), {}};
+  CarveOptions options;
+  options.dt.assign(60, 0.001);
+  out.cut = carve(out.volume, tool, winding_path(), options);
+  return out;
+}
+
+void expect_same(const Result& a, const Result& b) {
+  EXPECT_EQ(a.cut.removed, b.cut.removed);
+  EXPECT_EQ(a.cut.force, b.cut.force);
+  EXPECT_EQ(a.cut.torque, b.cut.torque);
+  for (std::size_t g = 0; g < a.volume.grids().size(); ++g)
+    for (std::size_t t = 0; t < a.volume.grids()[g].tile_count(); ++t) {
+      EXPECT_EQ(a.volume.grids()[g].tile(t).offset, b.volume.grids()[g].tile(t).offset);
+      EXPECT_EQ(a.volume.grids()[g].tile(t).spans, b.volume.grids()[g].tile(t).spans);
+      EXPECT_EQ(a.volume.grids()[g].tile(t).normals, b.volume.grids()[g].tile(t).normals);
+    }
+}
+
+TEST(Kernels, GiveTheSameBitsOnEveryInstructionSet) {
+  const std::vector<std::string> sets = instruction_sets();
+  ASSERT_FALSE(sets.empty());
+  for (const std::string& name : sets) std::printf("instruction set: %s\n", name.c_str());
+  for (const Tool& tool : {cutters::ball(6, 20), cutters::flat(5, 20), cutters::fillet(6, 1, 20),
+                           cutters::taper(0.5, 0.3, 7, 20), cutters::cone_end(1.0, 1, 0.4, 6, 20)})
+    for (const char* directions : {"z", "xyz"}) {
+      SCOPED_TRACE(tool.kind());
+      use_instruction_set(sets.front());
+      const Result best = carved(tool, directions);
+      EXPECT_GT(best.cut.removed[30], 0);
+      for (const std::string& name : sets) {
+        SCOPED_TRACE(name);
+        use_instruction_set(name);
+        expect_same(best, carved(tool, directions));
+      }
+      use_instruction_set("");
+    }
+}
+
+TEST(Kernels, RefuseAnInstructionSetThatIsNotThere) {
+  EXPECT_THROW(use_instruction_set("AVX1024"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace riffler
