@@ -168,7 +168,8 @@ py::dict stats(SharedVolume& self) {
   const Stats s = writing.volume.take_stats();
   py::dict d;
   d["moves"] = s.moves, d["steps"] = s.steps, d["tiles_visited"] = s.tiles_visited;
-  d["tiles_changed"] = s.tiles_changed, d["rays_tested"] = s.rays_tested, d["rays_changed"] = s.rays_changed;
+  d["tiles_changed"] = s.tiles_changed, d["rays_tested"] = s.rays_tested, d["hits"] = s.hits,
+  d["rays_changed"] = s.rays_changed;
   d["tiles_meshed"] = s.tiles_meshed, d["triangles_tested"] = s.triangles_tested, d["bytes_copied"] = s.bytes_copied;
   return d;
 }

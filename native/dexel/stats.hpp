@@ -7,7 +7,7 @@ namespace riffler {
 
 struct Stats {
   std::uint64_t moves = 0;             ///< moves carved
-  std::uint64_t steps = 0;             ///< straight steps they were split into, over all pieces of the tool
+  std::uint64_t steps = 0;             ///< steps they were split into, over all pieces of the tool
   std::uint64_t tiles_visited = 0;     ///< (tile, move) pairs whose rays were looked at
   std::uint64_t tiles_changed = 0;     ///< tiles written
   std::uint64_t rays_tested = 0;       ///< (ray, step) pairs intersected with a swept piece

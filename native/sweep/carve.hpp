@@ -13,7 +13,8 @@ namespace riffler {
 
 struct CarveOptions {
   /// mm: every interval end lies within it, along its ray, of the exact swept surface; where the ray grazes, within it
-  /// in space. Moves without rotation are exact whatever it is.
+  /// in space. Only a turning ball may be cut too deep within it, everything else too shallow. Moves without rotation
+  /// are exact whatever it is.
   double tolerance = 0.01;
   /// s, one per move, or empty: no force.
   std::vector<double> dt;

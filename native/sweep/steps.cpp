@@ -57,7 +57,8 @@ double lever_of(const ConvexGroup& group) {
   return lever;
 }
 
-/// Share of the tolerance by which chords may leave the path of a ball's centre; √5 times that along the ray.
+/// Share of the tolerance by which chords may leave the path of a ball's centre; where the surface is no
+/// steeper against the ray than 2, √5 times that along it.
 constexpr double kChordShare = 0.4;
 
 bool is_ball(const Piece& piece) {

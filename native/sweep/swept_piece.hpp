@@ -82,6 +82,7 @@ class SweptPiece {
   Gap gap(const Ray& ray, double s, double way) const;
   double nearest_way(const Ray& ray, double s, const Interval& ways, double guess) const;
   bool extreme(const Ray& ray, double sign, const Interval& ways, SweptHit& out) const;
+  bool between(const Ray& ray, double outside, double beyond, const Interval& ways, SweptHit& out) const;
 
   using Kind = SweptShape::Kind;
   Kind kind_;

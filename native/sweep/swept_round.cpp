@@ -53,26 +53,63 @@ bool SweptPiece::extreme(const Ray& ray, double sign, const Interval& ways, Swep
   const double c0 = zc_ * axis_.z + ways.near * direction_.z, c1 = zc_ * axis_.z + ways.far * direction_.z;
   double s = sign > 0 ? std::min(c0, c1) - reach : std::max(c0, c1) + reach;
   double way = (ways.near + ways.far) / 2;
+  double before = s;
+  bool smooth = true;
   for (int i = 0; i < kNewtonSteps; ++i) {
     way = nearest_way(ray, s, ways, way);
     const Gap g = gap(ray, s, way);
+    const bool end = way == ways.near || way == ways.far;
+    smooth = smooth && (end || std::abs(g.pull) <= 1e-6 * size);
+    // Deep inside, or past it, after a step with a wrong slope: at a barrel's pole the distance has an edge.
+    const bool past = g.distance < -1e-9 * size || (g.distance > 1e-15 * size && !(sign * g.along_s < 0));
+    if (past && !smooth) return between(ray, before, s, ways, out);
     if (g.distance <= 1e-15 * size) return out = {s, way, Surface::Lateral}, true;
     if (!(sign * g.along_s < 0)) return false;
     const double next = s - g.distance / g.along_s;
-    if (next == s) return out = {s, way, Surface::Lateral}, true;
-    s = next;
+    // From outside the way only goes on; where it does not, rounding is all that is left.
+    if (!(sign * (next - s) > 0)) return out = {s, way, Surface::Lateral}, true;
+    before = s, s = next;
   }
   return false;
+}
+
+/// The end between `outside` and `beyond`, without slopes: the least distance over the way is convex along the ray.
+bool SweptPiece::between(const Ray& ray, double outside, double beyond, const Interval& ways, SweptHit& out) const {
+  const auto least = [&](double s) {
+    return gap(ray, s, nearest_way(ray, s, ways, (ways.near + ways.far) / 2)).distance;
+  };
+  const double golden = 0.6180339887498949;
+  double inside = beyond;
+  if (least(beyond) > 0) {
+    double a = outside, b = beyond + (beyond - outside), x = b - golden * (b - a), y = a + golden * (b - a);
+    double fx = least(x), fy = least(y);
+    for (int i = 0; i < 100 && std::min(fx, fy) > 0; ++i) {
+      if (fx < fy)
+        b = y, y = x, fy = fx, x = b - golden * (b - a), fx = least(x);
+      else
+        a = x, x = y, fx = fy, y = a + golden * (b - a), fy = least(y);
+    }
+    if (std::min(fx, fy) > 0) return false;
+    inside = fx < fy ? x : y;
+  }
+  for (int i = 0; i < 200; ++i) {
+    const double middle = (outside + inside) / 2;
+    if (middle == outside || middle == inside) break;
+    (least(middle) > 0 ? outside : inside) = middle;
+  }
+  out = {inside, nearest_way(ray, inside, ways, (ways.near + ways.far) / 2), Surface::Lateral};
+  return true;
 }
 
 void SweptPiece::torus(const Ray& ray, Extremes& out) const {
   const bool cut = cut_bottom_ || cut_top_;
   SweptHit low, high;
-  if (extreme(ray, 1, {0, way_}, low) && extreme(ray, -1, {0, way_}, high)) {
-    for (const SweptHit& h : {low, high}) {
-      const double z = ray.z + ray.oz * h.s - mo_ * h.way;
-      if (!cut || (z >= z0_ && z <= z1_)) out.add(h.s, h.way, Surface::Lateral);
-    }
+  // One by one: at a barrel's pole, which is always cut off, the search may fail where the other end is good.
+  for (const double sign : {1.0, -1.0}) {
+    SweptHit h;
+    if (!extreme(ray, sign, {0, way_}, h)) continue;
+    const double z = ray.z + ray.oz * h.s - mo_ * h.way;
+    if (!cut || (z >= z0_ && z <= z1_)) out.add(h.s, h.way, Surface::Lateral);
   }
   if (!cut) return;
   clip_faces(ray, out);
