@@ -49,7 +49,7 @@ class StraightLanes {
     for (const V s : {side.near, side.far}) {
       const V t = hn::Add(p0, hn::Mul(s, set(p1)));
       M good = on_way(t);
-      if (p_.cut_bottom || p_.cut_top) good = both(good, in_slab(less(hn::Add(r.z, hn::Mul(s, set(p_.oz))), t, p_.mo)));
+      if (p_.cut_bottom || p_.cut_top) good = both(good, on_side(less(hn::Add(r.z, hn::Mul(s, set(p_.oz))), t, p_.mo)));
       add(out, good, s);
     }
     return out;
@@ -72,7 +72,7 @@ class StraightLanes {
     add(out, good, s.near), add(out, good, s.far);
   }
   M on_way(V t) const { return both(hn::Ge(t, zero()), hn::Le(t, set(p_.way))); }
-  M in_slab(V z) const { return both(hn::Ge(z, set(p_.z0)), hn::Le(z, set(p_.z1))); }
+  M on_side(V z) const { return both(hn::Ge(z, set(p_.low)), hn::Le(z, set(p_.high))); }
 
   Stretch slab_at(const SectionRays& r, double way) const {
     return slab(hn::Sub(r.z, set(way * p_.mo + p_.z0)), p_.oz, p_.z1 - p_.z0);
@@ -145,7 +145,7 @@ class StraightLanes {
     for (const V l : {roots.near, roots.far}) {
       const V s = hn::Add(s0, hn::Mul(l, set(ds))), t = hn::Add(t0, hn::Mul(l, set(dt)));
       const V z = less(hn::Add(r.z, hn::Mul(s, set(p_.oz))), t, p_.mo);
-      add(out, both(real, both(on_way(t), in_slab(z))), s);
+      add(out, both(real, both(on_way(t), on_side(z))), s);
     }
   }
 

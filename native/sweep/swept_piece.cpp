@@ -47,8 +47,12 @@ SweptPiece::SweptPiece(const Piece& piece, const Vec3& tip, const Vec3& axis, co
     e_ = round->e, zc_ = round->zc, r_ = round->r;
     kind_ = e_ == 0 ? Kind::Ball : Kind::Torus;
     cut_bottom_ = z0_ > zc_ - r_, cut_top_ = z1_ < zc_ + r_;
+    // A hit on a whole end, or just where the piece is cut, must not get lost to rounding.
+    const double slack = 1e-12 * (std::abs(e_) + r_);
+    low_ = cut_bottom_ ? z0_ - slack : -kInfinity, high_ = cut_top_ ? z1_ + slack : kInfinity;
   } else {
     kind_ = Kind::Frustum;
+    low_ = z0_, high_ = z1_;
   }
 }
 
@@ -142,7 +146,7 @@ void SweptPiece::frustum(const Ray& ray, Extremes& out) const {
   if (roots.empty()) return;
   for (const double l : {roots.near, roots.far}) {
     const double s = s0 + l * ds, t = t0 + l * dt, z = ray.z + ray.oz * s - mo_ * t;
-    if (t >= 0 && t <= way_ && z >= z0_ && z <= z1_) out.add(s, t, Surface::Lateral);
+    if (t >= 0 && t <= way_ && z >= low_ && z <= high_) out.add(s, t, Surface::Lateral);
   }
 }
 
@@ -182,13 +186,13 @@ void SweptPiece::ball(const Ray& ray, Extremes& out) const {
   if (side.empty()) return;
   for (const double s : {side.near, side.far}) {
     const double t = p0 + s * p1, z = ray.z + ray.oz * s - mo_ * t;
-    if (t >= 0 && t <= way_ && (!cut || (z >= z0_ && z <= z1_))) out.add(s, t, Surface::Lateral);
+    if (t >= 0 && t <= way_ && z >= low_ && z <= high_) out.add(s, t, Surface::Lateral);
   }
 }
 
 SweptShape SweptPiece::shape() const {
-  SweptShape s{kind_, cut_bottom_, cut_top_, {},  {},  {},  {},     tilt_, axis_.z, way_, m1_,
-               m2_,   mo_,         z0_,      z1_, r0_, r1_, slope_, e_,    zc_,     r_};
+  SweptShape s{kind_, cut_bottom_, cut_top_, {},  {},  {},     {}, tilt_, axis_.z, way_, m1_,  m2_,
+               mo_,   z0_,         z1_,      r0_, r1_, slope_, e_, zc_,   r_,      low_, high_};
   for (int i = 0; i < 3; ++i) s.tip[i] = tip_[i], s.axis[i] = axis_[i], s.e1[i] = e1_[i], s.e2[i] = e2_[i];
   return s;
 }

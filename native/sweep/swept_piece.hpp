@@ -33,6 +33,7 @@ struct SweptShape {
   double way, m1, m2, mo;        ///< length of the motion and its unit vector in the frame
   double z0, z1, r0, r1, slope;  ///< ends and dr/dz
   double e, zc, r;               ///< Round
+  double low, high;              ///< heights between which its side is
 };
 
 /// The body that a convex piece sweeps on a straight way at fixed orientation. It is convex, so a ray meets it in one
@@ -94,6 +95,7 @@ class SweptPiece {
   double m1_, m2_, mo_;                        // its components along e1, e2 and the axis
   double z0_, z1_, r0_, r1_, slope_;           // ends and dr/dz (Frustum)
   double e_ = 0, zc_ = 0, r_ = 0;              // torus (Round)
+  double low_, high_;                          // heights between which its side is, up to rounding
 };
 
 }  // namespace riffler

@@ -109,7 +109,7 @@ void SweptPiece::torus(const Ray& ray, Extremes& out) const {
     SweptHit h;
     if (!extreme(ray, sign, {0, way_}, h)) continue;
     const double z = ray.z + ray.oz * h.s - mo_ * h.way;
-    if (!cut || (z >= z0_ && z <= z1_)) out.add(h.s, h.way, Surface::Lateral);
+    if (z >= low_ && z <= high_) out.add(h.s, h.way, Surface::Lateral);
   }
   if (!cut) return;
   clip_faces(ray, out);
