@@ -53,6 +53,15 @@ void check(const CarveOptions& options, std::size_t moves) {
       throw std::invalid_argument("dt, row " + std::to_string(i) + ": must be a positive time in s");
 }
 
+/// What a call gives back, one entry per move; asked of the system only where it may matter.
+void check_memory(std::size_t moves) {
+  const double bytes = static_cast<double>(moves) * (sizeof(double) + 2 * sizeof(Vec3));
+  if (moves < 1'000'000 || bytes <= available_memory()) return;
+  throw std::invalid_argument("poses: the results of " + std::to_string(moves) + " moves need " +
+                              std::to_string(static_cast<long long>(bytes / 1e6)) +
+                              " MB, more than this machine has free; carve them in several calls");
+}
+
 /// Brings back the tiles that were replaced unless the carve ends well. Costs what was cut, not what there is.
 class Rollback {
  public:
@@ -189,6 +198,7 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   const std::size_t moves = poses.empty() ? 0 : poses.size() - 1;
   check(poses);
   check(options, moves);
+  check_memory(moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   Rollback rollback;
   Stats stats;

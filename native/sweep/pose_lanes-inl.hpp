@@ -149,6 +149,7 @@ class PoseLanes {
   static constexpr double kLevel = 1e-12;  // the axis counts as square to the rays: a piece that a ray meets there is
                                            // met a moment before and after as well
   static constexpr int kMostSteps = 24;
+  static constexpr double kArrived = 1e-13;  // of the size: where Newton's method has arrived
 
   static V series(V q, const double (&k)[5]) {
     V sum = set(k[4]);
@@ -270,20 +271,25 @@ class PoseLanes {
     return less(scaled(radial(at), hn::Div(g.out, hn::Mul(rho, d))), hn::Neg(hn::Div(g.z, d)), o_);
   }
 
-  /// The distance is convex along the ray, so Newton's method from outside walks to the root without passing it. Starts
-  /// where the ray enters the cylinder and slab about the piece. `sign` 1: near end, −1: far end. `flat`: lanes that
-  /// are deep inside at once, so that it is the slab's own plane through which they come.
+  /// The squared distance from the disc is convex along the ray, so Newton's method from outside walks to the root
+  /// without passing it. Starts where the ray enters the cylinder and slab about the piece. `sign` 1: near end, −1: far
+  /// end. `flat`: lanes that are deep inside at once, so that it is the slab's own plane through which they come.
   M walk(const PieceShape& s, M mask, double sign, V& at, V until, M& flat) const {
     M hit = no_lane(), open = mask;
     flat = no_lane();
-    const V tiny = set(1e-14 * (std::abs(s.e) + s.r));
+    const double size = std::abs(s.e) + s.r;
+    const V arrives = set(kArrived * size * s.r), deep = set(-2e-9 * s.r * s.r);
     for (int i = 0; i < kMostSteps && !none(open); ++i) {
-      const Gap g = gap(s, at);
-      const M arrived = both(open, hn::Le(g.gap, tiny));
-      if (i == 0) flat = both(arrived, hn::Lt(g.gap, set(-1e-9 * s.r)));
+      const V3 r = radial(at);
+      const V z = hn::Sub(z_at(at), set(s.zc)), rho = max(sqrt(dot(r, r)), set(1e-150));
+      const V out = max(hn::Sub(rho, set(s.e)), zero());
+      const V over = hn::Sub(hn::Add(hn::Mul(out, out), hn::Mul(z, z)), set(s.r * s.r));
+      const V slope = hn::Add(hn::Div(hn::Mul(out, r.z), rho), hn::Mul(z, o_.z));  // half the derivative
+      const M arrived = both(open, hn::Le(over, arrives));
+      if (i == 0) flat = both(arrived, hn::Lt(over, deep));
       hit = either(hit, arrived);
-      open = both(without(open, arrived), hn::Lt(hn::Mul(g.rate, set(sign)), zero()));
-      at = pick(open, hn::Sub(at, hn::Div(g.gap, pick(open, g.rate, set(1)))), at);
+      open = both(without(open, arrived), hn::Lt(hn::Mul(slope, set(sign)), zero()));
+      at = pick(open, hn::Sub(at, hn::Div(hn::Mul(set(0.5), over), pick(open, slope, set(1)))), at);
       open = both(open, hn::Le(hn::Mul(set(sign), hn::Sub(at, until)), zero()));
     }
     return hit;

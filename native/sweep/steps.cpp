@@ -57,6 +57,23 @@ double lever_of(const ConvexGroup& group) {
   return lever;
 }
 
+/// The times at which the tip is within `reach` of the box, on a way along which the tool does not turn. What a move
+/// does before and after need not be computed with: 90 km away, a micron is beyond double precision.
+Interval near_box(const Motion& motion, const Box3& box, double reach) {
+  Interval times{0, 1};
+  const Vec3 from = motion.from().tip, way = motion.to().tip - from;
+  for (int i = 0; i < 3; ++i) {
+    const double low = box.lower[i] - reach - from[i], high = box.upper[i] + reach - from[i];
+    if (way[i] == 0) {
+      if (low > 0 || high < 0) return {};
+      continue;
+    }
+    const double a = low / way[i], b = high / way[i];
+    times = times.cut({std::min(a, b), std::max(a, b)});
+  }
+  return times;
+}
+
 /// Share of the tolerance by which chords may leave the path of a ball's centre; where the surface is no
 /// steeper against the ray than 2, √5 times that along it.
 constexpr double kChordShare = 0.4;
@@ -112,10 +129,14 @@ void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t mov
     for (const ConvexGroup& group : cutter.groups) turning_parts(group, motion, move, box, tolerance, sink);
     return;
   }
-  const Pose &from = motion.from(), &to = motion.to();
   for (const Piece& piece : cutter.pieces) {
+    Pose from = motion.from(), to = motion.to();
     const ConvexGroup low = reachable({&piece, 1}, 0, from, to, box);
     if (low.count == 0) continue;
+    const Interval times = near_box(motion, box, 1.01 * lever_of(low));
+    if (times.empty()) continue;
+    if (times.near > 0) from = motion.at(times.near);
+    if (times.far < 1) to = motion.at(times.far);
     const Footprint footprint(low.all(), {from, to}, 0);
     if (footprint.overlaps(box))
       sink({move, &motion, footprint,

@@ -68,6 +68,7 @@ Profile::Profile(std::vector<ProfileSegment> segments) : segments_(std::move(seg
     const ProfileSegment& s = segments_[i];
     if (!std::isfinite(s.to.x) || !std::isfinite(s.to.y)) refuse(i, "its end is not finite");
     if (s.to.x < 0) refuse(i, "its radius is negative");
+    if (std::max(s.to.x, s.to.y) > kLargest) refuse(i, "it is larger than a tool may be, 1e6 mm");
     if (s.to.y < from.y) refuse(i, "its height falls; heights go from the tip upwards");
     if (s.centre) {
       if (!std::isfinite(s.centre->x) || !std::isfinite(s.centre->y)) refuse(i, "its centre is not finite");

@@ -20,7 +20,7 @@ struct ProfileSegment {
 class Profile {
  public:
   /// Throws std::invalid_argument naming the segment that is not finite, has a negative radius, falls, or whose arc
-  /// does not pass through both its ends (by more than 1e-6 of its radius).
+  /// does not pass through both its ends (by more than 1e-6 of its radius), or that reaches further than kLargest.
   explicit Profile(std::vector<ProfileSegment> segments);
 
   const std::vector<ProfileSegment>& segments() const { return segments_; }
@@ -32,6 +32,7 @@ class Profile {
   std::vector<Piece> pieces() const;
 
   static constexpr double kConcaveTolerance = 1e-3;  // mm
+  static constexpr double kLargest = 1e6;            // mm: beyond, rounding is no longer small beside a tolerance
 
  private:
   std::vector<ProfileSegment> segments_;

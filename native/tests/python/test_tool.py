@@ -83,6 +83,8 @@ def test_plunged_tools_remove_their_own_volume(name, depth, volume):
         (lambda: riffler.Tool.profile([(1, 2, 3)], 10), "row 0"),
         (lambda: riffler.Tool.profile([(1, 2), (1, 1)], 10), "segment 1"),
         (lambda: riffler.Tool.profile([(1, 1), (3, 3, 0, 0)], 10), "segment 1"),
+        (lambda: riffler.Tool.profile([(1, 1), (2e6, 3)], 10), "segment 1"),
+        (lambda: riffler.Tool.ball(1e7, 2e7), "1e6 mm"),
         (lambda: riffler.Tool.ball(6, 20).with_shank([(20, 3, 10, 3)]), "shank"),
         (lambda: riffler.Tool.ball(6, 20).with_holder([(20, -3, 30, 3)]), "holder"),
         (lambda: riffler.Tool.from_dict({}), "kind"),
