@@ -41,23 +41,32 @@ bool convex_together(const Piece& below, const Piece& above) {
   return slope_at(below, z) >= slope_at(above, z) - 1e-9;
 }
 
-/// Lets `above` reach into `below`, or `below` into `above`, along its own line, where the tool is hollow between them.
-/// Their ends on a ray are found separately, each up to the tolerance, so that what only touched might leave a crumb.
-void overlap(Piece& below, Piece& above) {
+/// Whether a truncated cone lies within the piece, between heights that the piece has too.
+bool within(const Frustum& f, const Piece& piece) {
+  // The piece's radius is a concave function of the height, so the ends decide.
+  const double slack = 1 + 1e-12;
+  return f.r0 >= 0 && f.r1 >= 0 && f.z0 >= bottom(piece) && f.z1 <= top(piece) &&
+         f.r0 <= radius_at(piece, f.z0) * slack && f.r1 <= radius_at(piece, f.z1) * slack;
+}
+
+/// Lets one of two groups reach into the other inside of the tool, where it is hollow between them. Their ends on a ray
+/// are found separately, each up to the tolerance, so that what only touched might leave a crumb.
+void overlap(ConvexGroup& below, ConvexGroup& above) {
+  Piece &low = below.pieces[below.count - 1], &high = above.pieces[0];
   for (int k = 1; k <= 8; ++k) {
-    if (auto* f = std::get_if<Frustum>(&above)) {
-      const double z = f->z0 - (top(below) - bottom(below)) / (1 << k);
+    if (auto* f = std::get_if<Frustum>(&high)) {  // along its own line
+      const double z = f->z0 - (top(low) - bottom(low)) / (1 << k);
       const double r = f->r0 - (f->r1 - f->r0) / (f->z1 - f->z0) * (f->z0 - z);
-      if (r >= 0 && r <= radius_at(below, z) && f->r0 <= radius_at(below, f->z0) * (1 + 1e-12)) {
-        f->z0 = z, f->r0 = r;
-        return;
-      }
+      if (within({z, r, f->z0, f->r0}, low)) return void((f->z0 = z, f->r0 = r));
     }
-    if (auto* f = std::get_if<Frustum>(&below)) {
-      const double z = f->z1 + (top(above) - bottom(above)) / (1 << k);
+    if (auto* f = std::get_if<Frustum>(&low)) {
+      const double z = f->z1 + (top(high) - bottom(high)) / (1 << k);
       const double r = f->r1 + (f->r1 - f->r0) / (f->z1 - f->z0) * (z - f->z1);
-      if (r >= 0 && r <= radius_at(above, z) && f->r1 <= radius_at(above, f->z1) * (1 + 1e-12)) {
-        f->z1 = z, f->r1 = r;
+      if (within({f->z1, f->r1, z, r}, high)) return void((f->z1 = z, f->r1 = r));
+      // Or by a collar, which keeps a group convex that widens upwards.
+      const Frustum collar{f->z1, f->r1, z, f->r1};
+      if (f->r1 > f->r0 && below.count < ConvexGroup::kMost && within(collar, high)) {
+        below.pieces[below.count++] = collar;
         return;
       }
     }
@@ -74,7 +83,7 @@ std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
     if (!joins) out.emplace_back();
     out.back().pieces[out.back().count++] = piece;
   }
-  for (std::size_t k = 0; k + 1 < out.size(); ++k) overlap(out[k].pieces[out[k].count - 1], out[k + 1].pieces[0]);
+  for (std::size_t k = 0; k + 1 < out.size(); ++k) overlap(out[k], out[k + 1]);
   for (ConvexGroup& group : out) {
     double radius = 0;
     for (const Piece& piece : group.all()) radius = std::max(radius, max_radius(piece));
