@@ -127,7 +127,7 @@ class PoseLanes {
       const PieceShape& s = b_.pieces[k];
       const M mine = k == 0 ? missed : both(missed, hn::Ge(passes, set(s.z0)));
       if (none(mine) && !b_.leans) break;
-      const V3 own = s.ball ? beside_ball(s) : s.round ? beside_round(s, at, mine) : beside_frustum(s, at, along);
+      const V3 own = s.ball ? beside_ball(s) : s.round ? beside_round(s, at, mine) : beside_frustum(s, at, along, missed);
       if (!b_.leans) {
         n = choose(mine, own, n);
         continue;
@@ -405,7 +405,7 @@ class PoseLanes {
     return unit(scaled(less(scaled(r, o_.z), r.z, o_), o_.z));
   }
 
-  V3 beside_frustum(const PieceShape& s, V closest, M along) const {
+  V3 beside_frustum(const PieceShape& s, V closest, M along, M mask) const {
     V best = closest;
     if (s.slope != 0) {
       const V tilt = sqrt(pick(along, set(1), a_)), ratio = hn::Div(hn::Mul(set(s.slope), o_.z), tilt);
@@ -416,10 +416,11 @@ class PoseLanes {
       best = pick(gentle, hn::Add(closest, hn::Div(hn::Mul(aside, ratio), hn::Mul(rest, tilt))),
                   with_sign(set(1e200), ratio));
     }
-    const V at = clamped(best, s.z0, s.z1);
-    const V3 outwards = less(scaled(unit(radial(at)), set(s.cosine)), set(s.slope * s.cosine), o_);
-    V3 n = choose(hn::Eq(at, best), outwards, rim(at));
-    n = choose(along, rim(zero()), n);
+    const V at = pick(along, zero(), clamped(best, s.z0, s.z1));
+    const M beside = without(hn::Eq(at, best), along);
+    V3 n = rim(at);
+    if (!none(both(mask, beside)))
+      n = choose(beside, less(scaled(unit(radial(at)), set(s.cosine)), set(s.slope * s.cosine), o_), n);
     const M level = hn::Le(abs(o_.z), set(kLevel));
     if (none(level)) return n;
     // The ray runs level: it may pass above or below.

@@ -45,9 +45,11 @@ class TurningLanes {
     const V origin = set(b_.origin);
     low_ = hn::Sub(g.near, origin), high_ = hn::Sub(g.far, origin);
     found_ = nothing(), t_near_ = t_far_ = zero();
-    const Sample first = sample(set(b_.t0), g.active), last = sample(set(b_.t1), g.active);
+    const Sample first = sample(set(b_.t0), g.active);
     merge(first, g.active);
-    refine(0, first, last, g.active);
+    // Behind the tool, what the last move left is where this one begins: one plane tells that it moves away.
+    const M open = without(g.active, certain_alone(first));
+    if (!none(open)) refine(0, first, sample(set(b_.t1), open), open);
     take(both(g.active, hn::Lt(found_.near, found_.far)));
   }
 
@@ -139,6 +141,21 @@ class TurningLanes {
     if (emitted_) g.near = hn::LoadU(kD, w_.near + g.ray), g.far = hn::LoadU(kD, w_.far + g.ray);
     const Stretch cut{hn::Add(found_.near, origin), hn::Add(found_.far, origin)};
     subtract(w_, u_, g, mask, cut, t_near_, t_far_);
+  }
+
+  /// Lanes in which the first pose's planes alone keep the body from all material outside of what was found.
+  M certain_alone(const Sample& a) const {
+    const V along = set(b_.along), span = set(b_.t1 - b_.t0);
+    const auto keeps = [&](const Plane& p, V s0, V s1) {
+      const Height at0 = height(p, s0, third(a, s0, span), false), at1 = height(p, s1, third(a, s1, span), false);
+      const V least = min(min(at0.h, at1.h), min(at0.after(span), at1.after(span)));
+      return hn::Ge(least, set(-b_.aside));
+    };
+    const M good = either(hn::Le(found_.near, low_),
+                          keeps(a.near, low_, max(min(hn::Sub(found_.near, along), high_), low_)));
+    const M need_far = both(hn::Lt(found_.near, found_.far), hn::Lt(found_.far, high_));
+    if (none(need_far)) return good;
+    return both(good, either(hn::Not(need_far), keeps(a.far, high_, min(max(hn::Add(found_.far, along), low_), high_))));
   }
 
   /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, between the
