@@ -127,7 +127,9 @@ class PoseLanes {
       const PieceShape& s = b_.pieces[k];
       const M mine = k == 0 ? missed : both(missed, hn::Ge(passes, set(s.z0)));
       if (none(mine) && !b_.leans) break;
-      const V3 own = s.ball ? beside_ball(s) : s.round ? beside_round(s, at, mine) : beside_frustum(s, at, along, missed);
+      const V3 own = s.ball    ? beside_ball(s)
+                     : s.round ? beside_round(s, at, mine)
+                               : beside_frustum(s, at, along, missed);
       if (!b_.leans) {
         n = choose(mine, own, n);
         continue;

@@ -17,7 +17,7 @@ struct RayCut {
 
 /// Sums over the pieces of material taken, each weighted by its length. Every ray adds to the slot of its column modulo
 /// kLanes, so that the result does not depend on how many rays a kernel handles at once.
-struct RemovedSums {
+struct alignas(64) RemovedSums {
   double length[kLanes] = {};
   double direction[3][kLanes] = {};  ///< Σ length × direction of the force (unit)
   double moment[3][kLanes] = {};     ///< Σ length × (middle − pivot) × direction
@@ -37,7 +37,7 @@ struct RayWindow {
   double* far;
   const std::uint32_t* many;  ///< bit b of row a: the ray holds several spans
   double u[kTileSide];
-  double v[kTileSide + kLanes];
+  alignas(64) double v[kTileSide + kLanes];
   double thinnest;  ///< mm: what is left thinner vanishes
   // The part that the step may touch: columns [first[a], end[a]) of rows first_row … last_row, at these heights.
   int first_row, last_row;

@@ -96,8 +96,7 @@ class StraightRound {
     const M first = both(hn::Le(way, zero()), hn::Ge(g.pull, hn::Neg(small)));
     const M last = both(hn::Ge(way, set(p_.way)), hn::Le(g.pull, small));
     const M still = either(hn::Le(abs(g.pull), small), either(first, last));
-    return both(both(hn::Le(abs(g.distance), set(1e-12 * size_)), still),
-                hn::Lt(hn::Mul(set(sign), g.along), zero()));
+    return both(both(hn::Le(abs(g.distance), set(1e-12 * size_)), still), hn::Lt(hn::Mul(set(sign), g.along), zero()));
   }
 
   void step(const Gap& g, M open, V& at, V& way) const {

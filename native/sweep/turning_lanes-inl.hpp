@@ -151,11 +151,12 @@ class TurningLanes {
       const V least = min(min(at0.h, at1.h), min(at0.after(span), at1.after(span)));
       return hn::Ge(least, set(-b_.aside));
     };
-    const M good = either(hn::Le(found_.near, low_),
-                          keeps(a.near, low_, max(min(hn::Sub(found_.near, along), high_), low_)));
+    const M good =
+        either(hn::Le(found_.near, low_), keeps(a.near, low_, max(min(hn::Sub(found_.near, along), high_), low_)));
     const M need_far = both(hn::Lt(found_.near, found_.far), hn::Lt(found_.far, high_));
     if (none(need_far)) return good;
-    return both(good, either(hn::Not(need_far), keeps(a.far, high_, min(max(hn::Add(found_.far, along), low_), high_))));
+    return both(good,
+                either(hn::Not(need_far), keeps(a.far, high_, min(max(hn::Add(found_.far, along), low_), high_))));
   }
 
   /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, between the
