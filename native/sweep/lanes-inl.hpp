@@ -97,10 +97,11 @@ HWY_INLINE Stretch common(Stretch a, Stretch b) {
   return {max(a.near, b.near), min(a.far, b.far)};
 }
 
-/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, by roots that do not cancel.
-HWY_INLINE Stretch at_most_zero(double q2, double per_q2, V q1, V q0) {
-  const V disc = hn::Sub(hn::Mul(q1, q1), hn::Mul(set(q2), q0));
-  const M real = hn::Ge(disc, zero());
+/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, by roots that do not cancel. `tangent`: what, as a part of q1²,
+/// rounding may have taken from a double root.
+HWY_INLINE Stretch at_most_zero(double q2, double per_q2, V q1, V q0, double tangent = 0) {
+  const V square = hn::Mul(q1, q1), disc = hn::Sub(square, hn::Mul(set(q2), q0));
+  const M real = hn::Ge(disc, hn::Mul(set(-tangent), square));
   const V q = hn::Neg(hn::Add(q1, with_sign(sqrt(max(disc, zero())), q1)));
   const M flat = hn::Eq(q, zero());
   const V b = hn::Div(q0, pick(flat, set(1), q));

@@ -140,7 +140,7 @@ class StraightLanes {
     V q1 = dot(a, da, b, db, k, -dk);
     V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(k, k));
     if (q2 < 0) q2 = -q2, q1 = hn::Neg(q1), q0 = hn::Neg(q0);
-    const Stretch roots = at_most_zero(q2, q1, q0);
+    const Stretch roots = at_most_zero(q2, 1 / q2, q1, q0, SweptShape::kTangent);
     const M real = hn::Le(roots.near, roots.far);
     for (const V l : {roots.near, roots.far}) {
       const V s = hn::Add(s0, hn::Mul(l, set(ds))), t = hn::Add(t0, hn::Mul(l, set(dt)));

@@ -27,6 +27,7 @@ class StraightRound {
   /// are those in which it cannot say.
   M end(M mask, double sign, V& at, M& open) const {
     V way = nearest(at);
+    at = onto_ball(at, way, sign);
     open = mask;
     M hit = no_lane();
     for (int i = 0; i < kSteps && !none(open); ++i) {
@@ -75,6 +76,23 @@ class StraightRound {
     g.bend = hn::Add(set(p_.mo * p_.mo), hn::Mul(along, tt));
     g.mixed = hn::Sub(hn::Mul(along, st), set(p_.oz * p_.mo));
     return g;
+  }
+
+  /// Where the ray meets the ball about the disc's point nearest to its point at s: close to the end even where it only
+  /// grazes. Left as it is where it misses that ball.
+  V onto_ball(V s, V way, double sign) const {
+    if (p_.e <= 0) return s;
+    const V a = hn::Sub(hn::Add(r_.x, hn::Mul(s, set(p_.tilt))), hn::Mul(way, set(p_.m1)));
+    const V b = hn::Sub(r_.y, hn::Mul(way, set(p_.m2)));
+    const V z = hn::Sub(hn::Add(hn::Sub(r_.z, set(p_.zc)), hn::Mul(s, set(p_.oz))), hn::Mul(way, set(p_.mo)));
+    const V rho = sqrt(hn::Add(hn::Mul(a, a), hn::Mul(b, b)));
+    const V beyond = max(hn::Sub(set(1), hn::Div(set(p_.e), max(rho, set(1e-150)))), zero());
+    const V x = hn::Mul(a, beyond), y = hn::Mul(b, beyond);
+    const V q1 = hn::Add(hn::Mul(x, set(p_.tilt)), hn::Mul(z, set(p_.oz)));
+    const V q0 = hn::Sub(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)), set(p_.r * p_.r));
+    const V disc = hn::Sub(hn::Mul(q1, q1), q0);
+    const V move = hn::Neg(hn::Add(q1, hn::Mul(set(sign), sqrt(max(disc, zero())))));
+    return pick(hn::Gt(disc, zero()), hn::Add(s, move), s);
   }
 
   V on_way(V way) const { return min(max(way, zero()), set(p_.way)); }

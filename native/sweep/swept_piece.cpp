@@ -10,11 +10,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Interval kEverything{-kInfinity, kInfinity};
 constexpr Interval kNothing{};
 
-/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for q2 ≥ 0, by roots that do not cancel.
-Interval at_most_zero(double q2, double q1, double q0) {
+/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for q2 ≥ 0, by roots that do not cancel. `tangent`: what, as a part of q1², rounding
+/// may have taken from a double root.
+Interval at_most_zero(double q2, double q1, double q0, double tangent = 0) {
   const double disc = q1 * q1 - q2 * q0;
-  if (!(disc >= 0)) return kNothing;
-  const double q = -(q1 + std::copysign(std::sqrt(disc), q1));
+  if (!(disc >= -tangent * q1 * q1)) return kNothing;
+  const double q = -(q1 + std::copysign(std::sqrt(std::max(disc, 0.0)), q1));
   if (q == 0) return q2 > 0 ? Interval{0, 0} : (q0 <= 0 ? kEverything : kNothing);
   const double a = q2 == 0 ? std::copysign(kInfinity, q) : q / q2, b = q0 / q;
   return {std::min(a, b), std::max(a, b)};
@@ -47,13 +48,16 @@ SweptPiece::SweptPiece(const Piece& piece, const Vec3& tip, const Vec3& axis, co
     e_ = round->e, zc_ = round->zc, r_ = round->r;
     kind_ = e_ == 0 ? Kind::Ball : Kind::Torus;
     cut_bottom_ = z0_ > zc_ - r_, cut_top_ = z1_ < zc_ + r_;
-    // A hit on a whole end, or just where the piece is cut, must not get lost to rounding.
-    const double slack = 1e-12 * (std::abs(e_) + r_);
-    low_ = cut_bottom_ ? z0_ - slack : -kInfinity, high_ = cut_top_ ? z1_ + slack : kInfinity;
   } else {
     kind_ = Kind::Frustum;
-    low_ = z0_, high_ = z1_;
+    cut_bottom_ = cut_top_ = true;
   }
+  // A hit at an end of the side must not get lost to rounding: there the edge's own hits may be tangent.
+  const double slack = 1e-11 * (std::abs(z0_) + std::abs(z1_) + std::max(r0_, r1_));
+  // Where a ray meets the line that a cone's apex sweeps, two roots fall together and lose half of their digits.
+  const double apex = 1e-7 * (z1_ - z0_);
+  low_ = cut_bottom_ ? z0_ - (r0_ > 0 ? slack : apex) : -kInfinity;
+  high_ = cut_top_ ? z1_ + (r1_ > 0 ? slack : apex) : kInfinity;
 }
 
 SweptPiece::Ray SweptPiece::ray(double u, double v) const {
@@ -142,7 +146,7 @@ void SweptPiece::frustum(const Ray& ray, Extremes& out) const {
   const double k = k0 + slope_ * (ray.oz * s0 - mo_ * t0), dk = slope_ * (ray.oz * ds - mo_ * dt);
   double q2 = da * da + db * db - dk * dk, q1 = a * da + b * db - k * dk, q0 = a * a + b * b - k * k;
   if (q2 < 0) q2 = -q2, q1 = -q1, q0 = -q0;
-  const Interval roots = at_most_zero(q2, q1, q0);
+  const Interval roots = at_most_zero(q2, q1, q0, SweptShape::kTangent);
   if (roots.empty()) return;
   for (const double l : {roots.near, roots.far}) {
     const double s = s0 + l * ds, t = t0 + l * dt, z = ray.z + ray.oz * s - mo_ * t;

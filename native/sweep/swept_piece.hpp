@@ -26,6 +26,8 @@ struct SweptHit {
 /// The numbers of a SweptPiece, for kernels. Frame: three vectors e1, e2, axis with e1 × e2 = axis, the rays in the
 /// plane of axis and e1: their direction is tilt e1 + oz axis.
 struct SweptShape {
+  /// A ray through the line that a cone's apex sweeps touches its side in a double root (at_most_zero).
+  static constexpr double kTangent = 1e-13;
   enum class Kind : unsigned char { Frustum, Ball, Torus } kind;
   bool cut_bottom, cut_top;  ///< a Round that ends in a flat face there
   double tip[3], axis[3], e1[3], e2[3];

@@ -76,5 +76,22 @@ TEST(Carve, AMoveThatComesFromFarAwayIsExactWhereItMatters) {
             }
 }
 
+/// Two rays of this block meet the line that the cone's apex sweeps: both roots of the ridge fall together there.
+TEST(Carve, ARayThroughTheLineOfAnApexKeepsItsRidge) {
+  const Tool tool = cutters::cone_end(1.0, 1, 0.4, 8, 40);
+  const Vec3 axis = glm::normalize(Vec3(0.3, -0.5, 1));
+  const Pose from{{20, 20, 26}, axis}, to{{40, 33, 21}, axis};
+  Volume volume = Volume::block({{{0, 0, 0}, {100, 60, 30}}, 0.25, "x"});
+  carve(volume, tool, std::vector<Pose>{from, to});
+  const reference::SweptDistance swept(tool.profile(), Motion(from, to));
+  const Grid& grid = volume.grids()[0];
+  for (const auto& [i, j] : {std::pair{99, 96}, {112, 91}})
+    for (const Span& s : grid.ray(i, j))
+      for (const double end : {s.near, s.far})
+        if (end > 0 && end < 100) {
+          EXPECT_LE(std::abs(swept({end, grid.shifted_u(i), grid.shifted_v(j)})), 1e-7);
+        }
+}
+
 }  // namespace
 }  // namespace riffler

@@ -47,6 +47,18 @@ def b200(pitch: float, directions: str, mesh: bool = True) -> dict[str, Any]:
     }
 
 
+def streamed(moves: int, calls: int) -> dict[str, Any]:
+    """The ramping path again and again, each time 0.8 mm deeper, a call each: memory is that of one."""
+    volume, poses, tool = Volume.block(*scenes.S500K_BLOCK, 0.5), scenes.s500k(moves, True), Tool.flat(6, 30)
+    before, removed = volume.volume, 0.0
+    wall, cpu = time.perf_counter(), time.process_time()
+    for _ in range(calls):
+        removed += float(volume.carve(tool, poses).removed.sum())
+        poses[:, 2] -= 0.8
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    return {"wall_s": wall, "cpu_s": cpu, "removed": removed, "lost": before - volume.volume, "rays": volume.rays}
+
+
 def s500k(moves: int, ramping: bool) -> dict[str, Any]:
     volume = Volume.block(*scenes.S500K_BLOCK, 0.5)
     poses, tool = scenes.s500k(moves, ramping), Tool.flat(6, 30)
@@ -82,7 +94,7 @@ def peak_bytes() -> int | None:
     return next((1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM")), None)
 
 
-WORK = {"b200": b200, "s500k": s500k, "files": files}
+WORK = {"b200": b200, "s500k": s500k, "streamed": streamed, "files": files}
 
 if __name__ == "__main__":
     result = WORK[sys.argv[1]](**json.loads(sys.argv[2]))
