@@ -85,9 +85,9 @@ class Yardstick:
 
     def _loop_seconds(self) -> float:
         self._loop.reset()
-        start = time.process_time()
+        start = time.thread_time()
         self._loop.run()
-        return time.process_time() - start
+        return time.thread_time() - start
 
     def alone(self) -> float:
         """Median seconds of the loop by itself."""
@@ -100,13 +100,13 @@ class Yardstick:
         seconds, loops = [], []
         with steady():
             self._loop_seconds()
-            begun = time.process_time()
-            while not seconds or (len(seconds) <= self._most and time.process_time() - begun < self._budget):
+            begun = time.thread_time()
+            while not seconds or (len(seconds) <= self._most and time.thread_time() - begun < self._budget):
                 loops.append(self._loop_seconds())
                 thing = prepare()
-                start = time.process_time()
+                start = time.thread_time()
                 work(thing)
-                seconds.append(time.process_time() - start)
+                seconds.append(time.thread_time() - start)
         if len(seconds) > 1:
             del seconds[0], loops[0]
         ratios = [a / b for a, b in zip(seconds, loops, strict=True)]
