@@ -89,7 +89,7 @@ class GridCarver {
 
   /// Holds no more of the program than one batch, so its length costs no memory here.
   void run(const Tool& tool, std::span<const Pose> poses, const std::function<void(std::size_t)>& moves_done) {
-    const Cutter cutter(tool.cutter());
+    const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
     Pose from = poses.empty() ? Pose{} : local(poses[0]);
     for (std::size_t m = 0; m + 1 < poses.size(); ++m) {
       const Pose to = local(poses[m + 1]);

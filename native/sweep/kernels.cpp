@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
-void CutStraight(const SweptShape& shape, RayWindow& window) {
-  cut_straight_lanes(shape, window);
+void CutStraight(const StraightBody& body, RayWindow& window) {
+  cut_straight_lanes(body, window);
 }
 
 void CutTurning(const TurningBody& body, RayWindow& window) {
@@ -34,8 +34,8 @@ namespace riffler {
 HWY_EXPORT(CutStraight);
 HWY_EXPORT(CutTurning);
 
-void cut_straight(const SweptShape& shape, RayWindow& window) {
-  HWY_DYNAMIC_DISPATCH(CutStraight)(shape, window);
+void cut_straight(const StraightBody& body, RayWindow& window) {
+  HWY_DYNAMIC_DISPATCH(CutStraight)(body, window);
 }
 
 void cut_turning(const TurningBody& body, RayWindow& window) {

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "sweep/ray_window.hpp"
-#include "sweep/swept_piece.hpp"
+#include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"
 
 namespace riffler {
 
-/// Cuts the body of a straight step out of the rays of the window.
-void cut_straight(const SweptShape& shape, RayWindow& window);
-/// Cuts what a turning part sweeps.
+/// Cuts what a straight part sweeps out of the rays of the window.
+void cut_straight(const StraightBody& body, RayWindow& window);
+/// The same for a turning part.
 void cut_turning(const TurningBody& body, RayWindow& window);
 
 /// Names of the instruction sets that this machine can use, best first.

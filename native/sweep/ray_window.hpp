@@ -48,10 +48,8 @@ struct RayWindow {
   bool measured;    ///< add up the lengths taken
   bool with_force;  ///< and the directions
   const ForceLaw* law;
-  double time;  ///< of straight steps: the motion's t in their middle
   void* self;
-  void (*cut)(void* self, int ray, const RayCut& cut);                       ///< what is not cut here
-  bool (*exact)(void* self, double u, double v, double& near, double& far);  ///< the scalar way, where lanes give up
+  void (*cut)(void* self, int ray, const RayCut& cut);  ///< what is not cut here
   RemovedSums* sums;
   // What was done.
   std::uint64_t tested = 0, changed = 0, hits = 0;

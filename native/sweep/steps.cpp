@@ -84,18 +84,18 @@ bool is_ball(const Piece& piece) {
 }
 
 /// The centre of a ball moves on an arc about the tip: |c″| = zc φ², so n chords leave it by at most zc φ² / (8 n²).
-void ball_chords(const Piece& ball, const Motion& motion, double t0, double t1, std::uint32_t move, const Box3& box,
-                 double tolerance, const std::function<void(Step&&)>& sink) {
-  const double centre = std::get<Round>(ball).zc, angle = motion.angle() * (t1 - t0);
+void ball_chords(const ConvexGroup& group, const Motion& motion, double t0, double t1, std::uint32_t move,
+                 const Box3& box, double tolerance, const std::function<void(Step&&)>& sink) {
+  const double centre = std::get<Round>(group.pieces[0]).zc, angle = motion.angle() * (t1 - t0);
   const int n = std::max(1, static_cast<int>(std::ceil(angle * std::sqrt(centre / (8 * kChordShare * tolerance)))));
   Pose from = motion.at(t0);
   for (int k = 0; k < n; ++k) {
     const double a = t0 + (t1 - t0) * k / n, b = k + 1 == n ? t1 : t0 + (t1 - t0) * (k + 1) / n;
     const Pose to = motion.at(b);
-    const Footprint footprint({&ball, 1}, {from, to}, 0);
+    const Footprint footprint(group.all(), {from, to}, 0);
     const Vec3 way = (to.tip - from.tip) + centre * (to.axis - from.axis);
     if (footprint.overlaps(box))
-      sink({move, &motion, footprint, StraightPart{SweptPiece(ball, from.tip, from.axis, way), (a + b) / 2}});
+      sink({move, &motion, footprint, StraightPart{group, StraightBody(group, from, way, a, b)}});
     from = to;
   }
 }
@@ -110,7 +110,9 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
     const Pose to = motion.at(t1);
     ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
     if (group.count > 0 && is_ball(group.pieces[0])) {
-      ball_chords(group.pieces[0], motion, t0, t1, move, box, tolerance, sink);
+      ConvexGroup ball = group;
+      ball.count = 1;
+      ball_chords(ball, motion, t0, t1, move, box, tolerance, sink);
       std::shift_left(group.pieces.begin(), group.pieces.end(), 1), --group.count;
     }
     if (group.count > 0) {
@@ -123,24 +125,24 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
 
 }  // namespace
 
-void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t move, const Box3& box, double tolerance,
-                   const std::function<void(Step&&)>& sink) {
-  if (motion.angle() > 0) {
-    for (const ConvexGroup& group : cutter.groups) turning_parts(group, motion, move, box, tolerance, sink);
-    return;
-  }
-  for (const Piece& piece : cutter.pieces) {
+void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, std::uint32_t move, const Box3& box,
+                   double tolerance, const std::function<void(Step&&)>& sink) {
+  for (const ConvexGroup& whole : cutter) {
+    if (motion.angle() > 0) {
+      turning_parts(whole, motion, move, box, tolerance, sink);
+      continue;
+    }
     Pose from = motion.from(), to = motion.to();
-    const ConvexGroup low = reachable({&piece, 1}, 0, from, to, box);
-    if (low.count == 0) continue;
-    const Interval times = near_box(motion, box, 1.01 * lever_of(low));
+    const ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
+    if (group.count == 0) continue;
+    const Interval times = near_box(motion, box, 1.01 * lever_of(group));
     if (times.empty()) continue;
     if (times.near > 0) from = motion.at(times.near);
     if (times.far < 1) to = motion.at(times.far);
-    const Footprint footprint(low.all(), {from, to}, 0);
+    const Footprint footprint(group.all(), {from, to}, 0);
     if (footprint.overlaps(box))
       sink({move, &motion, footprint,
-            StraightPart{SweptPiece(low.pieces[0], from.tip, from.axis, to.tip - from.tip), 0.5}});
+            StraightPart{group, StraightBody(group, from, to.tip - from.tip, times.near, times.far)}});
   }
 }
 

@@ -1,22 +1,21 @@
-// A move of the whole tool → steps: straight ones of single pieces, or turning parts of convex groups of pieces.
+// A move of the whole tool → steps: straight or turning parts of convex groups of pieces.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <variant>
-#include <vector>
 
 #include "geom/pose.hpp"
 #include "sweep/footprint.hpp"
-#include "sweep/swept_piece.hpp"
+#include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"
 
 namespace riffler {
 
-/// A piece on a straight step; `time`: the move's t in its middle.
 struct StraightPart {
-  SweptPiece body;
-  double time;
+  ConvexGroup group;
+  StraightBody body;
 };
 
 struct TurningPart {
@@ -32,17 +31,10 @@ struct Step {
   std::variant<StraightPart, TurningPart> body;
 };
 
-/// Cutter pieces in the two forms that steps need.
-struct Cutter {
-  explicit Cutter(const std::vector<Piece>& all) : pieces(all), groups(convex_groups(all)) {}
-  std::vector<Piece> pieces;
-  std::vector<ConvexGroup> groups;
-};
-
 /// Calls `sink` for every step of the cutter on `motion` that can touch `box`, in order of t. Poses, box and steps are
 /// in the cyclic frame of one grid; `motion` must outlive the steps. Of a turning ball only the centre's path matters:
 /// it is cut as straight steps along chords, by at most `tolerance` beside it.
-void for_each_step(const Cutter& cutter, const Motion& motion, std::uint32_t move, const Box3& box, double tolerance,
-                   const std::function<void(Step&&)>& sink);
+void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, std::uint32_t move, const Box3& box,
+                   double tolerance, const std::function<void(Step&&)>& sink);
 
 }  // namespace riffler

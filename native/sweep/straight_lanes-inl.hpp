@@ -1,4 +1,4 @@
-// SweptPiece::hit (swept_piece.cpp, where the geometry is explained) for many rays at a time.
+// What a convex group takes on a straight way, for many rays at a time; straight_part.hpp explains the geometry.
 #if defined(RIFFLER_SWEEP_STRAIGHT_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_STRAIGHT_LANES_INL_HPP
 #undef RIFFLER_SWEEP_STRAIGHT_LANES_INL_HPP
@@ -7,55 +7,54 @@
 #endif
 
 #include "sweep/cut_lanes-inl.hpp"
+#include "sweep/straight_part.hpp"
 #include "sweep/straight_round-inl.hpp"
-#include "sweep/swept_piece.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
+/// One group of rays and the section of the body with each of them. kWays: whether to keep account of the way at which
+/// the ends are.
+template <bool kWays>
 class StraightLanes {
  public:
-  explicit StraightLanes(const SweptShape& shape) : p_(shape) {}
-
-  SectionRays rays(double u, V v) const {
-    const double du = u - p_.tip[0];
-    const V dv = hn::Sub(v, set(p_.tip[1]));
+  StraightLanes(const StraightBody& body, double u, V v) : b_(body) {
+    const double du = u - b_.tip[0];
+    const V dv = hn::Sub(v, set(b_.tip[1]));
     const auto along = [&](const double* e) { return hn::Add(set(du * e[0]), hn::Mul(dv, set(e[1]))); };
-    return {along(p_.e1), along(p_.e2), along(p_.axis)};
+    r_ = {along(b_.e1), along(b_.e2), along(b_.axis)};
   }
 
-  /// s counts from the height of the tip.
-  Stretch frustum(const SectionRays& r) const {
-    Stretch out = at_pose(r, 0);
-    if (p_.way == 0) return out;
-    include(out, at_pose(r, p_.way));
-    face(r, p_.z0, p_.r0, out), face(r, p_.z1, p_.r1, out);
-    silhouette(r, out);
-    return out;
-  }
-
-  Stretch ball(const SectionRays& r) const {
-    const V zc = hn::Sub(r.z, set(p_.zc));
-    Stretch out = ball_at(r, zc, 0);
-    if (p_.way == 0) return out;
-    include(out, ball_at(r, zc, p_.way));
-    if (p_.cut_bottom) face(r, p_.z0, p_.r0, out);
-    if (p_.cut_top) face(r, p_.z1, p_.r1, out);
-    const double p1 = p_.tilt * p_.m1 + p_.oz * p_.mo;
-    const V p0 = dot(r.x, p_.m1, r.y, p_.m2, zc, p_.mo);
-    const V a = less(r.x, p0, p_.m1), b = less(r.y, p0, p_.m2), c = less(zc, p0, p_.mo);
-    const double da = p_.tilt - p1 * p_.m1, db = -p1 * p_.m2, dc = p_.oz - p1 * p_.mo;
-    const Stretch side = at_most_zero(da * da + db * db + dc * dc, dot(a, da, b, db, c, dc), norm2(a, b, c, p_.r));
-    for (const V s : {side.near, side.far}) {
-      const V t = hn::Add(p0, hn::Mul(s, set(p1)));
-      M good = on_way(t);
-      if (p_.cut_bottom || p_.cut_top) good = both(good, on_side(less(hn::Add(r.z, hn::Mul(s, set(p_.oz))), t, p_.mo)));
-      add(out, good, s);
+  /// Looks for both ends in the lanes of `mask`; rounds only between the heights `low` and `high`, where the material
+  /// is. An end beyond them need not be exact.
+  void find(M mask, V low, V high) {
+    M met[ConvexGroup::kMost];
+    for (std::size_t k = b_.count; k-- > 0;) {  // the upper pieces are simple and often make `far` known
+      const SweptShape& p = b_.pieces[k];
+      met[k] = mask_ = both(mask, both(hn::Lt(low, set(p.ceiling)), hn::Gt(high, set(p.floor))));
+      if (none(mask_)) continue;
+      if (!p.round)
+        frustum(p);
+      else if (p.e == 0)
+        ball(p);
+      else
+        met[k] = round(p, low, high);
     }
-    return out;
+    // Without its neighbour, the face of a piece towards it is a bound.
+    for (std::size_t k = 0; k + 1 < b_.count; ++k) {
+      const SweptShape &lower = b_.pieces[k], &upper = b_.pieces[k + 1];
+      if (lower.cut1 && !lower.face1) hidden_face(without(met[k], met[k + 1]), lower.z1, lower.r1);
+      if (upper.cut0 && !upper.face0) hidden_face(without(met[k + 1], met[k]), upper.z0, upper.r0);
+    }
   }
+
+  const Stretch& ends() const { return out_; }
+  V near_time() const { return time(near_way_); }
+  V far_time() const { return time(far_way_); }
 
  private:
+  V time(V way) const { return kWays ? hn::Add(set(b_.t0), hn::Mul(way, set(b_.per_way))) : set(b_.middle); }
+
   static V dot(V a, double x, V b, double y, V c, double z) {
     return hn::Add(hn::Add(hn::Mul(a, set(x)), hn::Mul(b, set(y))), hn::Mul(c, set(z)));
   }
@@ -63,26 +62,80 @@ class StraightLanes {
   static V norm2(V a, V b, V c, double r) {
     return hn::Sub(hn::Add(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(c, c)), set(r * r));
   }
-  static void add(Stretch& out, M good, V s) {
-    out.near = pick(good, min(out.near, s), out.near), out.far = pick(good, max(out.far, s), out.far);
+  void add_near(M good, V s, V way) {
+    const M lower = both(both(good, mask_), hn::Lt(s, out_.near));
+    out_.near = pick(lower, s, out_.near);
+    if (kWays) near_way_ = pick(lower, way, near_way_);
   }
-  /// Stretches that are not empty and finite.
-  static void include(Stretch& out, Stretch s) {
+  void add_far(M good, V s, V way) {
+    const M higher = both(both(good, mask_), hn::Gt(s, out_.far));
+    out_.far = pick(higher, s, out_.far);
+    if (kWays) far_way_ = pick(higher, way, far_way_);
+  }
+  void add(M good, V s, V way) { add_near(good, s, way), add_far(good, s, way); }
+  /// A stretch at one pose, unless it is empty or infinite.
+  void include(Stretch s, double way) {
     const M good = both(hn::Le(s.near, s.far), both(hn::Gt(s.near, set(-kInfinity)), hn::Lt(s.far, set(kInfinity))));
-    add(out, good, s.near), add(out, good, s.far);
+    add_near(good, s.near, set(way)), add_far(good, s.far, set(way));
   }
-  M on_way(V t) const { return both(hn::Ge(t, zero()), hn::Le(t, set(p_.way))); }
-  M on_side(V z) const { return both(hn::Ge(z, set(p_.low)), hn::Le(z, set(p_.high))); }
+  M on_way(V t) const { return both(hn::Ge(t, zero()), hn::Le(t, set(b_.way))); }
+  static M on_side(const SweptShape& p, V z) { return both(hn::Ge(z, set(p.low)), hn::Le(z, set(p.high))); }
 
-  Stretch slab_at(const SectionRays& r, double way) const {
-    return slab(hn::Sub(r.z, set(way * p_.mo + p_.z0)), p_.oz, p_.z1 - p_.z0);
+  void frustum(const SweptShape& p) {
+    include(frustum_at(p, 0), 0);
+    if (b_.way == 0) return;
+    include(frustum_at(p, b_.way), b_.way);
+    faces(p);
+    silhouette(p);
   }
 
-  Stretch at_pose(const SectionRays& r, double way) const {
-    const V a = hn::Sub(r.x, set(way * p_.m1)), b = hn::Sub(r.y, set(way * p_.m2));
-    const V k = hn::Add(set(p_.r0), hn::Mul(set(p_.slope), hn::Sub(r.z, set(way * p_.mo + p_.z0))));
-    const double grow = p_.slope * p_.oz, q2 = p_.tilt * p_.tilt - grow * grow;
-    const V q1 = hn::Sub(hn::Mul(a, set(p_.tilt)), hn::Mul(k, set(grow)));
+  void ball(const SweptShape& p) {
+    const V zc = hn::Sub(r_.z, set(p.zc));
+    include(ball_at(p, zc, 0), 0);
+    if (b_.way == 0) return;
+    include(ball_at(p, zc, b_.way), b_.way);
+    faces(p);
+    const double p1 = b_.tilt * b_.m1 + b_.oz * b_.mo;
+    const V p0 = dot(r_.x, b_.m1, r_.y, b_.m2, zc, b_.mo);
+    const V a = less(r_.x, p0, b_.m1), b = less(r_.y, p0, b_.m2), c = less(zc, p0, b_.mo);
+    const double da = b_.tilt - p1 * b_.m1, db = -p1 * b_.m2, dc = b_.oz - p1 * b_.mo;
+    const Stretch side = at_most_zero(da * da + db * db + dc * dc, dot(a, da, b, db, c, dc), norm2(a, b, c, p.r));
+    for (const V s : {side.near, side.far}) {
+      const V t = hn::Add(p0, hn::Mul(s, set(p1)));
+      M good = on_way(t);
+      if (p.cut0 || p.cut1) good = both(good, on_side(p, less(hn::Add(r_.z, hn::Mul(s, set(b_.oz))), t, b_.mo)));
+      add(good, s, t);
+    }
+  }
+
+  /// Torus or barrel. Returns the lanes that meet it where the material is.
+  M round(const SweptShape& p, V low, V high) {
+    faces(p);
+    const StraightRound round(b_, p, r_);
+    V s, way;
+    const M near = round.end(mask_, 1, low, high, s, way);
+    add_near(both(near, round.on_side(s, way)), s, way);
+    // Where the top of the material lies in the body, its far end does not matter.
+    const M rest = both(near, hn::Lt(out_.far, high));
+    if (none(rest)) return near;
+    const M held = both(rest, round.holds(high, way));
+    add_far(held, high, way);
+    const M open = without(rest, held);
+    if (none(open)) return near;
+    const M far = round.end(open, -1, low, high, s, way);
+    add_far(both(far, round.on_side(s, way)), s, way);
+    return near;
+  }
+
+  Stretch slab_at(const SweptShape& p, double way) const {
+    return slab(hn::Sub(r_.z, set(way * b_.mo + p.z0)), b_.oz, p.z1 - p.z0);
+  }
+
+  Stretch frustum_at(const SweptShape& p, double way) const {
+    const V a = hn::Sub(r_.x, set(way * b_.m1)), b = hn::Sub(r_.y, set(way * b_.m2));
+    const V k = hn::Add(set(p.r0), hn::Mul(set(p.slope), hn::Sub(r_.z, set(way * b_.mo + p.z0))));
+    const double grow = p.slope * b_.oz, q2 = b_.tilt * b_.tilt - grow * grow;
+    const V q1 = hn::Sub(hn::Mul(a, set(b_.tilt)), hn::Mul(k, set(grow)));
     const V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(k, k));
     Stretch side;
     if (q2 >= 0) {
@@ -94,48 +147,58 @@ class StraightLanes {
       const V s1 = hn::Mul(q, set(1 / q2)), s2 = pick(flat, zero(), hn::Div(q0, pick(flat, set(1), q)));
       side = grow > 0 ? Stretch{max(s1, s2), set(kInfinity)} : Stretch{set(-kInfinity), min(s1, s2)};
     }
-    const Stretch at = common(side, slab_at(r, way));
+    const Stretch at = common(side, slab_at(p, way));
     return where(both(hn::Le(at.near, at.far), both(hn::Gt(at.near, set(-kInfinity)), hn::Lt(at.far, set(kInfinity)))),
                  at);
   }
 
-  Stretch ball_at(const SectionRays& r, V zc, double way) const {
-    const V a = hn::Sub(r.x, set(way * p_.m1)), b = hn::Sub(r.y, set(way * p_.m2)), c = hn::Sub(zc, set(way * p_.mo));
-    Stretch at = at_most_zero(1, hn::Add(hn::Mul(a, set(p_.tilt)), hn::Mul(c, set(p_.oz))), norm2(a, b, c, p_.r));
-    if (p_.cut_bottom || p_.cut_top) at = common(at, slab_at(r, way));
+  Stretch ball_at(const SweptShape& p, V zc, double way) const {
+    const V a = hn::Sub(r_.x, set(way * b_.m1)), b = hn::Sub(r_.y, set(way * b_.m2)), c = hn::Sub(zc, set(way * b_.mo));
+    Stretch at = at_most_zero(1, hn::Add(hn::Mul(a, set(b_.tilt)), hn::Mul(c, set(b_.oz))), norm2(a, b, c, p.r));
+    if (p.cut0 || p.cut1) at = common(at, slab_at(p, way));
     return where(hn::Le(at.near, at.far), at);
   }
 
-  void face(const SectionRays& r, double z, double radius, Stretch& out) const {
-    const double norm = std::hypot(p_.oz, p_.mo);
-    if (norm < 1e-12) return;
-    const double ds = p_.mo / norm, dt = p_.oz / norm;
-    const V at = hn::Mul(hn::Sub(set(z), r.z), set(1 / norm));
-    const V s0 = hn::Mul(at, set(dt)), t0 = hn::Mul(at, set(-ds));
-    const V a = hn::Add(r.x, hn::Sub(hn::Mul(s0, set(p_.tilt)), hn::Mul(t0, set(p_.m1))));
-    const V b = less(r.y, t0, p_.m2);
-    const double da = ds * p_.tilt - dt * p_.m1, db = -dt * p_.m2;
-    const V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), set(radius * radius));
-    const Stretch disc = at_most_zero(da * da + db * db, hn::Add(hn::Mul(a, set(da)), hn::Mul(b, set(db))), q0);
-    const Stretch line = common(disc, slab(t0, dt, p_.way));
-    const M good =
-        both(hn::Le(line.near, line.far), both(hn::Gt(line.near, set(-kInfinity)), hn::Lt(line.far, set(kInfinity))));
-    for (const V l : {line.near, line.far}) add(out, good, hn::Add(s0, hn::Mul(l, set(ds))));
+  void faces(const SweptShape& p) {
+    if (p.face0) face(p.z0, p.r0);
+    if (p.face1) face(p.z1, p.r1);
   }
 
-  void silhouette(const SectionRays& r, Stretch& out) const {
-    const V k0 = hn::Add(set(p_.r0), hn::Mul(set(p_.slope), hn::Sub(r.z, set(p_.z0))));
-    const double alpha = p_.slope * p_.slope * p_.oz * p_.mo - p_.tilt * p_.m1;
-    const double beta = p_.m1 * p_.m1 + p_.m2 * p_.m2 - p_.slope * p_.slope * p_.mo * p_.mo;
-    const double norm = std::hypot(alpha, beta);
-    if (norm < 1e-14) return;
-    const V gamma = dot(k0, p_.slope * p_.mo, r.x, -p_.m1, r.y, -p_.m2);
-    const double ds = beta / norm, dt = -alpha / norm;
-    const V s0 = hn::Mul(gamma, set(-alpha / (norm * norm))), t0 = hn::Mul(gamma, set(-beta / (norm * norm)));
-    const V a = hn::Add(r.x, hn::Sub(hn::Mul(s0, set(p_.tilt)), hn::Mul(t0, set(p_.m1))));
-    const V b = less(r.y, t0, p_.m2);
-    const V k = hn::Add(k0, hn::Mul(set(p_.slope), hn::Sub(hn::Mul(s0, set(p_.oz)), hn::Mul(t0, set(p_.mo)))));
-    const double da = ds * p_.tilt - dt * p_.m1, db = -dt * p_.m2, dk = p_.slope * (p_.oz * ds - p_.mo * dt);
+  void hidden_face(M mask, double z, double radius) {
+    if (none(mask)) return;
+    mask_ = mask;
+    face(z, radius);
+  }
+
+  void face(double z, double radius) {
+    // Otherwise ray and motion lie in the plane: the side's own hits bound the section.
+    if (!b_.face.exists) return;
+    const double ds = b_.face.ds, dt = b_.face.dt;
+    const V at = hn::Mul(hn::Sub(set(z), r_.z), set(b_.face.per_norm));
+    const V s0 = hn::Mul(at, set(dt)), t0 = hn::Mul(at, set(-ds));
+    const V a = hn::Add(r_.x, hn::Sub(hn::Mul(s0, set(b_.tilt)), hn::Mul(t0, set(b_.m1))));
+    const V b = less(r_.y, t0, b_.m2);
+    const double da = ds * b_.tilt - dt * b_.m1, db = -dt * b_.m2;
+    const V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), set(radius * radius));
+    const Stretch disc = at_most_zero(da * da + db * db, hn::Add(hn::Mul(a, set(da)), hn::Mul(b, set(db))), q0);
+    const Stretch line = common(disc, slab(t0, dt, b_.way));
+    const M good =
+        both(hn::Le(line.near, line.far), both(hn::Gt(line.near, set(-kInfinity)), hn::Lt(line.far, set(kInfinity))));
+    for (const V l : {line.near, line.far})
+      add(good, hn::Add(s0, hn::Mul(l, set(ds))), hn::Add(t0, hn::Mul(l, set(dt))));
+  }
+
+  void silhouette(const SweptShape& p) {
+    // Otherwise the motion runs along the flank: both ends and both faces bound the section.
+    if (!p.outline.exists) return;
+    const double ds = p.outline.ds, dt = p.outline.dt;
+    const V k0 = hn::Add(set(p.r0), hn::Mul(set(p.slope), hn::Sub(r_.z, set(p.z0))));
+    const V at = hn::Mul(dot(k0, -p.slope * b_.mo, r_.x, b_.m1, r_.y, b_.m2), set(p.outline.per_norm));
+    const V s0 = hn::Mul(at, set(dt)), t0 = hn::Mul(at, set(-ds));
+    const V a = hn::Add(r_.x, hn::Sub(hn::Mul(s0, set(b_.tilt)), hn::Mul(t0, set(b_.m1))));
+    const V b = less(r_.y, t0, b_.m2);
+    const V k = hn::Add(k0, hn::Mul(set(p.slope), hn::Sub(hn::Mul(s0, set(b_.oz)), hn::Mul(t0, set(b_.mo)))));
+    const double da = ds * b_.tilt - dt * b_.m1, db = -dt * b_.m2, dk = p.slope * (b_.oz * ds - b_.mo * dt);
     double q2 = da * da + db * db - dk * dk;
     V q1 = dot(a, da, b, db, k, -dk);
     V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(k, k));
@@ -144,74 +207,36 @@ class StraightLanes {
     const M real = hn::Le(roots.near, roots.far);
     for (const V l : {roots.near, roots.far}) {
       const V s = hn::Add(s0, hn::Mul(l, set(ds))), t = hn::Add(t0, hn::Mul(l, set(dt)));
-      const V z = less(hn::Add(r.z, hn::Mul(s, set(p_.oz))), t, p_.mo);
-      add(out, both(real, both(on_way(t), on_side(z))), s);
+      const V z = less(hn::Add(r_.z, hn::Mul(s, set(b_.oz))), t, b_.mo);
+      add(both(real, both(on_way(t), on_side(p, z))), s, t);
     }
   }
 
-  const SweptShape& p_;
+  const StraightBody& b_;
+  SectionRays r_;
+  M mask_;  // lanes whose material is at heights that the piece reaches
+  Stretch out_ = nothing();
+  V near_way_ = zero(), far_way_ = zero();
 };
 
-/// One ray after the other, for bodies or rays that the lanes do not solve.
-inline Stretch scalar_lanes(RayWindow& w, double u, const Group& g) {
-  double v[kLanes], near[kLanes], far[kLanes];
-  hn::StoreU(g.v, kD, v);
-  const unsigned active = bits(g.active);
-  for (int k = 0; k < lanes(); ++k) {
-    near[k] = kInfinity, far[k] = -kInfinity;
-    if (active >> k & 1U && !w.exact(w.self, u, v[k], near[k], far[k])) near[k] = kInfinity, far[k] = -kInfinity;
-  }
-  return {hn::LoadU(kD, near), hn::LoadU(kD, far)};
-}
-
-/// Torus or barrel, whole: from the box about it, itself swept. Ends above the material need not be exact.
-inline Stretch round_lanes(RayWindow& w, double u, Group g, const SweptShape& shape, const StraightLanes& box) {
-  const SectionRays rays = box.rays(u, g.v);
-  const StraightRound round(shape, rays);
-  const V tip = set(shape.tip[2]);
-  Stretch at = box.frustum(rays);
-  const M mask = both(g.active, hn::Lt(at.near, at.far));
-  if (none(mask)) return nothing();
-  M lost_near, lost_far = no_lane();
-  M hit = round.end(mask, 1, at.near, lost_near);
-  // Where the top of the material lies in the body, its far end does not matter.
-  const V top = hn::Sub(g.far, tip);
-  const M rest = without(hit, both(hn::Lt(top, at.far), round.holds(top)));
-  if (!none(rest)) hit = either(without(hit, rest), round.end(rest, -1, at.far, lost_far));
-  w.hits += hn::CountTrue(kD, mask);
-  Stretch out = where(hit, {hn::Add(at.near, tip), hn::Add(at.far, tip)});
-  g.active = either(lost_near, lost_far);
-  if (none(g.active)) return out;
-  const Stretch exact = scalar_lanes(w, u, g);
-  return {pick(g.active, exact.near, out.near), pick(g.active, exact.far, out.far)};
-}
-
-/// The cylinder about a whole Round.
-inline SweptShape box_of(const SweptShape& round) {
-  SweptShape box = round;
-  box.kind = SweptShape::Kind::Frustum;
-  box.z0 = round.zc - round.r, box.z1 = round.zc + round.r, box.r0 = box.r1 = round.e + round.r, box.slope = 0;
-  return box;
-}
-
-inline void cut_straight_lanes(const SweptShape& shape, RayWindow& w) {
-  const StraightLanes body(shape);
-  const SweptShape around = box_of(shape);
-  const StraightLanes box(around);
-  const bool whole = !shape.cut_bottom && !shape.cut_top;
-  const V tip = set(shape.tip[2]), time = set(w.time);
+template <bool kWays>
+void cut_straight_with(const StraightBody& body, RayWindow& w) {
+  const V tip = set(body.tip[2]);
   for_groups(w, [&](double u, Group& g) {
-    Stretch cut;
-    if (shape.kind == SweptShape::Kind::Torus) {
-      cut = whole ? round_lanes(w, u, g, shape, box) : scalar_lanes(w, u, g);
-    } else {
-      w.hits += hn::CountTrue(kD, g.active);
-      const SectionRays rays = body.rays(u, g.v);
-      cut = shape.kind == SweptShape::Kind::Ball ? body.ball(rays) : body.frustum(rays);
-      cut = {hn::Add(cut.near, tip), hn::Add(cut.far, tip)};
-    }
-    subtract(w, u, g, g.active, cut, time, time);
+    w.hits += hn::CountTrue(kD, g.active);
+    StraightLanes<kWays> lanes(body, u, g.v);
+    lanes.find(g.active, hn::Sub(max(g.near, set(w.low)), tip), hn::Sub(min(g.far, set(w.high)), tip));
+    const Stretch cut{hn::Add(lanes.ends().near, tip), hn::Add(lanes.ends().far, tip)};
+    subtract(w, u, g, g.active, cut, lanes.near_time(), lanes.far_time());
   });
+}
+
+inline void cut_straight_lanes(const StraightBody& body, RayWindow& w) {
+  // Only normals ask when the tool was where.
+  if (w.in_place)
+    cut_straight_with<false>(body, w);
+  else
+    cut_straight_with<true>(body, w);
 }
 
 }  // namespace riffler::HWY_NAMESPACE

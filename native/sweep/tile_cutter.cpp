@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "sweep/kernels.hpp"
+#include "sweep/swept_normal.hpp"
 
 namespace riffler {
 
@@ -31,12 +32,6 @@ TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const 
   w.in_place = !grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
   w.self = this, w.sums = &sums_, w.law = &law_;
   w.cut = [](void* self, int ray, const RayCut& cut) { static_cast<TileCutter*>(self)->cut_one(ray, cut); };
-  w.exact = [](void* self, double u, double v, double& near, double& far) {
-    SweptHit a, b;
-    const auto* me = static_cast<const TileCutter*>(self);
-    if (!std::get<StraightPart>(me->step_->body).body.hit(u, v, a, b)) return false;
-    return near = a.s, far = b.s, true;
-  };
 }
 
 /// Rows and columns of the tile in the footprint; false if there are none.
@@ -77,9 +72,7 @@ void TileCutter::cut(const Step& step) {
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
     cut_turning(TurningBody(part->group, *step.motion, part->t0, part->t1, options_.tolerance), w);
   } else {
-    const auto& straight = std::get<StraightPart>(step.body);
-    w.time = straight.time;
-    cut_straight(straight.body.shape(), w);
+    cut_straight(std::get<StraightPart>(step.body).body, w);
   }
   if (w.changed > 0) {
     rays_.touch();
@@ -115,13 +108,9 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
 
 /// Normals of the swept body at both ends of a cut.
 std::pair<Vec3, Vec3> TileCutter::ends(double u, double v, const RayCut& cut) const {
-  if (const auto* part = std::get_if<TurningPart>(&step_->body))
-    return {turning_normal(part->group, *motion_, {u, v, cut.near}, cut.near_t),
-            turning_normal(part->group, *motion_, {u, v, cut.far}, cut.far_t)};
-  const SweptPiece& body = std::get<StraightPart>(step_->body).body;
-  SweptHit near, far;
-  if (!body.hit(u, v, near, far)) return {Vec3(0, 0, -1), Vec3(0, 0, 1)};
-  return {body.normal(u, v, near), body.normal(u, v, far)};
+  const ConvexGroup& group = std::visit([](const auto& part) -> const ConvexGroup& { return part.group; }, step_->body);
+  return {swept_normal(group, *motion_, {u, v, cut.near}, cut.near_t),
+          swept_normal(group, *motion_, {u, v, cut.far}, cut.far_t)};
 }
 
 /// (3.18)–(3.24) with k per volume and second.

@@ -3,26 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sweep/swept_piece.hpp"
-
 namespace riffler {
 
 namespace {
-
-PieceShape shape_of(const Piece& piece) {
-  PieceShape s{};
-  s.z0 = bottom(piece), s.z1 = top(piece);
-  s.r0 = radius_at(piece, s.z0), s.r1 = radius_at(piece, s.z1);
-  s.slope = std::holds_alternative<Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0,
-  s.cosine = 1 / std::hypot(1.0, s.slope);
-  s.inverse = 1 / s.r0;
-  if (const auto* round = std::get_if<Round>(&piece)) {
-    s.round = true, s.e = round->e, s.zc = round->zc, s.r = round->r;
-    s.inverse = 1 / s.r;
-    s.ball = s.e == 0 && s.z0 <= s.zc - s.r && s.z1 >= s.zc + s.r;
-  }
-  return s;
-}
 
 /// dr/dz of the piece's profile at one of its ends; infinite where it starts or ends flat.
 double slope_at(const Piece& piece, double z) {
@@ -75,6 +58,25 @@ void overlap(ConvexGroup& below, ConvexGroup& above) {
 
 }  // namespace
 
+PieceShape shape_of(const Piece& piece) {
+  PieceShape s{};
+  s.z0 = bottom(piece), s.z1 = top(piece);
+  s.r0 = radius_at(piece, s.z0), s.r1 = radius_at(piece, s.z1);
+  s.slope = std::holds_alternative<Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0,
+  s.cosine = 1 / std::hypot(1.0, s.slope);
+  s.inverse = 1 / s.r0;
+  if (const auto* round = std::get_if<Round>(&piece)) {
+    s.round = true, s.e = round->e, s.zc = round->zc, s.r = round->r;
+    s.inverse = 1 / s.r;
+    s.ball = s.e == 0 && s.z0 <= s.zc - s.r && s.z1 >= s.zc + s.r;
+  }
+  return s;
+}
+
+bool smooth_together(const Piece& below, const Piece& above) {
+  return slope_at(below, bottom(above)) <= slope_at(above, bottom(above)) + 1e-9;
+}
+
 std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
   std::vector<ConvexGroup> out;
   for (const Piece& piece : pieces) {
@@ -121,29 +123,6 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
   along = 0.5 * tolerance, aside = std::min(0.2 * tolerance, 0.02 * group.thinnest);
   const double moved = (speed + angle * lever) * (t1 - t0);
   deepest = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(moved / aside, 1.0)))), 1, 40);
-}
-
-Vec3 turning_normal(const ConvexGroup& group, const Motion& motion, const Vec3& p, double t) {
-  Vec3 n{0, 0, 1};
-  double least = std::numeric_limits<double>::infinity();
-  for (const Piece& piece : group.all()) {
-    const SweptPiece body(piece, motion.tip(t), motion.axis(t), Vec3(0));
-    SweptHit near, far;
-    if (!body.hit(p.x, p.y, near, far)) continue;
-    for (const SweptHit& hit : {near, far})
-      if (const double off = std::abs(hit.s - p.z); off < least) least = off, n = body.normal(p.x, p.y, hit);
-  }
-  const Vec3 velocity = motion.velocity(p, t);
-  const double speed = glm::length(velocity), slide = glm::dot(n, velocity);
-  if (t == 0 || t == 1 || !(std::abs(slide) > 0)) return n;
-  // Within the move the swept surface is where n · v = 0 (3.1). On a smooth side t is near that; what n · v is left is
-  // taken out. On an edge no side has it: there the edge sweeps the surface.
-  if (std::abs(slide) <= 0.15 * speed) return glm::normalize(n - (slide / (speed * speed)) * velocity);
-  const Vec3 axis = motion.axis(t), w = p - motion.tip(t), out = w - glm::dot(w, axis) * axis;
-  const Vec3 swept = glm::cross(glm::cross(axis, out), velocity);
-  const double length = glm::length(swept);
-  if (!(length > 1e-9 * speed * glm::length(out))) return n;
-  return swept * ((glm::dot(swept, out) < 0 ? -1.0 : 1.0) / length);
 }
 
 }  // namespace riffler

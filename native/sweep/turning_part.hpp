@@ -29,6 +29,9 @@ struct ConvexGroup {
   std::span<const Piece> all() const { return {pieces.data(), count}; }
 };
 
+PieceShape shape_of(const Piece& piece);
+/// Whether two pieces of a group, one above the other, meet without an edge.
+bool smooth_together(const Piece& below, const Piece& above);
 /// Splits pieces, from the tip upwards, into groups whose unions are convex; neighbours overlap a little.
 std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces);
 
@@ -50,8 +53,5 @@ struct TurningBody {
   double aside;        ///< mm in space that a supporting plane may be behind
   int deepest;         ///< halvings after which no point moves more than `aside`
 };
-
-/// Unit normal, out of the group, where the sweep has its boundary at p at time t.
-Vec3 turning_normal(const ConvexGroup& group, const Motion& motion, const Vec3& p, double t);
 
 }  // namespace riffler
