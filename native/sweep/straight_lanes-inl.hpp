@@ -25,20 +25,26 @@ class StraightLanes {
     r_ = {along(b_.e1), along(b_.e2), along(b_.axis)};
   }
 
-  /// Looks for both ends in the lanes of `mask`; rounds only between the heights `low` and `high`, where the material
-  /// is. An end beyond them need not be exact.
+  /// Looks for both ends in the lanes of `mask`, between the heights `low` and `high`, where the material is; an end
+  /// beyond them need not be exact.
   void find(M mask, V low, V high) {
-    M met[ConvexGroup::kMost];
+    M met[ConvexGroup::kMost], open = mask;
+    for (std::size_t k = 0; k < b_.count; ++k) {
+      const SweptShape& p = b_.pieces[k];
+      met[k] = both(open, both(hn::Lt(low, set(p.ceiling)), hn::Gt(high, set(p.floor))));
+      if (p.round && p.e != 0 && !none(met[k])) met[k] = near_of_round(k, met[k], low, high, open);
+    }
+    if (none(open)) return;
     for (std::size_t k = b_.count; k-- > 0;) {  // the upper pieces are simple and often make `far` known
       const SweptShape& p = b_.pieces[k];
-      met[k] = mask_ = both(mask, both(hn::Lt(low, set(p.ceiling)), hn::Gt(high, set(p.floor))));
+      mask_ = met[k] = both(met[k], open);
       if (none(mask_)) continue;
       if (!p.round)
         frustum(p);
       else if (p.e == 0)
         ball(p);
       else
-        met[k] = round(p, low, high);
+        far_of_round(p, low, high);
     }
     // Without its neighbour, the face of a piece towards it is a bound.
     for (std::size_t k = 0; k + 1 < b_.count; ++k) {
@@ -108,23 +114,51 @@ class StraightLanes {
     }
   }
 
-  /// Torus or barrel. Returns the lanes that meet it where the material is.
-  M round(const SweptShape& p, V low, V high) {
-    faces(p);
-    const StraightRound round(b_, p, r_);
+  /// Torus or barrel. Returns the lanes of `mask` that meet it where the material is. Takes those from `open` in which
+  /// nothing else matters: the end is on the group's own surface, and the top of the material lies in the group then.
+  M near_of_round(std::size_t k, M mask, V low, V high, M& open) {
+    const SweptShape& p = b_.pieces[k];
     V s, way;
-    const M near = round.end(mask_, 1, low, high, s, way);
-    add_near(both(near, round.on_side(s, way)), s, way);
-    // Where the top of the material lies in the body, its far end does not matter.
-    const M rest = both(near, hn::Lt(out_.far, high));
-    if (none(rest)) return near;
-    const M held = both(rest, round.holds(high, way));
-    add_far(held, high, way);
-    const M open = without(rest, held);
-    if (none(open)) return near;
-    const M far = round.end(open, -1, low, high, s, way);
-    add_far(both(far, round.on_side(s, way)), s, way);
+    const M near = StraightRound(b_, p, r_).end(mask, 1, low, high, s, way);
+    mask_ = mask;
+    add_near(both(near, on_side(p, height(s, way))), s, way);
+    const V z = height(s, way);
+    M own = near;
+    if (p.cut0) own = both(own, hn::Ge(z, set(p.z0)));
+    if (k + 1 < b_.count) own = both(own, hn::Le(z, set(b_.pieces[k + 1].z0)));
+    if (none(own)) return near;
+    M held = no_lane();
+    for (std::size_t i = k; i < b_.count; ++i) held = either(held, holds(b_.pieces[i], high, way));
+    const M done = both(own, held);
+    add_far(done, high, way);
+    open = without(open, done);
     return near;
+  }
+
+  void far_of_round(const SweptShape& p, V low, V high) {
+    faces(p);
+    const M rest = both(mask_, hn::Lt(out_.far, high));
+    if (none(rest)) return;
+    V s, way;
+    const M far = StraightRound(b_, p, r_).end(rest, -1, low, high, s, way);
+    add_far(both(far, on_side(p, height(s, way))), s, way);
+  }
+
+  /// Height on the axis of the rays' points at s when the tool is at `way`.
+  V height(V s, V way) const { return less(hn::Add(r_.z, hn::Mul(s, set(b_.oz))), way, b_.mo); }
+
+  /// Lanes whose point at s lies in the piece when the tool is at `way`.
+  M holds(const SweptShape& p, V s, V way) const {
+    const V a = hn::Sub(hn::Add(r_.x, hn::Mul(s, set(b_.tilt))), hn::Mul(way, set(b_.m1)));
+    const V b = less(r_.y, way, b_.m2), z = height(s, way);
+    const V square = hn::Add(hn::Mul(a, a), hn::Mul(b, b));
+    const M on = both(hn::Ge(z, set(p.z0)), hn::Le(z, set(p.z1)));
+    if (!p.round) {
+      const V radius = hn::Add(set(p.r0), hn::Mul(set(p.slope), hn::Sub(z, set(p.z0))));
+      return both(on, hn::Le(square, hn::Mul(radius, radius)));
+    }
+    const V out = max(hn::Sub(sqrt(square), set(p.e)), zero()), up = hn::Sub(z, set(p.zc));
+    return both(on, hn::Le(hn::Add(hn::Mul(out, out), hn::Mul(up, up)), set(p.r * p.r)));
   }
 
   Stretch slab_at(const SweptShape& p, double way) const {
