@@ -57,9 +57,10 @@ double lever_of(const ConvexGroup& group) {
   return lever;
 }
 
-/// The times at which the tip is within `reach` of the box, on a way along which the tool does not turn. What a move
-/// does before and after need not be computed with: 90 km away, a micron is beyond double precision.
-Interval near_box(const Motion& motion, const Box3& box, double reach) {
+/// The times at which the tip is within the group's reach of the box. What a move does before and after need not be
+/// computed with: 90 km away, a micron is beyond double precision, and a turn is long in the time a passing tool needs.
+Interval near_box(const ConvexGroup& group, const Motion& motion, const Box3& box) {
+  const double reach = 1.01 * lever_of(group);
   Interval times{0, 1};
   const Vec3 from = motion.from().tip, way = motion.to().tip - from;
   for (int i = 0; i < 3; ++i) {
@@ -102,11 +103,14 @@ void ball_chords(const ConvexGroup& group, const Motion& motion, double t0, doub
 
 void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t move, const Box3& box,
                    double tolerance, const std::function<void(Step&&)>& sink) {
-  const int n = static_cast<int>(std::ceil(motion.angle() / kWidestPart));
-  const double angle = motion.angle() / n;
-  Pose from = motion.from();
+  const Interval times = near_box(whole, motion, box);
+  if (times.empty()) return;
+  const double length = times.length();
+  const int n = std::max(1, static_cast<int>(std::ceil(motion.angle() * length / kWidestPart)));
+  const double angle = motion.angle() * length / n;
+  Pose from = times.near > 0 ? motion.at(times.near) : motion.from();
   for (int k = 0; k < n; ++k) {
-    const double t0 = static_cast<double>(k) / n, t1 = static_cast<double>(k + 1) / n;
+    const double t0 = times.near + length * k / n, t1 = k + 1 == n ? times.far : times.near + length * (k + 1) / n;
     const Pose to = motion.at(t1);
     ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
     if (group.count > 0 && is_ball(group.pieces[0])) {
@@ -135,7 +139,7 @@ void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, st
     Pose from = motion.from(), to = motion.to();
     const ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
     if (group.count == 0) continue;
-    const Interval times = near_box(motion, box, 1.01 * lever_of(group));
+    const Interval times = near_box(group, motion, box);
     if (times.empty()) continue;
     if (times.near > 0) from = motion.at(times.near);
     if (times.far < 1) to = motion.at(times.far);

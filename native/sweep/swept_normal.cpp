@@ -64,7 +64,8 @@ Vec3 swept_normal(const ConvexGroup& group, const Motion& motion, const Vec3& p,
   const auto in_space = [&](const Vec2& n) { return n.x * radial + n.y * axis; };
   const Vec3 n = in_space(at.normal), velocity = motion.velocity(p, t);
   const double speed = glm::length(velocity), slide = glm::dot(n, velocity);
-  if (t == 0 || t == 1 || !(std::abs(slide) > 0)) return n;
+  const double rounding = 1e-9;
+  if (t <= rounding || t >= 1 - rounding || !(std::abs(slide) > 0)) return n;
   // Within the move the swept surface is where n · v = 0 (3.1): on an edge, for a normal between those of both sides.
   // On a smooth side t is near that; what n · v is left is taken out.
   const bool edge =

@@ -93,5 +93,87 @@ TEST(Carve, ARayThroughTheLineOfAnApexKeepsItsRidge) {
         }
 }
 
+TEST(Carve, ATurnOnALongWayIsWorkOnlyWhereTheToolPasses) {
+  // A million radii and half a turn, of which the tool spends a millionth near the block.
+  const double r = 1.5e-3;
+  const Vec3 middle(0.008, 0.006, 0.006), way(1500, 900, 600);
+  const std::vector<Pose> poses{{middle - 0.5 * way, glm::normalize(Vec3(1, 0.2, 0.1))},
+                                {middle + 0.5 * way, glm::normalize(Vec3(-1, 0.3, 0.5))}};
+  Volume volume = Volume::block({{{0, 0, 0}, {0.016, 0.012, 0.012}}, 5e-4, "xyz"});
+  CarveOptions options;
+  options.tolerance = r / 50;
+  const Cut cut = carve(volume, cutters::ball(2 * r, 2 * r), poses, options);
+  EXPECT_GT(cut.removed[0], 0);
+  EXPECT_LT(volume.take_stats().hits, 10000U);
+}
+
+TEST(Carve, APieceThatCannotReachLeavesItsNeighbourBounded) {
+  // The shank stays below the block, the cone above it does not: on the way up, rays enter through the shank.
+  const Tool tool = cutters::profile(
+      {{{0.49131754498843011, 0.40722570406334546}, Vec2(0, 0.5)}, {{3, 13.692798960188219}, {}}}, 35.017852589786258);
+  const Vec3 axis(-0.87353197686686335, -0.22275330595436235, -0.43280809844256862);
+  const std::vector<Pose> poses{{{-129.74732872570448, 0.23872157529847637, 4.6778759650988686}, axis},
+                                {{342.90258616541985, 20.897766697430594, -2.786077251926657}, axis}};
+  Volume volume = Volume::block({{{0, 0, 0}, {16, 8, 15}}, 0.5, "z"});
+  carve(volume, tool, poses);
+  const reference::SweptDistance distance(tool.profile(), Motion(poses[0], poses[1]));
+  const Grid& grid = volume.reference();
+  int ends = 0;
+  for (int i = 0; i < grid.nu(); ++i)
+    for (int j = 0; j < grid.nv(); ++j)
+      for (const Span& span : grid.ray(i, j))
+        for (const double s : {span.near, span.far})
+          if (s != grid.box().lower.z && s != grid.box().upper.z)
+            ++ends, EXPECT_LT(std::abs(distance({grid.u(i), grid.v(j), s})), 1e-8) << i << ", " << j;
+  EXPECT_GT(ends, 300);
+}
+
+TEST(SweptNormal, IsTheGradientOfTheDistance) {
+  const double tilt = 0.3;
+  const Vec3 upright(0, 0, 1), leaning(std::sin(tilt), 0, std::cos(tilt));
+  const std::vector<std::vector<Pose>> moves = {{{{6, 10, 7}, upright}, {{14, 11, 6}, upright}},
+                                                {{{6, 10, 7}, leaning}, {{14, 11, 7}, leaning}},
+                                                {{{10, 10, 9}, leaning}, {{10, 10, 5}, leaning}},
+                                                {{{6, 10, 7}, upright}, {{14, 10, 6}, leaning}}};
+  for (const Tool& tool : {cutters::ball(6, 30), cutters::flat(6, 30), cutters::fillet(8, 1, 30),
+                           cutters::taper(0.5, 0.2, 8, 40), cutters::cone_end(1.0, 1, 0.4, 8, 40), waisted()})
+    for (const std::vector<Pose>& poses : moves) {
+      const reference::SweptDistance distance(tool.profile(), Motion(poses[0], poses[1]));
+      Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 12}}, 0.8, "xyz"});
+      CarveOptions options;
+      options.tolerance = 1e-5;
+      carve(volume, tool, poses, options);
+      int seen = 0, edges = 0, wrong = 0;
+      for (const Grid& grid : volume.grids())
+        for (int i = 0; i < grid.nu(); ++i)
+          for (int j = 0; j < grid.nv(); ++j) {
+            const auto ray = grid.ray(i, j);
+            for (std::size_t k = 0; k < ray.size(); ++k)
+              for (const bool near : {true, false}) {
+                const double end = near ? ray[k].near : ray[k].far;
+                const Vec3 p = to_world(grid.axis(), {grid.u(i), grid.v(j), end});
+                const bool own = end == grid.box().lower.z || end == grid.box().upper.z;
+                if (own || std::abs(distance(p)) > 2e-5) continue;  // not of the cut
+                Vec3 gradient;
+                for (int c = 0; c < 3; ++c) {
+                  Vec3 step(0);
+                  step[c] = 2e-3;
+                  gradient[c] = (distance(p + step) - distance(p - step)) / 4e-3;
+                }
+                // On an edge the differences lie on both of its sides.
+                if (std::abs(glm::length(gradient) - 1) > 1e-3) {
+                  ++edges;
+                  continue;
+                }
+                const PackedNormal& packed = near ? grid.ray_normals(i, j)[k].near : grid.ray_normals(i, j)[k].far;
+                ++seen, wrong += glm::length(packed.unpack() + gradient) > 0.02;
+              }
+          }
+      EXPECT_GT(seen, 50) << tool.kind();
+      EXPECT_LT(edges, seen / 2) << tool.kind();
+      EXPECT_EQ(wrong, 0) << tool.kind() << ", move " << &poses - moves.data() << ", of " << seen;
+    }
+}
+
 }  // namespace
 }  // namespace riffler
