@@ -122,9 +122,11 @@ TEST(Carve, APieceThatCannotReachLeavesItsNeighbourBounded) {
   for (int i = 0; i < grid.nu(); ++i)
     for (int j = 0; j < grid.nv(); ++j)
       for (const Span& span : grid.ray(i, j))
-        for (const double s : {span.near, span.far})
-          if (s != grid.box().lower.z && s != grid.box().upper.z)
-            ++ends, EXPECT_LT(std::abs(distance({grid.u(i), grid.v(j), s})), 1e-8) << i << ", " << j;
+        for (const double s : {span.near, span.far}) {
+          if (s == grid.box().lower.z || s == grid.box().upper.z) continue;
+          EXPECT_LT(std::abs(distance({grid.u(i), grid.v(j), s})), 1e-8) << i << ", " << j;
+          ++ends;
+        }
   EXPECT_GT(ends, 300);
 }
 
