@@ -1,8 +1,9 @@
-// What a turning part takes from a ray, for many rays at a time. docs/methods.md, "Carving", has the proof.
+// What a turning part takes from the rays of a tile, many at a time. docs/methods.md, "Carving", has the proof.
 //
 // A convex body lies behind each of its supporting planes at every pose, for the plane moves with it. Hits at exact
 // poses say what the body surely takes; planes at the same poses say what it surely does not reach between them. Where
 // both agree up to the tolerance, a ray is done; where they do not, the time between two poses is halved for that ray.
+// For most rays one plane or one pose is enough. Those that need more are gathered, so that no lane waits for another.
 #if defined(RIFFLER_SWEEP_TURNING_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_TURNING_LANES_INL_HPP
 #undef RIFFLER_SWEEP_TURNING_LANES_INL_HPP
@@ -10,227 +11,293 @@
 #define RIFFLER_SWEEP_TURNING_LANES_INL_HPP
 #endif
 
+#include <algorithm>
+#include <vector>
+
+#include "sweep/certificate_lanes-inl.hpp"
 #include "sweep/cut_lanes-inl.hpp"
-#include "sweep/pose_lanes-inl.hpp"
+#include "sweep/hit_lanes-inl.hpp"
+#include "sweep/lane_queue-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
-/// A supporting plane seen along the rays: height over it of the ray's point s, h0 + h1 s, and how that changes, its
-/// rate g0 + g1 s and acceleration k0 + k1 s.
-struct Plane {
-  V h0, h1, g0, g1, k0, k1;
+/// A ray in each lane.
+struct Ray {
+  V place;  // index in the tile
+  V u, v;
+  V low, high;  // its material, from the origin
+  V direction;  // of time: 1, or −1 where it is looked at from the end
 };
 
-HWY_INLINE Plane choose(M m, const Plane& a, const Plane& b) {
-  return {pick(m, a.h0, b.h0), pick(m, a.h1, b.h1), pick(m, a.g0, b.g0),
-          pick(m, a.g1, b.g1), pick(m, a.k0, b.k0), pick(m, a.k1, b.k1)};
-}
+/// What was found to be taken, and when.
+struct Found {
+  Stretch at;
+  V t_near, t_far;
+};
 
-/// One pose a lane: where the rays meet the body, and a supporting plane for each end. Where a ray misses, both planes
-/// are the one between ray and body.
-struct Sample {
-  V t;
+/// A ray that one pose has not settled.
+struct Open {
+  Ray ray;
+  Found found;
+  V t;  // of that pose
   Stretch hit;
-  Plane near, far;
-  V across, tip;  ///< distance of the ray's foot from the tip, across the ray; height of the tip
 };
+
+template <class F>
+HWY_INLINE void each(Stretch& s, const F& f) {
+  f(s.near), f(s.far);
+}
+template <class F>
+HWY_INLINE void each(Ray& r, const F& f) {
+  f(r.place), f(r.u), f(r.v), f(r.low), f(r.high), f(r.direction);
+}
+template <class F>
+HWY_INLINE void each(Open& o, const F& f) {
+  each(o.ray, f), each(o.found.at, f), f(o.found.t_near), f(o.found.t_far), f(o.t), each(o.hit, f);
+}
 
 class TurningLanes {
  public:
-  TurningLanes(const TurningBody& body, RayWindow& window) : b_(body), w_(window) {}
+  TurningLanes(const TurningBody& body, RayWindow& window) : b_(body), w_(window), certificate_(body) {}
 
-  void cut(double u, Group& g) {
-    u_ = u, group_ = &g, emitted_ = false;
-    const V origin = set(b_.origin);
-    low_ = hn::Sub(g.near, origin), high_ = hn::Sub(g.far, origin);
-    found_ = nothing(), t_near_ = t_far_ = zero();
-    const Sample first = sample(set(b_.t0), g.active);
-    merge(first, g.active);
-    // Behind the tool, what the last move left is where this one begins: one plane tells that it moves away.
-    const M open = without(g.active, certain_alone(first));
-    if (!none(open)) refine(0, first, sample(set(b_.t1), open), open);
-    take(both(g.active, hn::Lt(found_.near, found_.far)));
+  void cut() {
+    const V index = hn::Iota(kD, 0);
+    for_groups(w_, [&](double u, const Group& g) {
+      const V origin = set(b_.origin);
+      Ray ray{hn::Add(set(g.ray), index), set(u), g.v, hn::Sub(max(g.near, set(w_.low)), origin),
+              hn::Sub(g.far, origin),     set(1)};
+      look(ray, g.active);
+    });
+    if (reached_.count() > 0) settle();
+    refine();
+    take();
   }
 
  private:
-  Sample sample(V t, M active) {
-    w_.hits += hn::CountTrue(kD, active);
-    PoseLanes pose(b_, set(u_), group_->v, t);
-    const M hit = pose.find(active, high_);
-    const V3& w = pose.from_tip();
-    Sample s;
-    s.t = t, s.tip = hn::Neg(w.z), s.across = sqrt(hn::Add(hn::Mul(w.x, w.x), hn::Mul(w.y, w.y)));
-    s.hit = where(hit, pose.stretch());
-    s.near = plane(w, pose.near(hit));
-    s.near.h0 = hn::Neg(hn::Mul(s.near.h1, s.hit.near));
-    s.far = s.near;
-    // Ends above the material need no plane.
-    const M inside = both(hit, hn::Lt(s.hit.far, high_));
-    if (!none(inside)) {
-      s.far = plane(w, pose.far(inside));
-      s.far.h0 = hn::Neg(hn::Mul(s.far.h1, s.hit.far));
-    }
-    const M missed = without(active, hit);
-    if (!none(missed)) {
-      V height = zero();
-      Plane between = plane(w, pose.between(missed, height));
-      between.h0 = height;
-      s.near = choose(hit, s.near, between), s.far = choose(hit, s.far, between);
-    }
-    return s;
+  /// Most rays are not reached at all, which needs no hit to tell: those behind the tool, where what the last move left
+  /// is where this one begins, and those beside it or below.
+  void look(Ray& ray, M active) {
+    const V3 axis{set(b_.start.axis[0]), set(b_.start.axis[1]), set(b_.start.axis[2])};
+    const V3 from_tip{hn::Sub(ray.u, set(b_.start.tip[0])), hn::Sub(ray.v, set(b_.start.tip[1])),
+                      set(-b_.start.tip[2])};
+    const Pose pose{axis, from_tip};
+    const Kept all{ray.high, ray.low, ray.direction};
+    const Plane p = certificate_.towards(pose, all);
+    const M open = without(active, certificate_.stays_away(p, certificate_.fourth(pose, ray.low, ray.high), all));
+    if (none(open)) return;
+    // A tool that comes is best looked at where it arrives.
+    ray.direction = pick(hn::Lt(hn::Add(p.g0, hn::Mul(p.g1, ray.high)), zero()), set(-1), set(1));
+    reached_.add(open, ray);
+    if (reached_.count() >= lanes()) settle();
   }
 
-  /// The plane with outward normal n, but for its height. With X from the tip to the ray's point, ẋ = −(V + Ω × X) and
-  /// ẍ = Ω × (Ω × X) + 2 Ω × V in the tool's frame.
-  Plane plane(const V3& w, const V3& n) const {
-    const V3 m = cross(n, b_.spin), c = cross(m, b_.spin);
-    const V drift = dot(m, b_.way);
-    return {zero(),
-            n.z,
-            hn::Neg(hn::Add(dot(n, b_.way), dot(m, w))),
-            hn::Neg(m.z),
-            hn::Add(dot(c, w), hn::Add(drift, drift)),
-            c.z};
+  /// Looks at the pose at one end of the part. Where the tool moves away from there, or comes to where it stays, that
+  /// tells all.
+  void settle() {
+    Ray ray{};
+    const M active = reached_.take(hn::FirstN(kD, lanes()), ray);
+    const V t = pick(hn::Lt(ray.direction, zero()), set(b_.t1), set(b_.t0));
+    const Pose pose = pose_at(b_, ray.u, ray.v, t);
+    Open open{ray, {nothing(), zero(), zero()}, t, hits(ray, pose, active)};
+    merge(open.found, t, open.hit, active);
+    const M rest = without(active, certain(open, pose));
+    finish(open.ray, open.found, without(active, rest));
+    open_.add(rest, open);
+    if (open_.full()) refine();
+  }
+
+  /// Halves the time for the rays that are open, every one at its own pace.
+  void refine() {
+    Open now{};
+    Sample last{}, next{};  // others, for later, are on the stack
+    M busy = no_lane();
+    V split = zero();
+    for (;;) {
+      const M fresh = open_.take(hn::Not(busy), now);
+      busy = either(busy, fresh);
+      if (none(busy)) return;
+      const V end = pick(hn::Lt(now.ray.direction, zero()), set(b_.t0), set(b_.t1));
+      const V t = pick(fresh, end, hn::Add(last.t, hn::Mul(now.ray.direction, split)));
+      next.depth = hn::Add(next.depth, set(1));  // both halves are one deeper
+      pending_.push(without(busy, fresh), next);
+      const Pose pose = pose_at(b_, now.ray.u, now.ray.v, t);
+      next.t = t, next.hit = hits(now.ray, pose, busy), next.depth = pick(fresh, zero(), next.depth);
+      merge(now.found, t, next.hit, busy);
+      set_planes(next, pose, now, busy);
+      if (!none(fresh)) {
+        Sample first{};
+        first.t = now.t, first.hit = now.hit;
+        set_planes(first, pose_at(b_, now.ray.u, now.ray.v, now.t), now, fresh);
+        last = choose(fresh, first, last);
+      }
+      // On to the pose up to which there is nothing more to ask.
+      for (M good = advance(now, last, next, busy, split); !none(good); good = advance(now, last, next, good, split)) {
+        last = choose(good, next, last);
+        const M done = both(good, pending_.empty());
+        finish(now.ray, now.found, done), busy = without(busy, done), good = without(good, done);
+        if (none(good)) break;
+        pending_.pop(good, next);
+      }
+    }
+  }
+
+  /// Lanes for which nothing is open from the last sample to the next; `split`: for the others, the time after the last
+  /// at which to look.
+  M advance(Open& now, const Sample& last, const Sample& next, M mask, V& split) {
+    M apart = merge(now.found, next.t, next.hit, mask);
+    const V span = abs(hn::Sub(next.t, last.t)), half = hn::Mul(set(0.5), span);
+    const M deepest = both(mask, hn::Ge(next.depth, set(b_.deepest + kGuided)));
+    if (!none(apart)) {
+      // A new stretch: what was found before is complete if the body was off the ray in between.
+      const M done = both(apart, either(deepest, hn::Ge(last.hit.near, last.hit.far)));
+      if (!none(done)) restart(now, next, done), apart = without(apart, done);
+    }
+    V guess = half;
+    const M good = both(mask, either(deepest, without(certain(now, last, next, span, guess), apart)));
+    // First where the planes say that the end is; later in the middle, which surely comes to an end.
+    split = pick(without(mask, good), pick(hn::Ge(next.depth, set(kGuided)), half, guess), split);
+    return good;
+  }
+
+  Stretch hits(const Ray& ray, const Pose& pose, M active) {
+    w_.hits += hn::CountTrue(kD, active);
+    return HitLanes(b_, pose).find(active, ray.high);
+  }
+
+  void set_planes(Sample& s, const Pose& pose, const Open& o, M mask) const {
+    const M missed = both(mask, hn::Ge(s.hit.near, s.hit.far));
+    s.fourth = certificate_.fourth(pose, o.ray.low, o.ray.high);
+    s.below = s.above = certificate_.between(pose, below(o), missed);
+    if (!none(both(mask, has_above(o)))) s.above = certificate_.between(pose, above(o), missed);
   }
 
   /// Joins a hit to what was found where both overlap. Returns the lanes in which they lie apart.
-  M merge(const Sample& s, M mask) {
-    const M hit = both(mask, hn::Lt(s.hit.near, s.hit.far)), fresh = hn::Gt(found_.near, found_.far);
-    const M overlap = both(hn::Le(s.hit.near, found_.far), hn::Ge(s.hit.far, found_.near));
+  static M merge(Found& found, V t, Stretch s, M mask) {
+    const M hit = both(mask, hn::Lt(s.near, s.far)), fresh = hn::Gt(found.at.near, found.at.far);
+    const M overlap = both(hn::Le(s.near, found.at.far), hn::Ge(s.far, found.at.near));
     const M join = both(hit, either(fresh, overlap));
-    const M lower = both(join, hn::Lt(s.hit.near, found_.near)), higher = both(join, hn::Gt(s.hit.far, found_.far));
-    found_.near = pick(lower, s.hit.near, found_.near), t_near_ = pick(lower, s.t, t_near_);
-    found_.far = pick(higher, s.hit.far, found_.far), t_far_ = pick(higher, s.t, t_far_);
+    const M lower = both(join, hn::Lt(s.near, found.at.near)), higher = both(join, hn::Gt(s.far, found.at.far));
+    found.at.near = pick(lower, s.near, found.at.near), found.t_near = pick(lower, t, found.t_near);
+    found.at.far = pick(higher, s.far, found.at.far), found.t_far = pick(higher, t, found.t_far);
     return without(hit, join);
   }
 
-  /// Makes sure of the lanes of `mask` between the poses of a, which is merged already, and b.
-  void refine(int depth, const Sample& a, const Sample& b, M mask) {
-    M apart = merge(b, mask);
-    const bool last = depth >= b_.deepest + kGuided;
-    if (!none(apart)) {
-      // A new stretch: what was found before is complete if the body was off the ray in between.
-      const M done = last ? apart : without(apart, hn::Lt(a.hit.near, a.hit.far));
-      if (!none(done)) restart(b, done), apart = without(apart, done);
-    }
-    if (last) return;
-    const V span = hn::Sub(b.t, a.t);
-    V split = hn::Mul(set(0.5), span);
-    const M open = without(mask, without(certain(a, b, span, split), apart));
-    if (none(open)) return;
-    // First where the planes say that the end is; later in the middle, which surely comes to an end.
-    if (depth >= kGuided) split = hn::Mul(set(0.5), span);
-    const Sample c = sample(hn::Add(a.t, split), open);
-    merge(c, open);
-    refine(depth + 1, a, c, open);
-    refine(depth + 1, c, b, open);
+  /// The material below and above what was found, but for what an end may miss.
+  Kept below(const Open& o) const {
+    const V at = hn::Sub(o.found.at.near, set(b_.along));
+    return {max(min(at, o.ray.high), o.ray.low), o.ray.low, o.ray.direction};
+  }
+  Kept above(const Open& o) const {
+    const V at = hn::Add(o.found.at.far, set(b_.along));
+    return {min(max(at, o.ray.low), o.ray.high), o.ray.high, o.ray.direction};
+  }
+  static M has_below(const Open& o) { return hn::Gt(o.found.at.near, o.ray.low); }
+  static M has_above(const Open& o) {
+    return both(hn::Lt(o.found.at.near, o.found.at.far), hn::Lt(o.found.at.far, o.ray.high));
   }
 
-  void restart(const Sample& s, M mask) {
-    take(mask);
-    found_.near = pick(mask, s.hit.near, found_.near), found_.far = pick(mask, s.hit.far, found_.far);
-    t_near_ = pick(mask, s.t, t_near_), t_far_ = pick(mask, s.t, t_far_);
-    emitted_ = true;
-  }
-
-  void take(M mask) {
-    if (none(mask)) return;
-    const V origin = set(b_.origin);
-    Group& g = *group_;
-    if (emitted_) g.near = hn::LoadU(kD, w_.near + g.ray), g.far = hn::LoadU(kD, w_.far + g.ray);
-    const Stretch cut{hn::Add(found_.near, origin), hn::Add(found_.far, origin)};
-    subtract(w_, u_, g, mask, cut, t_near_, t_far_);
-  }
-
-  /// Lanes in which the first pose's planes alone keep the body from all material outside of what was found.
-  M certain_alone(const Sample& a) const {
-    const V along = set(b_.along), span = set(b_.t1 - b_.t0);
-    const auto keeps = [&](const Plane& p, V s0, V s1) {
-      const Height at0 = height(p, s0, third(a, s0, span), false), at1 = height(p, s1, third(a, s1, span), false);
-      const V least = min(min(at0.h, at1.h), min(at0.after(span), at1.after(span)));
-      return hn::Ge(least, set(-b_.aside));
+  /// Lanes in which planes at the first pose alone keep the body from all material outside of what was found.
+  M certain(const Open& o, const Pose& pose) const {
+    const V fourth = certificate_.fourth(pose, o.ray.low, o.ray.high);
+    const auto stays_away = [&](const Kept& kept) {
+      return certificate_.stays_away(certificate_.towards(pose, kept), fourth, kept);
     };
-    const M good =
-        either(hn::Le(found_.near, low_), keeps(a.near, low_, max(min(hn::Sub(found_.near, along), high_), low_)));
-    const M need_far = both(hn::Lt(found_.near, found_.far), hn::Lt(found_.far, high_));
-    if (none(need_far)) return good;
-    return both(good,
-                either(hn::Not(need_far), keeps(a.far, high_, min(max(hn::Add(found_.far, along), low_), high_))));
+    const M good = either(hn::Not(has_below(o)), stays_away(below(o))), more = has_above(o);
+    if (none(more)) return good;
+    return both(good, either(hn::Not(more), stays_away(above(o))));
   }
 
-  /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, between the
-  /// poses of a and b. `split`: for the others, the time after a to look at next.
-  M certain(const Sample& a, const Sample& b, V span, V& split) const {
-    const V along = set(b_.along);
-    const V near = max(min(hn::Sub(found_.near, along), high_), low_);
-    const V far = min(max(hn::Add(found_.far, along), low_), high_);
-    const M need_near = hn::Gt(found_.near, low_);
-    const M need_far = both(hn::Lt(found_.near, found_.far), hn::Lt(found_.far, high_));
+  /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, for the `span`
+  /// of time from a to b. `split`: for the others, the time after a to look at next.
+  M certain(const Open& o, const Sample& a, const Sample& b, V span, V& split) const {
+    const V fourth = max(a.fourth, b.fourth);
     V until;
-    const M near_good = either(hn::Not(need_near), beyond(a, a.near, b.near, low_, near, span, until));
-    split = pick(near_good, split, until);
-    if (none(need_far)) return near_good;
-    const M far_good = either(hn::Not(need_far), beyond(a, a.far, b.far, high_, far, span, until));
-    split = pick(both(near_good, hn::Not(far_good)), until, split);
-    return both(near_good, far_good);
+    const M low_good =
+        either(hn::Not(has_below(o)), certificate_.stays_away(a.below, b.below, fourth, below(o), span, until));
+    split = pick(low_good, split, until);
+    const M high = has_above(o);
+    if (none(high)) return low_good;
+    const M high_good = either(hn::Not(high), certificate_.stays_away(a.above, b.above, fourth, above(o), span, until));
+    split = pick(both(low_good, hn::Not(high_good)), until, split);
+    return both(low_good, high_good);
   }
 
-  /// |n · x‴| ≤ |Ω|³ |X| + 3 |Ω|² |V| at the ray's point s, for all t between the samples.
-  V third(const Sample& a, V s, V span) const {
-    const V up = abs(hn::Sub(s, a.tip));
-    const V high = max(up, a.across), low = min(up, a.across);
-    const V distance = hn::Add(hn::Add(high, hn::Mul(low, set(0.4143))), hn::Mul(set(b_.speed), span));  // ≥ |X|
-    return hn::Add(hn::Mul(distance, set(b_.pull)), set(b_.drift));
+  /// The rays of `mask` are done.
+  void finish(const Ray& ray, const Found& found, M mask) {
+    each_cut(ray, found, mask, [&](int place, const RayCut& cut) {
+      near_[place] = cut.near, far_[place] = cut.far, t_near_[place] = cut.near_t, t_far_[place] = cut.far_t;
+      taken_[place / kTileSide] |= 1U << (place % kTileSide);
+    });
   }
 
-  /// Height of one point over a plane, and a concave bound of it from below after the time tau.
-  struct Height {
-    V h, g, k, m;
-    V after(V tau) const {
-      const V bent = hn::Sub(hn::Mul(k, set(0.5)), hn::Mul(hn::Mul(m, set(1.0 / 6)), tau));
-      return hn::Add(h, hn::Mul(tau, hn::Add(g, hn::Mul(tau, bent))));
+  /// What was found so far in the lanes of `mask` is complete; from here on, another stretch is.
+  void restart(Open& o, const Sample& s, M mask) {
+    each_cut(o.ray, o.found, mask, [&](int place, const RayCut& cut) { earlier_.push_back({place, cut}); });
+    o.found.at = {pick(mask, s.hit.near, o.found.at.near), pick(mask, s.hit.far, o.found.at.far)};
+    o.found.t_near = pick(mask, s.t, o.found.t_near), o.found.t_far = pick(mask, s.t, o.found.t_far);
+  }
+
+  template <class F>
+  void each_cut(const Ray& ray, const Found& found, M mask, const F& f) const {
+    unsigned m = bits(both(mask, hn::Lt(found.at.near, found.at.far)));
+    if (!m) return;
+    double place[kLanes], near[kLanes], far[kLanes], t_near[kLanes], t_far[kLanes];
+    hn::StoreU(ray.place, kD, place);
+    hn::StoreU(hn::Add(found.at.near, set(b_.origin)), kD, near), hn::StoreU(found.t_near, kD, t_near);
+    hn::StoreU(hn::Add(found.at.far, set(b_.origin)), kD, far), hn::StoreU(found.t_far, kD, t_far);
+    for (; m; m &= m - 1) {
+      const int k = std::countr_zero(m);
+      f(static_cast<int>(place[k]), RayCut{near[k], far[k], t_near[k], t_far[k]});
     }
-  };
-  static Height height(const Plane& p, V s, V m, bool back) {
-    const V g = hn::Add(p.g0, hn::Mul(p.g1, s));
-    return {hn::Add(p.h0, hn::Mul(p.h1, s)), back ? hn::Neg(g) : g, min(hn::Add(p.k0, hn::Mul(p.k1, s)), zero()), m};
   }
 
-  /// Whether the planes p of sample a and q of the one after it keep the points s0 and s1 of the rays, and so all
-  /// between, out of the body for the time between. `until`: where the tangents of both at s1 cross.
-  M beyond(const Sample& a, const Plane& p, const Plane& q, V s0, V s1, V span, V& until) const {
-    const V m0 = third(a, s0, span), m1 = third(a, s1, span), limit = set(-b_.aside);
-    const Height p0 = height(p, s0, m0, false), p1 = height(p, s1, m1, false);
-    const Height q0 = height(q, s0, m0, true), q1 = height(q, s1, m1, true);
-    const M p_now = hn::Ge(min(p0.h, p1.h), limit), q_now = hn::Ge(min(q0.h, q1.h), limit);
-    const M p_all = both(p_now, hn::Ge(min(p0.after(span), p1.after(span)), limit));
-    const M q_all = both(q_now, hn::Ge(min(q0.after(span), q1.after(span)), limit));
-    // Both: p up to where their tangents cross, q from there on.
-    const V rise = hn::Sub(hn::Add(q1.h, hn::Mul(q1.g, span)), p1.h), slope = hn::Add(p1.g, q1.g);
-    const M level = hn::Eq(slope, zero());
-    const V crossing = pick(level, hn::Mul(set(0.5), span), hn::Div(rise, pick(level, set(1), slope)));
-    until = min(max(crossing, hn::Mul(set(0.03), span)), hn::Mul(set(0.97), span));
-    const V rest = hn::Sub(span, until);
-    const M p_part = hn::Ge(min(p0.after(until), p1.after(until)), limit);
-    const M q_part = hn::Ge(min(q0.after(rest), q1.after(rest)), limit);
-    return either(either(p_all, q_all), both(both(p_now, q_now), both(p_part, q_part)));
+  /// Takes from the rays what was found, in their order, so that sums do not depend on who was done first.
+  void take() {
+    std::stable_sort(earlier_.begin(), earlier_.end(), [](const Cut& a, const Cut& b) { return a.ray < b.ray; });
+    for (const Cut& c : earlier_) {
+      const bool thick = c.cut.far - c.cut.near > w_.thinnest;
+      if (!thick || c.cut.near >= w_.far[c.ray] || c.cut.far <= w_.near[c.ray]) continue;
+      ++w_.changed, w_.cut(w_.self, c.ray, c.cut);
+    }
+    for (int a = w_.first_row; a <= w_.last_row; ++a)
+      for (int b = w_.first[a]; b < w_.end[a]; b += lanes()) {
+        const unsigned taken = (taken_[a] >> b) & ((1U << lanes()) - 1);
+        if (!taken) continue;
+        const int ray = a * kTileSide + b;
+        const M mask = from_bits(taken);
+        const Group g{ray,
+                      (b - w_.first[a]) % kLanes,
+                      hn::LoadU(kD, w_.v + b),
+                      hn::LoadU(kD, w_.near + ray),
+                      hn::LoadU(kD, w_.far + ray),
+                      mask};
+        subtract(w_, w_.u[a], g, mask, {hn::LoadU(kD, near_ + ray), hn::LoadU(kD, far_ + ray)},
+                 hn::LoadU(kD, t_near_ + ray), hn::LoadU(kD, t_far_ + ray));
+      }
   }
 
   static constexpr int kGuided = 8;
+  static constexpr int kMostPending = 50;  // kGuided and the most halvings (turning_part.cpp), and one
   const TurningBody& b_;
   RayWindow& w_;
-  double u_ = 0;
-  Group* group_ = nullptr;
-  bool emitted_ = false;
-  V low_, high_;  // material, from the origin
-  Stretch found_;
-  V t_near_, t_far_;
+  Certificate certificate_;
+  LaneQueue<Ray, 2 * kLanes> reached_;
+  LaneQueue<Open, 16 * kLanes> open_;
+  LaneStack<Sample, kMostPending> pending_;
+  // Of the tile's rays: which lose something, and what.
+  std::uint32_t taken_[kTileSide] = {};
+  double near_[kTileRays + kLanes], far_[kTileRays + kLanes], t_near_[kTileRays + kLanes], t_far_[kTileRays + kLanes];
+  struct Cut {
+    int ray;
+    RayCut cut;
+  };
+  std::vector<Cut> earlier_;  // of rays that are met more than once
 };
 
 inline void cut_turning_lanes(const TurningBody& body, RayWindow& window) {
   TurningLanes lanes(body, window);
-  for_groups(window, [&](double u, Group& g) { lanes.cut(u, g); });
+  lanes.cut();
 }
 
 }  // namespace riffler::HWY_NAMESPACE

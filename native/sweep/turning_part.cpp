@@ -7,6 +7,32 @@ namespace riffler {
 
 namespace {
 
+/// n · axis of the outward normal at the lower or upper end of a piece's side.
+double turn_at(const PieceShape& s, double z) {
+  return s.round ? std::clamp((z - s.zc) / s.r, -1.0, 1.0) : -s.slope * s.cosine;
+}
+
+/// Where planes can touch the group but at flat ends and flanks. Returns how many rims there are.
+std::size_t find_rims(std::span<const PieceShape> pieces, std::span<Rim> rims) {
+  std::size_t count = 0;
+  double turn = -1;  // as far as planes have turned, from the lower end on
+  const auto edge = [&](double radius, double z, double to) {
+    if (to > turn + 1e-9) rims[count++] = {radius, z, 0, turn, to};
+    turn = std::max(turn, to);
+  };
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const PieceShape& s = pieces[k];
+    edge(s.r0, s.z0, turn_at(s, s.z0));
+    if (!s.round) continue;
+    const double next = k + 1 < pieces.size() ? turn_at(pieces[k + 1], pieces[k + 1].z0) : 1;
+    const double to = std::min(turn_at(s, s.z1), next);
+    if (to > turn) rims[count++] = {s.e, s.zc, s.r, turn, to};
+    turn = std::max(turn, to);
+  }
+  edge(pieces.back().r1, pieces.back().z1, 1);
+  return count;
+}
+
 /// dr/dz of the piece's profile at one of its ends; infinite where it starts or ends flat.
 double slope_at(const Piece& piece, double z) {
   if (const auto* f = std::get_if<Frustum>(&piece)) return (f->r1 - f->r0) / (f->z1 - f->z0);
@@ -70,6 +96,7 @@ PieceShape shape_of(const Piece& piece) {
     s.inverse = 1 / s.r;
     s.ball = s.e == 0 && s.z0 <= s.zc - s.r && s.z1 >= s.zc + s.r;
   }
+  s.support = s.cosine * (s.r0 - s.slope * s.z0);
   return s;
 }
 
@@ -96,7 +123,9 @@ std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
 
 TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double from, double to, double tolerance)
     : count(group.count),
+      rim_count(0),
       leans(false),
+      widest(0),
       t0(from),
       t1(to),
       origin(motion.tip(from).z),
@@ -106,18 +135,20 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
   for (std::size_t k = 0; k < count; ++k) {
     const Piece& p = group.pieces[k];
     pieces[k] = shape_of(p);
-    pieces[k].inner0 = k > 0, pieces[k].inner1 = k + 1 < count;
-    leans = leans || pieces[k].slope != 0;
+    leans = leans || pieces[k].slope != 0, widest = std::max(widest, max_radius(p));
     lever = std::max(lever, std::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
   }
-  const Vec3 velocity = motion.to().tip - motion.from().tip, o = motion.axis(middle), start = motion.from().tip;
+  rim_count = find_rims({pieces.data(), count}, rims);
+  const Vec3 velocity = motion.to().tip - motion.from().tip, o = motion.axis(middle), first = motion.from().tip;
   // The rotation vector is square to the axis, so this is a quarter turn ahead of it.
   const Vec3 ahead = angle > 0 ? glm::cross(motion.rotation(), o) / angle : Vec3(0);
   for (int i = 0; i < 3; ++i) {
-    tip[i] = start[i] - (i == 2 ? origin : 0), way[i] = velocity[i];
+    tip[i] = first[i] - (i == 2 ? origin : 0), way[i] = velocity[i];
     axis[i] = o[i], side[i] = ahead[i], spin[i] = motion.rotation()[i];
+    start.tip[i] = tip[i] + t0 * way[i], start.axis[i] = motion.axis(t0)[i];
+    end.tip[i] = tip[i] + t1 * way[i], end.axis[i] = motion.axis(t1)[i];
   }
-  speed = glm::length(velocity), pull = angle * angle * angle, drift = 3 * angle * angle * speed;
+  speed = glm::length(velocity), pull = std::pow(angle, 4), drift = 4 * std::pow(angle, 3) * speed;
   // √5 · 0.2 + 0.5 < 1: where a surface is no steeper against the ray than 2, both shares together stay below the
   // tolerance along the ray. A plane may not be behind by more than a small part of the body (docs/methods.md).
   along = 0.5 * tolerance, aside = std::min(0.2 * tolerance, 0.02 * group.thinnest);

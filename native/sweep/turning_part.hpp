@@ -17,7 +17,13 @@ struct PieceShape {
   double slope, cosine;   ///< Frustum: dr/dz and 1 / √(1 + slope²)
   double e, zc, r;        ///< Round
   double inverse;         ///< 1 / r0 of a cylinder, 1 / r of a Round
-  bool inner0, inner1;    ///< its lower or upper end lies within the group
+  double support;         ///< Frustum: height of its flank's plane over the tip, along the plane's normal
+};
+
+/// A circle about the axis, perhaps thickened: a Round, or an edge (`thick` is 0). The planes that touch the group
+/// there are those whose normal n has turn0 ≤ n · axis ≤ turn1.
+struct Rim {
+  double radius, z, thick, turn0, turn1;
 };
 
 /// Pieces whose union is convex, from the tip upwards; perhaps without what cannot reach the material.
@@ -41,13 +47,20 @@ struct TurningBody {
 
   std::size_t count;
   std::array<PieceShape, ConvexGroup::kMost> pieces;
-  bool leans;  ///< whether some piece is a cone
+  std::size_t rim_count;
+  std::array<Rim, 2 * ConvexGroup::kMost + 1> rims;
+  bool leans;     ///< whether some piece is a cone
+  double widest;  ///< radius
   double t0, t1, origin;
   double tip[3], way[3];    ///< tip(t) = tip + t way, its height from the origin; way also is its velocity
   double axis[3], side[3];  ///< axis(t) = cos θ axis + sin θ side, θ = angle (t − middle)
   double middle, angle;
+  /// The poses at t0 and t1.
+  struct End {
+    double tip[3], axis[3];
+  } start, end;
   double spin[3];      ///< Ω, per unit of t
-  double pull, drift;  ///< |Ω|³ and 3 |Ω|² |V|: bounds of the third derivative (docs/methods.md)
+  double pull, drift;  ///< |Ω|⁴ and 4 |Ω|³ |V|: bounds of the fourth derivative (docs/methods.md)
   double speed;        ///< |V|
   double along;        ///< mm along the ray that an end may miss
   double aside;        ///< mm in space that a supporting plane may be behind
