@@ -6,6 +6,9 @@
 #define RIFFLER_SWEEP_CERTIFICATE_LANES_INL_HPP
 #endif
 
+#include <algorithm>
+#include <cmath>
+
 #include "sweep/beside_lanes-inl.hpp"
 #include "sweep/facing_lanes-inl.hpp"
 #include "sweep/pose_lanes-inl.hpp"
@@ -14,14 +17,14 @@ HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
 /// A supporting plane seen along the rays: height over it of the ray's point s, h0 + h1 s, and how that changes, its
-/// rate g = g0 + g1 s, acceleration k0 + k1 s and third derivative j0 − |Ω|² g.
+/// rate g0 + g1 s and half of its acceleration k0 + k1 s.
 struct Plane {
-  V h0, h1, g0, g1, k0, k1, j0;
+  V h0, h1, g0, g1, k0, k1;
 };
 
 HWY_INLINE Plane choose(M m, const Plane& a, const Plane& b) {
-  return {pick(m, a.h0, b.h0), pick(m, a.h1, b.h1), pick(m, a.g0, b.g0), pick(m, a.g1, b.g1),
-          pick(m, a.k0, b.k0), pick(m, a.k1, b.k1), pick(m, a.j0, b.j0)};
+  return {pick(m, a.h0, b.h0), pick(m, a.h1, b.h1), pick(m, a.g0, b.g0),
+          pick(m, a.g1, b.g1), pick(m, a.k0, b.k0), pick(m, a.k1, b.k1)};
 }
 
 /// One pose a lane: where the rays meet the body there, and planes that keep the body from the material below and above
@@ -30,14 +33,15 @@ struct Sample {
   V t;
   Stretch hit;
   Plane below, above;
-  V fourth;  ///< bound of the fourth derivatives of their heights over the planes, during the part
-  V depth;   ///< halvings of the part's time
+  V depth;  ///< halvings of the part's time
 };
 
 HWY_INLINE Sample choose(M m, const Sample& a, const Sample& b) {
-  return {pick(m, a.t, b.t),           {pick(m, a.hit.near, b.hit.near), pick(m, a.hit.far, b.hit.far)},
-          choose(m, a.below, b.below), choose(m, a.above, b.above),
-          pick(m, a.fourth, b.fourth), pick(m, a.depth, b.depth)};
+  return {pick(m, a.t, b.t),
+          {pick(m, a.hit.near, b.hit.near), pick(m, a.hit.far, b.hit.far)},
+          choose(m, a.below, b.below),
+          choose(m, a.above, b.above),
+          pick(m, a.depth, b.depth)};
 }
 
 /// The points of the rays from `at` to `other`; `at` is the one that the body may come near to. `direction` of time: 1,
@@ -48,7 +52,16 @@ struct Kept {
 
 class Certificate {
  public:
-  explicit Certificate(const TurningBody& body) : b_(body) {}
+  Certificate(const TurningBody& body, const RayWindow& w) : b_(body) {
+    // |n · x‴| ≤ |Ω|³ |X| + 3 |Ω|² |V|, with |X| at most the way from the first tip to the farthest point of the
+    // window, and what the tip moves.
+    const auto farthest = [](double low, double high, double from) { return std::max(high - from, from - low); };
+    const double x = farthest(w.u[w.first_row], w.u[w.last_row], b_.start.tip[0]);
+    const double y = farthest(w.v[0], w.v[kTileSide - 1], b_.start.tip[1]);
+    const double z = farthest(w.low - b_.origin, w.high - b_.origin, b_.start.tip[2]);
+    const double away = std::sqrt(x * x + y * y + z * z) + b_.speed * (b_.t1 - b_.t0);
+    bend_ = (b_.pull * away + b_.drift) / 6;
+  }
 
   /// The plane that looks towards `at`.
   Plane towards(const Pose& pose, const Kept& kept) const {
@@ -70,24 +83,16 @@ class Certificate {
     return choose(nearer, along, p);
   }
 
-  /// |n · x⁗| ≤ |Ω|⁴ |X| + 4 |Ω|³ |V| at the rays' points between low and high, during the part.
-  V fourth(const Pose& pose, V low, V high) const {
-    const V3& w = pose.from_tip;
-    const V across = longest(abs(w.x), abs(w.y)), up = max(abs(hn::Add(low, w.z)), abs(hn::Add(high, w.z)));
-    const V distance = hn::Add(longest(across, up), set(b_.speed * (b_.t1 - b_.t0)));  // ≥ |X|
-    return hn::Add(hn::Mul(distance, set(b_.pull)), set(b_.drift));
-  }
-
   /// Whether a plane at one end of the part keeps the body away for all of it.
-  M stays_away(const Plane& p, V fourth, const Kept& kept) const {
-    return Bound(*this, p, fourth, kept, false).least(set(-b_.aside), set(b_.t1 - b_.t0));
+  M stays_away(const Plane& p, const Kept& kept) const {
+    return Bound(*this, p, kept, false).least(set(-b_.aside), set(b_.t1 - b_.t0));
   }
 
   /// Whether p and, `span` of time later, q keep the body away for the time between. `split`: for lanes in which they
   /// do not, the time after p's pose at which the body is likely to come nearest.
-  M stays_away(const Plane& p, const Plane& q, V fourth, const Kept& kept, V span, V& split) const {
+  M stays_away(const Plane& p, const Plane& q, const Kept& kept, V span, V& split) const {
     const V limit = set(-b_.aside);
-    const Bound from(*this, p, fourth, kept, false), to(*this, q, fourth, kept, true);
+    const Bound from(*this, p, kept, false), to(*this, q, kept, true);
     const M p_all = from.least(limit, span), q_all = to.least(limit, span);
     // Both: p up to the split, q from there on.
     split = crossing(from, to, span);
@@ -97,47 +102,40 @@ class Certificate {
  private:
   /// The plane with outward normal n, but for its height; `w`: from the tip to the rays' points at s = 0. Rates are
   /// those in the `direction` of time in which a lane is looked at. With X from the tip to the ray's point, in the
-  /// tool's frame ẋ = −(V + Ω × X), ẍ = Ω × (Ω × X) + 2 Ω × V and x‴ = −Ω × (Ω × (Ω × X)) − 3 Ω × (Ω × V).
+  /// tool's frame ẋ = −(V + Ω × X) and ẍ = Ω × (Ω × X) + 2 Ω × V.
   Plane plane(const V3& w, const V3& n, V direction) const {
-    const V3 m = cross(n, b_.spin), c = cross(m, b_.spin);
-    const V along = dot(n, b_.way), drift = dot(m, b_.way), back = hn::Neg(direction);
+    const V3 m = cross(n, b_.spin), c = scaled(cross(m, b_.spin), set(0.5));
+    const V back = hn::Neg(direction);
     return {zero(),
             n.z,
-            hn::Mul(back, hn::Add(along, dot(m, w))),
+            hn::Mul(back, hn::Add(dot(n, b_.way), dot(m, w))),
             hn::Mul(back, m.z),
-            hn::Add(dot(c, w), hn::Add(drift, drift)),
-            c.z,
-            hn::Mul(back, hn::Add(hn::Mul(along, set(b_.angle * b_.angle)), hn::Mul(set(3), dot(c, b_.way))))};
+            hn::Add(dot(c, w), dot(m, b_.way)),
+            c.z};
   }
-
-  /// Of vectors with these components: at least as long, and at most 1.09 times.
-  static V longest(V a, V b) { return hn::Add(max(a, b), hn::Mul(min(a, b), set(0.4143))); }
 
   /// Height of one point over a plane, and a concave bound of it from below after the time tau.
   struct Height {
-    V h, g, k, j, m;
-    V after(V tau) const {
-      const V last = hn::Sub(j, hn::Mul(m, tau));
-      return hn::Add(h, hn::Mul(tau, hn::Add(g, hn::Mul(tau, hn::Add(k, hn::Mul(tau, last))))));
-    }
+    V h, g, k;
+    V after(V tau, V bent) const { return hn::Add(h, hn::Mul(tau, hn::Add(g, hn::Mul(tau, hn::Sub(k, bent))))); }
   };
   /// `back`: against the direction in which the plane's lane is looked at.
-  Height height(const Plane& p, V s, V m, bool back) const {
-    const V rate = hn::Add(p.g0, hn::Mul(p.g1, s)), third = hn::Sub(p.j0, hn::Mul(rate, set(b_.angle * b_.angle)));
-    const V g = back ? hn::Neg(rate) : rate, j = back ? hn::Neg(third) : third;
-    return {hn::Add(p.h0, hn::Mul(p.h1, s)), g, hn::Mul(set(0.5), min(hn::Add(p.k0, hn::Mul(p.k1, s)), zero())),
-            hn::Mul(set(1.0 / 6), min(j, zero())), hn::Mul(set(1.0 / 24), m)};
+  static Height height(const Plane& p, V s, bool back) {
+    const V g = hn::Add(p.g0, hn::Mul(p.g1, s));
+    return {hn::Add(p.h0, hn::Mul(p.h1, s)), back ? hn::Neg(g) : g, min(hn::Add(p.k0, hn::Mul(p.k1, s)), zero())};
   }
 
   /// A plane's heights over both ends of what is to be kept.
   struct Bound {
     Height at, other;
-    V slope;  ///< of the height along the ray
-    Bound(const Certificate& c, const Plane& p, V fourth, const Kept& kept, bool back)
-        : at(c.height(p, kept.at, fourth, back)), other(c.height(p, kept.other, fourth, back)), slope(p.h1) {}
+    V slope;      ///< of the height along the ray
+    double bend;  ///< a sixth of the bound of the third derivative
+    Bound(const Certificate& c, const Plane& p, const Kept& kept, bool back)
+        : at(height(p, kept.at, back)), other(height(p, kept.other, back)), slope(p.h1), bend(c.bend_) {}
     /// Whether they stay above `limit` for the time tau.
     M least(V limit, V tau) const {
-      return hn::Ge(min(min(at.h, other.h), min(at.after(tau), other.after(tau))), limit);
+      const V bent = hn::Mul(set(bend), tau);
+      return hn::Ge(min(min(at.h, other.h), min(at.after(tau, bent), other.after(tau, bent))), limit);
     }
   };
 
@@ -159,6 +157,7 @@ class Certificate {
   }
 
   const TurningBody& b_;
+  double bend_;
 };
 
 }  // namespace riffler::HWY_NAMESPACE

@@ -26,34 +26,34 @@ HWY_INLINE Facing facing(const TurningBody& body, const Pose& pose, V at) {
   const V z = dot(x, o);
   const V3 r = less(x, z, o);
   const V rho = sqrt(dot(r, r));
-  // The flat ends; then n = radial r / ρ + axial o.
+  // n = (out r / ρ + up o) / d. The flat ends first.
   const V below = hn::Sub(set(body.pieces[0].z0), z), above = hn::Sub(z, set(body.pieces[body.count - 1].z1));
-  V height = max(below, above), radial = zero(), axial = pick(hn::Gt(below, above), set(-1), set(1));
-  const auto offer = [&](M allowed, V h, V along_r, V along_o) {
-    const M better = both(allowed, hn::Gt(h, height));
-    height = pick(better, h, height), radial = pick(better, along_r, radial), axial = pick(better, along_o, axial);
-  };
+  V height = max(below, above), out = zero(), up = pick(hn::Gt(below, above), set(-1), set(1)), d = set(1);
   // Near the axis, the direction away from it is not known well enough.
   const M off_axis = hn::Gt(rho, set(1e-7 * body.widest));
   for (std::size_t k = 0; k < body.count; ++k) {
     const PieceShape& s = body.pieces[k];
     if (s.round) continue;
     const double lean = -s.slope * s.cosine;
-    const V h = hn::Sub(hn::Add(hn::Mul(rho, set(s.cosine)), hn::Mul(z, set(lean))), set(s.support));
-    offer(off_axis, h, set(s.cosine), set(lean));
+    const V level = hn::Sub(hn::Mul(rho, set(s.cosine)), set(s.support));
+    const V h = lean == 0 ? level : hn::Add(level, hn::Mul(z, set(lean)));
+    const M better = both(off_axis, hn::Gt(h, height));
+    height = pick(better, h, height), out = pick(better, set(s.cosine), out), up = pick(better, set(lean), up);
   }
   for (std::size_t k = 0; k < body.rim_count; ++k) {
     const Rim& rim = body.rims[k];
-    const V up = hn::Sub(z, set(rim.z));
-    if ((rim.turn1 <= 0 && none(hn::Lt(up, zero()))) || (rim.turn0 >= 0 && none(hn::Gt(up, zero())))) continue;
-    const V out = max(hn::Sub(rho, set(rim.radius)), zero());
-    const V d = sqrt(hn::Add(hn::Mul(out, out), hn::Mul(up, up))), per_d = hn::Div(set(1), max(d, set(1e-100)));
-    const V lean = hn::Mul(up, per_d);
-    const M touches = both(both(hn::Ge(lean, set(rim.turn0)), hn::Le(lean, set(rim.turn1))), hn::Gt(d, set(1e-90)));
-    offer(both(off_axis, touches), hn::Sub(d, set(rim.thick)), hn::Mul(out, per_d), lean);
+    const V rise = hn::Sub(z, set(rim.z));
+    if ((rim.turn1 <= 0 && none(hn::Lt(rise, zero()))) || (rim.turn0 >= 0 && none(hn::Gt(rise, zero())))) continue;
+    const V far = max(hn::Sub(rho, set(rim.radius)), zero());
+    const V distance = sqrt(hn::Add(hn::Mul(far, far), hn::Mul(rise, rise))), h = hn::Sub(distance, set(rim.thick));
+    const M touches =
+        both(hn::Ge(rise, hn::Mul(set(rim.turn0), distance)), hn::Le(rise, hn::Mul(set(rim.turn1), distance)));
+    const M better = both(both(off_axis, touches), both(hn::Gt(h, height), hn::Gt(distance, set(1e-90))));
+    height = pick(better, h, height), out = pick(better, far, out), up = pick(better, rise, up);
+    d = pick(better, distance, d);
   }
-  const V scale = hn::Div(radial, max(rho, set(1e-150)));
-  return {less(scaled(r, scale), hn::Neg(axial), o), height};
+  const V known = pick(off_axis, rho, set(1)), per = hn::Div(set(1), hn::Mul(d, known));
+  return {less(scaled(r, hn::Mul(out, per)), hn::Neg(hn::Mul(hn::Mul(up, known), per)), o), height};
 }
 
 }  // namespace riffler::HWY_NAMESPACE

@@ -78,26 +78,41 @@ class HitLanes : private AxisView {
     add(hn::Gt(disc, zero()), {hn::Neg(hn::Add(c.z, root)), hn::Sub(root, c.z)});
   }
 
-  /// The squared distance from the disc is convex along the ray, so Newton's method from outside walks to the root
-  /// without passing it. Starts where the ray enters the cylinder and slab about the piece. `sign` 1: near end, −1: far
-  /// end.
+  /// Moves `at`, where a ray comes into the cylinder and slab about a Round, on to where it enters the Round (`sign` 1)
+  /// or, for a ray looked at from the other side, leaves it (−1); no further than `until`. Returns the lanes that meet
+  /// it.
+  ///
+  /// A Round is all the balls about the points of its disc, and of these the one about the point nearest to where the
+  /// ray enters is met first. So each step goes to the ball about the point nearest to where the last step ended, which
+  /// is inside of the Round, and converges like Newton's method. Where a ray misses that ball, the step is one of
+  /// Newton's on the squared distance from the disc, which is convex: it does not pass the Round.
   M walk(const PieceShape& s, M mask, double sign, V& at, V until) const {
-    M hit = no_lane(), open = mask;
+    M open = mask, hit = no_lane();
     const double size = std::abs(s.e) + s.r;
-    const V arrives = set(kArrived * size * s.r);
+    const V slack = set(1e-13 * size * s.r);
     for (int i = 0; i < kMostSteps && !none(open); ++i) {
-      const V3 r = radial(at);
-      const V z = hn::Sub(z_at(at), set(s.zc)), rho = max(sqrt(dot(r, r)), set(1e-150));
-      const V out = max(hn::Sub(rho, set(s.e)), zero());
+      const V grow = hn::Add(hn::Mul(a_, at), b1_), z = hn::Sub(z_at(at), set(s.zc));
+      const V square = hn::Add(hn::Mul(at, hn::Add(grow, b1_)), c_);
+      const V rho = max(sqrt(max(square, zero())), set(1e-150)), out = max(hn::Sub(rho, set(s.e)), zero());
       const V over = hn::Sub(hn::Add(hn::Mul(out, out), hn::Mul(z, z)), set(s.r * s.r));
-      const V slope = hn::Add(hn::Div(hn::Mul(out, r.z), rho), hn::Mul(z, o_.z));  // half the derivative
-      const M arrived = both(open, hn::Le(over, arrives));
+      const M inside = both(open, hn::Le(over, slack));
+      // Half the rate of the squared distance, times ρ.
+      const V rate = hn::Add(hn::Mul(out, grow), hn::Mul(hn::Mul(z, o_.z), rho)), coming = hn::Mul(rate, set(-sign));
+      const V disc = hn::Sub(hn::Mul(rate, rate), hn::Mul(over, hn::Mul(rho, rho)));
+      const M meets = hn::Ge(disc, zero());
+      const V root = pick(meets, sqrt(max(disc, zero())), coming), sum = hn::Add(coming, root);
+      const V step = hn::Div(hn::Mul(over, rho), pick(hn::Gt(sum, zero()), sum, set(1)));
+      hit = either(hit, inside);
+      if (i == 0) open = without(open, inside);  // through the slab's end
+      open = both(open, hn::Gt(sum, zero()));
+      at = pick(open, hn::Add(at, hn::Mul(set(sign), step)), at);
+      // The error after a step goes with the square of its length.
+      const M arrived = both(open, both(either(meets, inside), hn::Le(abs(step), set(1e-7 * s.r))));
       hit = either(hit, arrived);
-      open = both(without(open, arrived), hn::Lt(hn::Mul(slope, set(sign)), zero()));
-      at = pick(open, hn::Sub(at, hn::Div(hn::Mul(set(0.5), over), pick(open, slope, set(1)))), at);
-      open = both(open, hn::Le(hn::Mul(set(sign), hn::Sub(at, until)), zero()));
+      open =
+          without(open, either(arrived, both(hn::Not(meets), hn::Gt(hn::Mul(set(sign), hn::Sub(at, until)), zero()))));
     }
-    return hit;
+    return both(hit, hn::Le(hn::Mul(set(sign), hn::Sub(at, until)), zero()));
   }
 
   void round(const PieceShape& s, M active, V high) {

@@ -59,14 +59,18 @@ HWY_INLINE void each(Open& o, const F& f) {
 
 class TurningLanes {
  public:
-  TurningLanes(const TurningBody& body, RayWindow& window) : b_(body), w_(window), certificate_(body) {}
+  TurningLanes(const TurningBody& body, RayWindow& window) : b_(body), w_(window), certificate_(body, window) {}
 
   void cut() {
     const V index = hn::Iota(kD, 0);
     for_groups(w_, [&](double u, const Group& g) {
       const V origin = set(b_.origin);
-      Ray ray{hn::Add(set(g.ray), index), set(u), g.v, hn::Sub(max(g.near, set(w_.low)), origin),
-              hn::Sub(g.far, origin),     set(1)};
+      Ray ray{hn::Add(set(g.ray), index),
+              set(u),
+              g.v,
+              hn::Sub(max(g.near, set(w_.low)), origin),
+              hn::Sub(min(g.far, set(w_.high)), origin),
+              set(1)};
       look(ray, g.active);
     });
     if (reached_.count() > 0) settle();
@@ -84,7 +88,7 @@ class TurningLanes {
     const Pose pose{axis, from_tip};
     const Kept all{ray.high, ray.low, ray.direction};
     const Plane p = certificate_.towards(pose, all);
-    const M open = without(active, certificate_.stays_away(p, certificate_.fourth(pose, ray.low, ray.high), all));
+    const M open = without(active, certificate_.stays_away(p, all));
     if (none(open)) return;
     // A tool that comes is best looked at where it arrives.
     ray.direction = pick(hn::Lt(hn::Add(p.g0, hn::Mul(p.g1, ray.high)), zero()), set(-1), set(1));
@@ -167,7 +171,6 @@ class TurningLanes {
 
   void set_planes(Sample& s, const Pose& pose, const Open& o, M mask) const {
     const M missed = both(mask, hn::Ge(s.hit.near, s.hit.far));
-    s.fourth = certificate_.fourth(pose, o.ray.low, o.ray.high);
     s.below = s.above = certificate_.between(pose, below(o), missed);
     if (!none(both(mask, has_above(o)))) s.above = certificate_.between(pose, above(o), missed);
   }
@@ -199,9 +202,8 @@ class TurningLanes {
 
   /// Lanes in which planes at the first pose alone keep the body from all material outside of what was found.
   M certain(const Open& o, const Pose& pose) const {
-    const V fourth = certificate_.fourth(pose, o.ray.low, o.ray.high);
     const auto stays_away = [&](const Kept& kept) {
-      return certificate_.stays_away(certificate_.towards(pose, kept), fourth, kept);
+      return certificate_.stays_away(certificate_.towards(pose, kept), kept);
     };
     const M good = either(hn::Not(has_below(o)), stays_away(below(o))), more = has_above(o);
     if (none(more)) return good;
@@ -211,14 +213,12 @@ class TurningLanes {
   /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, for the `span`
   /// of time from a to b. `split`: for the others, the time after a to look at next.
   M certain(const Open& o, const Sample& a, const Sample& b, V span, V& split) const {
-    const V fourth = max(a.fourth, b.fourth);
     V until;
-    const M low_good =
-        either(hn::Not(has_below(o)), certificate_.stays_away(a.below, b.below, fourth, below(o), span, until));
+    const M low_good = either(hn::Not(has_below(o)), certificate_.stays_away(a.below, b.below, below(o), span, until));
     split = pick(low_good, split, until);
     const M high = has_above(o);
     if (none(high)) return low_good;
-    const M high_good = either(hn::Not(high), certificate_.stays_away(a.above, b.above, fourth, above(o), span, until));
+    const M high_good = either(hn::Not(high), certificate_.stays_away(a.above, b.above, above(o), span, until));
     split = pick(both(low_good, hn::Not(high_good)), until, split);
     return both(low_good, high_good);
   }

@@ -148,7 +148,7 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
     start.tip[i] = tip[i] + t0 * way[i], start.axis[i] = motion.axis(t0)[i];
     end.tip[i] = tip[i] + t1 * way[i], end.axis[i] = motion.axis(t1)[i];
   }
-  speed = glm::length(velocity), pull = std::pow(angle, 4), drift = 4 * std::pow(angle, 3) * speed;
+  speed = glm::length(velocity), pull = angle * angle * angle, drift = 3 * angle * angle * speed;
   // √5 · 0.2 + 0.5 < 1: where a surface is no steeper against the ray than 2, both shares together stay below the
   // tolerance along the ray. A plane may not be behind by more than a small part of the body (docs/methods.md).
   along = 0.5 * tolerance, aside = std::min(0.2 * tolerance, 0.02 * group.thinnest);

@@ -60,7 +60,7 @@ struct TurningBody {
     double tip[3], axis[3];
   } start, end;
   double spin[3];      ///< Ω, per unit of t
-  double pull, drift;  ///< |Ω|⁴ and 4 |Ω|³ |V|: bounds of the fourth derivative (docs/methods.md)
+  double pull, drift;  ///< |Ω|³ and 3 |Ω|² |V|: bounds of the third derivative (docs/methods.md)
   double speed;        ///< |V|
   double along;        ///< mm along the ray that an end may miss
   double aside;        ///< mm in space that a supporting plane may be behind
