@@ -40,8 +40,7 @@ struct Found {
 struct Open {
   Ray ray;
   Found found;
-  V t;  // of that pose
-  Stretch hit;
+  Sample first;  // at that pose
 };
 
 template <class F>
@@ -49,12 +48,20 @@ HWY_INLINE void each(Stretch& s, const F& f) {
   f(s.near), f(s.far);
 }
 template <class F>
+HWY_INLINE void each(Plane& p, const F& f) {
+  f(p.h0), f(p.h1), f(p.g0), f(p.g1), f(p.k0), f(p.k1);
+}
+template <class F>
+HWY_INLINE void each(Sample& s, const F& f) {
+  f(s.t), each(s.hit, f), each(s.below, f), each(s.above, f), f(s.depth);
+}
+template <class F>
 HWY_INLINE void each(Ray& r, const F& f) {
   f(r.place), f(r.u), f(r.v), f(r.low), f(r.high), f(r.direction);
 }
 template <class F>
 HWY_INLINE void each(Open& o, const F& f) {
-  each(o.ray, f), each(o.found.at, f), f(o.found.t_near), f(o.found.t_far), f(o.t), each(o.hit, f);
+  each(o.ray, f), each(o.found.at, f), f(o.found.t_near), f(o.found.t_far), each(o.first, f);
 }
 
 class TurningLanes {
@@ -103,9 +110,12 @@ class TurningLanes {
     const M active = reached_.take(hn::FirstN(kD, lanes()), ray);
     const V t = pick(hn::Lt(ray.direction, zero()), set(b_.t1), set(b_.t0));
     const Pose pose = pose_at(b_, ray.u, ray.v, t);
-    Open open{ray, {nothing(), zero(), zero()}, t, hits(ray, pose, active)};
-    merge(open.found, t, open.hit, active);
-    const M rest = without(active, certain(open, pose));
+    Open open{ray, {nothing(), zero(), zero()}, {}};
+    Sample& s = open.first;
+    s.t = t, s.hit = hits(ray, pose, active), s.depth = zero();
+    merge(open.found, t, s.hit, active);
+    set_planes(s, pose, open, active);
+    const M rest = without(active, certain(open));
     finish(open.ray, open.found, without(active, rest));
     open_.add(rest, open);
     if (open_.full()) refine();
@@ -129,12 +139,7 @@ class TurningLanes {
       next.t = t, next.hit = hits(now.ray, pose, busy), next.depth = pick(fresh, zero(), next.depth);
       merge(now.found, t, next.hit, busy);
       set_planes(next, pose, now, busy);
-      if (!none(fresh)) {
-        Sample first{};
-        first.t = now.t, first.hit = now.hit;
-        set_planes(first, pose_at(b_, now.ray.u, now.ray.v, now.t), now, fresh);
-        last = choose(fresh, first, last);
-      }
+      last = choose(fresh, now.first, last);
       // On to the pose up to which there is nothing more to ask.
       for (M good = advance(now, last, next, busy, split); !none(good); good = advance(now, last, next, good, split)) {
         last = choose(good, next, last);
@@ -201,13 +206,10 @@ class TurningLanes {
   }
 
   /// Lanes in which planes at the first pose alone keep the body from all material outside of what was found.
-  M certain(const Open& o, const Pose& pose) const {
-    const auto stays_away = [&](const Kept& kept) {
-      return certificate_.stays_away(certificate_.towards(pose, kept), kept);
-    };
-    const M good = either(hn::Not(has_below(o)), stays_away(below(o))), more = has_above(o);
+  M certain(const Open& o) const {
+    const M good = either(hn::Not(has_below(o)), certificate_.stays_away(o.first.below, below(o))), more = has_above(o);
     if (none(more)) return good;
-    return both(good, either(hn::Not(more), stays_away(above(o))));
+    return both(good, either(hn::Not(more), certificate_.stays_away(o.first.above, above(o))));
   }
 
   /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, for the `span`
