@@ -9,6 +9,10 @@ namespace {
 
 /// rad: a turning move is first cut into parts of at most this angle, so that their footprints stay near the tool.
 constexpr double kWidestPart = 0.25;
+/// Radii: and the tip moves no farther than this in a part, so that the tool does not pass a ray on both of its sides.
+constexpr double kLongestPart = 1.5;
+/// Parts that a move is cut into for the tip's way alone.
+constexpr double kMostParts = 32;
 /// Radii: how far above the highest contact a piece is cut off.
 constexpr double kMargin = 0.01;
 
@@ -105,9 +109,12 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
                    double tolerance, const std::function<void(Step&&)>& sink) {
   const Interval times = near_box(whole, motion, box);
   if (times.empty()) return;
-  const double length = times.length();
-  const int n = std::max(1, static_cast<int>(std::ceil(motion.angle() * length / kWidestPart)));
-  const double angle = motion.angle() * length / n;
+  double radius = 0;
+  for (const Piece& p : whole.all()) radius = std::max(radius, max_radius(p));
+  const double length = times.length(), turn = motion.angle() * length;
+  const double radii = length * glm::length(motion.to().tip - motion.from().tip) / (kLongestPart * radius);
+  const int n = static_cast<int>(std::ceil(std::max({turn / kWidestPart, std::min(radii, kMostParts), 1.0})));
+  const double angle = turn / n;
   Pose from = times.near > 0 ? motion.at(times.near) : motion.from();
   for (int k = 0; k < n; ++k) {
     const double t0 = times.near + length * k / n, t1 = k + 1 == n ? times.far : times.near + length * (k + 1) / n;

@@ -80,7 +80,7 @@ class TurningLanes {
               set(1)};
       look(ray, g.active);
     });
-    if (reached_.count() > 0) settle();
+    while (reached_.count() > 0) settle();
     refine();
     take();
   }
@@ -99,8 +99,9 @@ class TurningLanes {
     if (none(open)) return;
     // A tool that comes is best looked at where it arrives.
     ray.direction = pick(hn::Lt(hn::Add(p.g0, hn::Mul(p.g1, ray.high)), zero()), set(-1), set(1));
-    reached_.add(open, ray);
+    // What was added just now is still on its way to memory.
     if (reached_.count() >= lanes()) settle();
+    reached_.add(open, ray);
   }
 
   /// Looks at the pose at one end of the part. Where the tool moves away from there, or comes to where it stays, that
