@@ -43,12 +43,15 @@ HWY_INLINE Facing facing(const TurningBody& body, const Pose& pose, V at) {
   for (std::size_t k = 0; k < body.rim_count; ++k) {
     const Rim& rim = body.rims[k];
     const V rise = hn::Sub(z, set(rim.z));
-    if ((rim.turn1 <= 0 && none(hn::Lt(rise, zero()))) || (rim.turn0 >= 0 && none(hn::Gt(rise, zero())))) continue;
+    const M seen = rim.turn1 <= 0   ? both(off_axis, hn::Lt(rise, zero()))
+                   : rim.turn0 >= 0 ? both(off_axis, hn::Gt(rise, zero()))
+                                    : off_axis;
+    if (none(seen)) continue;
     const V far = max(hn::Sub(rho, set(rim.radius)), zero());
     const V distance = sqrt(hn::Add(hn::Mul(far, far), hn::Mul(rise, rise))), h = hn::Sub(distance, set(rim.thick));
     const M touches =
         both(hn::Ge(rise, hn::Mul(set(rim.turn0), distance)), hn::Le(rise, hn::Mul(set(rim.turn1), distance)));
-    const M better = both(both(off_axis, touches), both(hn::Gt(h, height), hn::Gt(distance, set(1e-90))));
+    const M better = both(both(seen, touches), both(hn::Gt(h, height), hn::Gt(distance, set(1e-90))));
     height = pick(better, h, height), out = pick(better, far, out), up = pick(better, rise, up);
     d = pick(better, distance, d);
   }

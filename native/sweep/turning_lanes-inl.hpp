@@ -178,7 +178,8 @@ class TurningLanes {
   void set_planes(Sample& s, const Pose& pose, const Open& o, M mask) const {
     const M missed = both(mask, hn::Ge(s.hit.near, s.hit.far));
     s.below = s.above = certificate_.between(pose, below(o), missed);
-    if (!none(both(mask, has_above(o)))) s.above = certificate_.between(pose, above(o), missed);
+    const M high = both(mask, has_above(o));
+    if (!none(high)) s.above = choose(high, certificate_.between(pose, above(o), missed), s.below);
   }
 
   /// Joins a hit to what was found where both overlap. Returns the lanes in which they lie apart.

@@ -7,6 +7,12 @@ namespace riffler {
 
 namespace {
 
+/// Ends a Round that reaches into the piece above it where that one begins. Of that one, what is too high to matter is
+/// cut off (steps.cpp), and then the Round must not look out of it.
+void end_at(PieceShape& round, const Piece& above) {
+  round.z1 = bottom(above), round.r1 = radius_at(above, round.z1), round.ball = false;
+}
+
 /// n · axis of the outward normal at the lower or upper end of a piece's side.
 double turn_at(const PieceShape& s, double z) {
   return s.round ? std::clamp((z - s.zc) / s.r, -1.0, 1.0) : -s.slope * s.cosine;
@@ -135,6 +141,7 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
   for (std::size_t k = 0; k < count; ++k) {
     const Piece& p = group.pieces[k];
     pieces[k] = shape_of(p);
+    if (k > 0 && pieces[k - 1].z1 > pieces[k].z0) end_at(pieces[k - 1], p);
     leans = leans || pieces[k].slope != 0, widest = std::max(widest, max_radius(p));
     lever = std::max(lever, std::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
   }
