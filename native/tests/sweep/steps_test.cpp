@@ -1,6 +1,11 @@
 // How a cutter is taken apart before it is swept, and what of a move is looked at.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include "reference/swept_distance.hpp"
 #include "sweep/carve.hpp"
 #include "sweep/turning_part.hpp"
@@ -40,6 +45,68 @@ TEST(ConvexGroups, OverlapWhereTheToolIsHollowAndStayWithinIt) {
         }
     }
   }
+}
+
+/// Points of the group's outline in the plane of radius and height.
+std::vector<Vec2> outline(const TurningBody& body) {
+  std::vector<Vec2> out;
+  for (std::size_t k = 0; k < body.count; ++k) {
+    const PieceShape& s = body.pieces[k];
+    for (int i = 0; i <= 200; ++i) {
+      const double z = s.z0 + (s.z1 - s.z0) * i / 200;
+      const double arc = s.e + std::sqrt(std::max(0.0, s.r * s.r - (z - s.zc) * (z - s.zc)));
+      out.emplace_back(s.round ? arc : s.r0 + (s.r1 - s.r0) * i / 200, z);
+    }
+  }
+  return out;
+}
+
+/// Planes whose normal leans by `turn` = n · axis against the axis, at `offset` from the tip: they touch the group.
+void expect_touching(const std::vector<Vec2>& points, double turn, double offset) {
+  double most = -1e300;
+  for (const Vec2& p : points) most = std::max(most, std::sqrt(1 - turn * turn) * p.x + turn * p.y);
+  EXPECT_LE(most, offset + 1e-9) << "turn " << turn;
+  EXPECT_GE(most, offset - 1e-3) << "turn " << turn;
+}
+
+TEST(TurningBody, PlanesTouchTheGroupInEveryDirection) {
+  const Motion motion({{0, 0, 0}, {0, 0, 1}}, {{1, 0, 0}, glm::normalize(Vec3(0.1, 0.2, 1))});
+  for (const Tool& tool :
+       {cutters::flat(6, 30), cutters::fillet(8, 1, 30), cutters::taper(0.5, 0.2, 8, 40),
+        cutters::taper(0.5, 0.2, 8, 40, true), cutters::cone_end(1.0, 1, 0.4, 8, 40), waisted(), corner_rounder(4)})
+    for (ConvexGroup group : convex_groups(tool.cutter()))
+      // As far as the tool reaches into the stock, its last piece is cut off.
+      for (const double kept : {1.0, 0.4, 0.02}) {
+        SCOPED_TRACE(tool.kind() + ", " + std::to_string(kept) + " of the last piece");
+        Piece& last = group.pieces[group.count - 1];
+        if (auto* f = std::get_if<Frustum>(&last)) {
+          const double z = f->z0 + kept * (f->z1 - f->z0);
+          last = Frustum{f->z0, f->r0, z, radius_at(*f, z)};
+        }
+        const TurningBody body(group, motion, 0, 1, 0.01);
+        const std::vector<Vec2> points = outline(body);
+        std::vector<std::pair<double, double>> turns;
+        for (std::size_t k = 0; k < body.count; ++k)
+          if (const PieceShape& s = body.pieces[k]; !s.round) {
+            expect_touching(points, -s.slope * s.cosine, s.support);
+            turns.emplace_back(-s.slope * s.cosine, -s.slope * s.cosine);
+          }
+        for (std::size_t k = 0; k < body.rim_count; ++k) {
+          const Rim& rim = body.rims[k];
+          for (int i = 0; i <= 20; ++i) {
+            const double turn = std::clamp(rim.turn0 + (rim.turn1 - rim.turn0) * i / 20, -1.0, 1.0);
+            expect_touching(points, turn, std::sqrt(1 - turn * turn) * rim.radius + turn * rim.z + rim.thick);
+          }
+          turns.emplace_back(rim.turn0, rim.turn1);
+        }
+        std::sort(turns.begin(), turns.end());
+        double reached = -1;
+        for (const auto& [from, to] : turns) {
+          EXPECT_LE(from, reached + 1e-8);
+          reached = std::max(reached, to);
+        }
+        EXPECT_GE(reached, 1 - 1e-8);
+      }
 }
 
 TEST(HollowArcs, HaveNoConesThatAreRounding) {
