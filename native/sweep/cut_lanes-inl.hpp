@@ -27,6 +27,34 @@ struct SectionRays {
   V x, y, z;
 };
 
+/// Looks up the group's material. The last rays of a tile may be fewer than lanes.
+HWY_INLINE void load_material(const RayWindow& w, Group& g) {
+  static_assert(sizeof(Span) == 2 * sizeof(double));
+  const Span* rays = w.rays + g.ray;
+  Span last[kLanes];
+  if (g.ray + lanes() > kTileRays) {
+    for (int k = 0; k < lanes(); ++k) last[k] = g.ray + k < kTileRays ? rays[k] : Span{kInfinity, -kInfinity};
+    rays = last;
+  }
+  const double* ends = &rays->near;
+#if HWY_TARGET == HWY_SCALAR
+  hn::LoadInterleaved2(kD, ends, g.near, g.far);
+#else
+  // Fewer shuffles than LoadInterleaved2's.
+  const V low = hn::LoadU(kD, ends), high = hn::LoadU(kD, ends + lanes());
+  g.near = hn::ConcatEven(kD, high, low), g.far = hn::ConcatOdd(kD, high, low);
+#endif
+}
+
+HWY_INLINE void store_material(RayWindow& w, int ray, V near, V far) {
+  if (!w.opened) w.open(w.self);
+  Span* rays = w.opened + ray;
+  if (ray + lanes() <= kTileRays) return hn::StoreInterleaved2(near, far, kD, &rays->near);
+  Span last[kLanes];
+  hn::StoreInterleaved2(near, far, kD, &last->near);
+  for (int k = 0; ray + k < kTileRays; ++k) rays[k] = last[k];
+}
+
 /// Calls body(u, group) for all groups of the window with material at its heights.
 template <class Body>
 HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
@@ -39,7 +67,7 @@ HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
               zero(),
               zero(),
               hn::FirstN(kD, static_cast<std::size_t>(w.end[a] - b))};
-      g.near = hn::LoadU(kD, w.near + g.ray), g.far = hn::LoadU(kD, w.far + g.ray);
+      load_material(w, g);
       g.active = both(g.active, both(hn::Lt(g.near, high), hn::Gt(g.far, low)));
       if (none(g.active)) continue;
       w.tested += hn::CountTrue(kD, g.active);
@@ -93,8 +121,8 @@ HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, Stretch
     const M gone = without(without(simple, below), above);
     const V near = pick(gone, set(kInfinity), pick(above, cut.far, g.near));
     const V far = pick(gone, set(-kInfinity), pick(below, cut.near, g.far));
-    hn::StoreU(pick(simple, near, g.near), kD, w.near + g.ray);
-    hn::StoreU(pick(simple, far, g.far), kD, w.far + g.ray);
+    store_material(w, g.ray, pick(simple, near, g.near), pick(simple, far, g.far));
+    w.emptied = w.emptied || !none(gone);
     if (w.measured) {
       const V length = hn::IfThenElseZero(simple, hn::Sub(high, low));
       add_to(w.sums->length, g.slot, length);

@@ -33,8 +33,8 @@ struct ForceLaw {
 
 struct RayWindow {
   // The tile (tile_cut.hpp): the only span of every ray, or the hull of several.
-  double* near;
-  double* far;
+  const Span* rays;
+  Span* opened;               ///< the same for writing, or null: `open` it first
   const std::uint32_t* many;  ///< bit b of row a: the ray holds several spans
   double u[kTileSide];
   alignas(64) double v[kTileSide + kLanes];
@@ -49,10 +49,12 @@ struct RayWindow {
   bool with_force;  ///< and the directions
   const ForceLaw* law;
   void* self;
+  void (*open)(void* self);                             ///< sets `rays` and `opened`
   void (*cut)(void* self, int ray, const RayCut& cut);  ///< what is not cut here
   RemovedSums* sums;
   // What was done.
   std::uint64_t tested = 0, changed = 0, hits = 0;
+  bool emptied = false;  ///< rays have become empty here
 };
 
 }  // namespace riffler

@@ -1,34 +1,95 @@
 #include "sweep/tile_cut.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <numeric>
 
 namespace riffler {
 
-TileCut::TileCut(const Tile& tile, bool with_normals, double thinnest)
-    : with_normals_(with_normals), thinnest_(thinnest), many_{} {
-  if (with_normals_) normals_.resize(kTileRays);
-  std::fill(near_ + kTileRays, near_ + kTileRays + kLanes, kNone);
-  std::fill(far_ + kTileRays, far_ + kTileRays + kLanes, -kNone);
-  for (int r = 0; r < kTileRays; ++r) {
-    const std::uint32_t n = tile.offset[r + 1] - tile.offset[r];
-    const Span* spans = tile.spans.data() + tile.offset[r];
-    if (n == 1) {
-      near_[r] = spans->near, far_[r] = spans->far;
-      if (with_normals_) normals_[r] = tile.normals[tile.offset[r]];
-    } else {
-      put(r, spans, with_normals_ ? tile.normals.data() + tile.offset[r] : nullptr, n);
+namespace {
+
+/// Where rays begin that hold one span each.
+const auto kOneEach = [] {
+  decltype(Tile::offset) offset;
+  std::iota(offset.begin(), offset.end(), 0U);
+  return offset;
+}();
+
+/// Whether the rays of a row hold one span each.
+bool one_each(const std::uint32_t* offset) {
+  std::uint32_t other = 0;
+  for (int k = 0; k < kTileSide; ++k) other |= (offset[k + 1] - offset[k]) ^ 1U;
+  return other == 0;
+}
+
+/// Of sorted spans or single ones, in several strands so that none waits for the other.
+Interval hull(const std::vector<Span>& spans) {
+  constexpr std::size_t kStrands = 4;
+  Interval out[kStrands];
+  std::size_t k = 0;
+  for (; k + kStrands <= spans.size(); k += kStrands)
+    for (std::size_t i = 0; i < kStrands; ++i) {
+      out[i].near = std::min(out[i].near, spans[k + i].near);
+      out[i].far = std::max(out[i].far, spans[k + i].far);
     }
+  for (; k < spans.size(); ++k) out[0].include(spans[k].near), out[0].include(spans[k].far);
+  for (std::size_t i = 1; i < kStrands; ++i)
+    out[0].near = std::min(out[0].near, out[i].near), out[0].far = std::max(out[0].far, out[i].far);
+  return out[0];
+}
+
+}  // namespace
+
+TileCut::TileCut(const Tile& tile, bool with_normals, double thinnest)
+    : tile_(tile),
+      with_normals_(with_normals),
+      packed_(tile.spans.size() == kTileRays &&
+              std::memcmp(tile.offset.data(), kOneEach.data(), sizeof tile.offset) == 0),
+      thinnest_(thinnest),
+      rays_(tile.spans.data()),
+      normals_(tile.normals.data()),
+      many_{} {
+  if (!packed_) unpack();
+}
+
+void TileCut::unpack() {
+  fresh_ = std::make_shared<Tile>();
+  fresh_->spans.resize(kTileRays);
+  if (with_normals_) fresh_->normals.resize(kTileRays);
+  rays_ = fresh_->spans.data(), normals_ = fresh_->normals.data();
+  for (int row = 0; row < kTileRays; row += kTileSide) {
+    const std::uint32_t* offset = tile_.offset.data() + row;
+    const Span* spans = tile_.spans.data();
+    const SpanNormals* normals = with_normals_ ? tile_.normals.data() : nullptr;
+    if (one_each(offset)) {
+      std::copy_n(spans + *offset, kTileSide, fresh_->spans.begin() + row);
+      if (with_normals_) std::copy_n(normals + *offset, kTileSide, fresh_->normals.begin() + row);
+      continue;
+    }
+    for (int b = 0; b < kTileSide; ++b)
+      put(row + b, spans + offset[b], with_normals_ ? normals + offset[b] : nullptr, offset[b + 1] - offset[b]);
   }
+}
+
+Span* TileCut::open() {
+  changed_ = true;
+  if (!fresh_) {
+    fresh_ = std::make_shared<Tile>(tile_);
+    rays_ = fresh_->spans.data(), normals_ = fresh_->normals.data();
+  }
+  return fresh_->spans.data();
 }
 
 void TileCut::put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n) {
   std::uint32_t& row = many_[r / kTileSide];
   const std::uint32_t bit = 1U << (r % kTileSide);
   const bool was_many = row & bit;
-  near_[r] = n ? spans[0].near : kNone, far_[r] = n ? spans[n - 1].far : -kNone;
+  fresh_->spans[r] = n ? Span{spans[0].near, spans[n - 1].far} : Span{kNone, -kNone};
   row = n > 1 ? row | bit : row & ~bit;
-  if (n == 1 && with_normals_) normals_[r] = normals[0];
-  if (n <= 1) return;
+  if (n == 1 && with_normals_) fresh_->normals[r] = normals[0];
+  if (n == 1) return;
+  packed_ = false;
+  if (n == 0) return;
   if (begin_.empty()) begin_.resize(kTileRays), count_.resize(kTileRays);
   if (!was_many || n > count_[r]) {
     begin_[r] = static_cast<std::uint32_t>(pool_.size());
@@ -41,26 +102,21 @@ void TileCut::put(int r, const Span* spans, const SpanNormals* normals, std::uin
 }
 
 void TileCut::store(int r) {
-  changed_ = true;
+  open();
   put(r, kept_.data(), kept_normals_.data(), static_cast<std::uint32_t>(kept_.size()));
 }
 
-/// No ray holds several spans.
+/// No ray holds several spans: drops the empty places.
 void TileCut::pack_single(Tile& tile) const {
-  tile.spans.resize(kTileRays);
-  if (with_normals_) tile.normals.resize(kTileRays);
   std::uint32_t total = 0;
-  double low = kNone, high = -kNone;
   for (int r = 0; r < kTileRays; ++r) {
     tile.offset[r] = total;
-    tile.spans[total] = {near_[r], far_[r]};
-    if (with_normals_) tile.normals[total] = normals_[r];
-    low = std::min(low, near_[r]), high = std::max(high, far_[r]);  // empty rays do not count: near is infinite
-    total += near_[r] < far_[r];
+    const Span span = tile.spans[r];
+    tile.spans[total] = span;
+    if (with_normals_) tile.normals[total] = tile.normals[r];
+    total += span.near < span.far;
   }
   tile.offset[kTileRays] = total;
-  if (low < high) tile.reach = {low, high};
-  if (total == kTileRays) return;
   tile.spans.resize(total), tile.spans.shrink_to_fit();
   if (with_normals_) tile.normals.resize(total), tile.normals.shrink_to_fit();
 }
@@ -69,27 +125,26 @@ void TileCut::pack_all(Tile& tile) const {
   std::uint32_t total = 0;
   for (int r = 0; r < kTileRays; ++r) tile.offset[r] = total, total += count(r);
   tile.offset[kTileRays] = total;
-  tile.spans.resize(total);
-  if (with_normals_) tile.normals.resize(total);
-  for (int r = 0; r < kTileRays; ++r) {
-    const std::uint32_t n = tile.offset[r + 1] - tile.offset[r];
-    if (n == 0) continue;
-    tile.reach.include(near_[r]), tile.reach.include(far_[r]);
-    for (std::uint32_t k = 0; k < n; ++k) {
-      tile.spans[tile.offset[r] + k] = span(r, k);
-      if (with_normals_) tile.normals[tile.offset[r] + k] = normal(r, k);
+  std::vector<Span> spans(total);
+  std::vector<SpanNormals> normals(with_normals_ ? total : 0);
+  for (int r = 0; r < kTileRays; ++r)
+    for (std::uint32_t k = 0, at = tile.offset[r]; at + k < tile.offset[r + 1]; ++k) {
+      spans[at + k] = span(r, k);
+      if (with_normals_) normals[at + k] = normal(r, k);
     }
-  }
+  tile.spans = std::move(spans), tile.normals = std::move(normals);
 }
 
-std::shared_ptr<Tile> TileCut::finish() const {
-  auto tile = std::make_shared<Tile>();
-  if (pool_.empty())
-    pack_single(*tile);
-  else
-    pack_all(*tile);
-  tile->revision = next_revision();
-  return tile;
+std::shared_ptr<Tile> TileCut::finish() {
+  if (!changed_) return nullptr;
+  Tile& tile = *fresh_;
+  if (!pool_.empty())
+    pack_all(tile);
+  else if (!packed_)
+    pack_single(tile);
+  tile.reach = hull(tile.spans);
+  tile.revision = next_revision();
+  return std::move(fresh_);
 }
 
 }  // namespace riffler

@@ -10,18 +10,19 @@
 
 namespace riffler {
 
-/// Rays with one span (nearly all) live in two planes, those with several in a pool. An empty ray has near > far, so
-/// that no cut touches it.
+/// Every ray has one place: its only span (nearly all rays), or the hull of several, which live in a pool. An empty ray
+/// has near > far there, so that no cut touches it. A tile whose rays have one span each is read where it lies, until
+/// something of it is cut: most tiles that a tool passes lose nothing.
 class TileCut {
  public:
-  /// Spans left thinner than `thinnest` vanish.
+  /// Spans left thinner than `thinnest` vanish. `tile` must outlive this.
   TileCut(const Tile& tile, bool with_normals, double thinnest);
 
-  /// Ends of a ray's only span, or of the hull of its spans; padded by kLanes. Whoever writes them calls `touch`.
-  double* near() { return near_; }
-  double* far() { return far_; }
+  const Span* rays() const { return rays_; }
   const std::uint32_t* many() const { return many_; }
-  void touch() { changed_ = true; }
+  /// The places for writing spans that stay single; `emptied` says that some have become empty.
+  Span* open();
+  void emptied() { packed_ = false; }
 
   /// Takes [cut.near, cut.far] from ray r. `normals(near, far)` is asked for the normals of the two new ends only if
   /// there are any; `removed(near, far)` is told every piece of material taken.
@@ -48,15 +49,14 @@ class TileCut {
     if (any) store(r);
   }
 
-  bool changed() const { return changed_; }
-  /// The result, packed, with a fresh revision.
-  std::shared_ptr<Tile> finish() const;
+  /// The result, packed, with a fresh revision; null if nothing was cut.
+  std::shared_ptr<Tile> finish();
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   bool is_many(int r) const { return many_[r / kTileSide] >> (r % kTileSide) & 1U; }
-  std::uint32_t count(int r) const { return is_many(r) ? count_[r] : (near_[r] < far_[r] ? 1U : 0U); }
-  Span span(int r, std::uint32_t k) const { return is_many(r) ? pool_[begin_[r] + k] : Span{near_[r], far_[r]}; }
+  std::uint32_t count(int r) const { return is_many(r) ? count_[r] : (rays_[r].near < rays_[r].far ? 1U : 0U); }
+  const Span& span(int r, std::uint32_t k) const { return is_many(r) ? pool_[begin_[r] + k] : rays_[r]; }
   const SpanNormals& normal(int r, std::uint32_t k) const {
     return is_many(r) ? pool_normals_[begin_[r] + k] : normals_[r];
   }
@@ -65,15 +65,19 @@ class TileCut {
     if (with_normals_) kept_normals_.push_back(n);
   }
   void put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n);
+  void unpack();
   void store(int r);
   void pack_single(Tile& tile) const;
   void pack_all(Tile& tile) const;
 
+  const Tile& tile_;
   bool with_normals_, changed_ = false;
+  bool packed_;  // every ray holds one span, as tiles have them
   double thinnest_;
-  alignas(64) double near_[kTileRays + kLanes], far_[kTileRays + kLanes];
+  const Span* rays_;
+  const SpanNormals* normals_;  // of the places
+  std::shared_ptr<Tile> fresh_;  // once it is opened, holds the places
   std::uint32_t many_[kTileSide];
-  std::vector<SpanNormals> normals_;          // of the planes
   std::vector<std::uint32_t> begin_, count_;  // of rays with several spans, in the pool
   std::vector<Span> pool_;                    // rays that grew lie at the end; their old places are forgotten
   std::vector<SpanNormals> pool_normals_;

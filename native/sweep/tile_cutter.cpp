@@ -25,13 +25,14 @@ TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const 
       rays_(grid.tile(tile), grid.has_normals(), 1e-9 * grid.pitch()),
       window_{} {
   RayWindow& w = window_;
-  w.near = rays_.near(), w.far = rays_.far(), w.many = rays_.many();
+  w.rays = rays_.rays(), w.many = rays_.many();
   for (int k = 0; k < kTileSide; ++k) w.u[k] = grid.shifted_u(first_row_ + k);
   for (int k = 0; k < kTileSide + kLanes; ++k) w.v[k] = grid.shifted_v(first_column_ + k);
   w.thinnest = 1e-9 * grid.pitch();
   w.in_place = !grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
   w.self = this, w.sums = &sums_, w.law = &law_;
   w.cut = [](void* self, int ray, const RayCut& cut) { static_cast<TileCutter*>(self)->cut_one(ray, cut); };
+  w.open = [](void* self) { static_cast<TileCutter*>(self)->open(); };
 }
 
 /// Rows and columns of the tile in the footprint; false if there are none.
@@ -74,11 +75,13 @@ void TileCutter::cut(const Step& step) {
   } else {
     cut_straight(std::get<StraightPart>(step.body).body, w);
   }
-  if (w.changed > 0) {
-    rays_.touch();
-    if (w.measured) add_share();
-  }
+  if (w.changed > 0 && w.measured) add_share();
   result_.stats.rays_tested += w.tested, result_.stats.rays_changed += w.changed, result_.stats.hits += w.hits;
+}
+
+void TileCutter::open() {
+  window_.opened = rays_.open();
+  window_.rays = rays_.rays();
 }
 
 /// What the kernel leaves: rays with several spans, splits, and all cuts of a grid that stores normals.
@@ -104,6 +107,7 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
       sums_.direction[i][slot] += length * direction[i], sums_.moment[i][slot] += length * moment[i];
   };
   rays_.subtract(ray, {cut.near, cut.far}, normals, removed);
+  window_.rays = rays_.rays();
 }
 
 /// Normals of the swept body at both ends of a cut.
@@ -132,8 +136,9 @@ void TileCutter::add_share() {
 }
 
 TileResult TileCutter::finish() {
-  if (!rays_.changed()) return std::move(result_);
+  if (window_.emptied) rays_.emptied();
   result_.tile = rays_.finish();
+  if (!result_.tile) return std::move(result_);
   result_.stats.tiles_changed = 1;
   result_.stats.bytes_copied = result_.tile->nbytes();
   return std::move(result_);

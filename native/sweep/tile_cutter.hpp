@@ -40,6 +40,7 @@ class TileCutter {
  private:
   void set_motion(const Motion& motion);
   bool set_window(const Footprint& footprint);
+  void open();
   void cut_one(int ray, const RayCut& cut);
   std::pair<Vec3, Vec3> ends(double u, double v, const RayCut& cut) const;
   void add_share();

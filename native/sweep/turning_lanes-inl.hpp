@@ -261,7 +261,7 @@ class TurningLanes {
     std::stable_sort(earlier_.begin(), earlier_.end(), [](const Cut& a, const Cut& b) { return a.ray < b.ray; });
     for (const Cut& c : earlier_) {
       const bool thick = c.cut.far - c.cut.near > w_.thinnest;
-      if (!thick || c.cut.near >= w_.far[c.ray] || c.cut.far <= w_.near[c.ray]) continue;
+      if (!thick || c.cut.near >= w_.rays[c.ray].far || c.cut.far <= w_.rays[c.ray].near) continue;
       ++w_.changed, w_.cut(w_.self, c.ray, c.cut);
     }
     for (int a = w_.first_row; a <= w_.last_row; ++a)
@@ -270,12 +270,8 @@ class TurningLanes {
         if (!taken) continue;
         const int ray = a * kTileSide + b;
         const M mask = from_bits(taken);
-        const Group g{ray,
-                      (b - w_.first[a]) % kLanes,
-                      hn::LoadU(kD, w_.v + b),
-                      hn::LoadU(kD, w_.near + ray),
-                      hn::LoadU(kD, w_.far + ray),
-                      mask};
+        Group g{ray, (b - w_.first[a]) % kLanes, hn::LoadU(kD, w_.v + b), zero(), zero(), mask};
+        load_material(w_, g);
         subtract(w_, w_.u[a], g, mask, {hn::LoadU(kD, near_ + ray), hn::LoadU(kD, far_ + ray)},
                  hn::LoadU(kD, t_near_ + ray), hn::LoadU(kD, t_far_ + ray));
       }
