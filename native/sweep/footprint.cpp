@@ -1,5 +1,6 @@
 #include "sweep/footprint.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace riffler {
@@ -30,6 +31,8 @@ Footprint::Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> 
 }
 
 void Footprint::add_corner(Hull& hull, const Vec2& p) {
+  for (int k = 0; k < hull.corners; ++k)
+    if (hull.corner[k] == p) return;  // the other end of an axis along the rays
   for (int k = 0; k < hull.corners; ++k) {
     const Vec2 edge = p - hull.corner[k];
     // A side that stands at one u ends where a corner's disc ends too.
@@ -43,22 +46,36 @@ void Footprint::add_corner(Hull& hull, const Vec2& p) {
   hull.corner[hull.corners++] = p;
 }
 
-Interval Footprint::row(double u) const {
-  Interval out;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Hull& hull = hulls_[k];
-    for (int i = 0; i < hull.corners; ++i) {
-      const Vec2 p = hull.corner[i];
-      const double half = hull.thickness * hull.thickness - (u - p.x) * (u - p.x);
-      if (half < 0) continue;
-      const double root = std::sqrt(half);
-      out.include(p.y - root), out.include(p.y + root);
+// Loops without branches or calls, which compilers turn into vector instructions.
+void Footprint::rows(const double* u, int n, Rows& out) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::fill_n(out.near, n, kInfinity), std::fill_n(out.far, n, -kInfinity);
+  double* const near = out.near;
+  double* const far = out.far;
+  const auto include = [=](int k, double low, double high) {
+    near[k] = low < near[k] ? low : near[k];
+    far[k] = high > far[k] ? high : far[k];
+  };
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Hull& hull = hulls_[i];
+    for (int c = 0; c < hull.corners; ++c) {
+      const Vec2 p = hull.corner[c];
+      const double square = hull.thickness * hull.thickness;
+      for (int k = 0; k < n; ++k) {
+        const double half = square - (u[k] - p.x) * (u[k] - p.x), root = std::sqrt(std::max(half, 0.0));
+        include(k, half >= 0 ? p.y - root : kInfinity, half >= 0 ? p.y + root : -kInfinity);
+      }
     }
     // The hull's edges are among the connections of its corners.
-    for (int i = 0; i < hull.sides; ++i)
-      if (const Side& s = hull.side[i]; u >= s.from && u <= s.to) out.include(s.y + s.slope * (u - s.x));
+    for (int c = 0; c < hull.sides; ++c) {
+      const Side s = hull.side[c];
+      for (int k = 0; k < n; ++k) {
+        const double v = s.y + s.slope * (u[k] - s.x);
+        const double low = u[k] >= s.from ? v : kInfinity, high = u[k] >= s.from ? v : -kInfinity;
+        include(k, u[k] <= s.to ? low : kInfinity, u[k] <= s.to ? high : -kInfinity);
+      }
+    }
   }
-  return out;
 }
 
 bool Footprint::overlaps(const Box3& box) const {

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <span>
 
+#include "dexel/tile.hpp"
 #include "geom/interval.hpp"
 #include "geom/pose.hpp"
 #include "sweep/turning_part.hpp"
@@ -22,8 +23,11 @@ class Footprint {
   const Interval& rows() const { return rows_; }
   const Interval& columns() const { return columns_; }
   const Interval& height() const { return height_; }
-  /// Range of v among the rays at u.
-  Interval row(double u) const;
+  /// Ranges of v among the rays at each of n ≤ kTileSide u.
+  struct Rows {
+    double near[kTileSide], far[kTileSide];
+  };
+  void rows(const double* u, int n, Rows& out) const;
   bool overlaps(const Box3& box) const;
 
  private:

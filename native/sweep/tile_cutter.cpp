@@ -41,16 +41,27 @@ bool TileCutter::set_window(const Footprint& footprint) {
   const double h = grid_.pitch();
   const auto [u0, u1] = ray_indices(footprint.rows(), grid_.box().lower.x, h, grid_.nu());
   w.first_row = std::max(u0 - first_row_, 0), w.last_row = std::min(u1 - first_row_, kTileSide - 1);
-  bool any = false;
-  for (int a = w.first_row; a <= w.last_row; ++a) {
-    const auto [v0, v1] = ray_indices(footprint.row(w.u[a]), grid_.box().lower.y, h, grid_.nv());
-    const int first = std::max(v0 - first_column_, 0), end = std::min(v1 - first_column_ + 1, kTileSide);
-    w.first[a] = static_cast<std::uint8_t>(std::min(first, kTileSide)),
-    w.end[a] = static_cast<std::uint8_t>(std::max(end, 0));
-    any = any || first < end;
+  const int n = w.last_row - w.first_row + 1;
+  if (n <= 0) return false;
+  Footprint::Rows rows;
+  footprint.rows(w.u + w.first_row, n, rows);
+  // As ray_indices, within the tile.
+  const int columns = std::min(grid_.nv() - first_column_, kTileSide);
+  const double lower = grid_.box().lower.y, before = first_column_, most = columns;
+  std::int32_t first[kTileSide], end[kTileSide], any = 0;
+  for (int k = 0; k < n; ++k) {
+    const double near = (rows.near[k] - lower) / h - 0.5 - before, from = std::min(std::max(near, 0.0), most);
+    const double far = (rows.far[k] - lower) / h - 0.5 - before, to = std::min(std::max(far, -1.0), most - 1);
+    const auto a = static_cast<std::int32_t>(from), b = static_cast<std::int32_t>(to);
+    first[k] = a + (a < from), end[k] = b + 1 - (b > to);
+    any |= first[k] < end[k];
+  }
+  for (int k = 0; k < n; ++k) {
+    w.first[w.first_row + k] = static_cast<std::uint8_t>(first[k]);
+    w.end[w.first_row + k] = static_cast<std::uint8_t>(end[k]);
   }
   w.low = footprint.height().near, w.high = footprint.height().far;
-  return any;
+  return any != 0;
 }
 
 void TileCutter::set_motion(const Motion& motion) {
