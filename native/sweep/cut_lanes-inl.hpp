@@ -55,24 +55,90 @@ HWY_INLINE void store_material(RayWindow& w, int ray, V near, V far) {
   for (int k = 0; ray + k < kTileRays; ++k) rays[k] = last[k];
 }
 
-/// Calls body(u, group) for all groups of the window with material at its heights.
-template <class Body>
-HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
+HWY_INLINE Group group_at(const RayWindow& w, int row, int column) {
+  Group g{row * kTileSide + column, (column - w.first[row]) % kLanes, hn::LoadU(kD, w.v + column), zero(), zero(),
+          no_lane()};
+  load_material(w, g);
+  return g;
+}
+
+/// Lanes in which the first look sees all material out of reach.
+template <bool kFlank>
+HWY_INLINE M under_ball(const FirstLook& look, double u, const Group& g) {
+  const V x = set(u - look.from[0]), y = hn::Sub(g.v, set(look.from[1])), z = hn::Sub(g.far, set(look.from[2]));
+  const auto dot = [](V a, V b, V c, const double* d) {
+    return hn::Add(hn::Add(hn::Mul(a, set(d[0])), hn::Mul(b, set(d[1]))), hn::Mul(c, set(d[2])));
+  };
+  const V t = min(max(hn::Mul(dot(x, y, z, look.way), set(look.per_square)), zero()), set(1));
+  const auto off = [&](V p, int i) { return hn::Sub(p, hn::Mul(t, set(look.way[i]))); };
+  const V a = off(x, 0), b = off(y, 1), c = off(z, 2);
+  const V square = hn::Add(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(c, c));
+  const M out = both(hn::Ge(square, set(look.square)), hn::Le(c, zero()));
+  if (!kFlank) return out;
+  const V rise = dot(a, b, c, look.axis);
+  return both(out, both(hn::Le(rise, zero()), hn::Ge(hn::Mul(rise, rise), hn::Mul(square, set(look.lean * look.lean)))));
+}
+HWY_INLINE M under_planes(const FirstLook& look, double u, const Group& g) {
+  V most = set(-kInfinity);
+  for (int k = 0; k < 2; ++k) {
+    const double* foot = look.foot[k];
+    const double* n = look.normal[k];
+    const V z = hn::Sub(g.far, set(foot[2]));
+    const V h = hn::Add(hn::Add(set((u - foot[0]) * n[0]), hn::Mul(hn::Sub(g.v, set(foot[1])), set(n[1]))), hn::Mul(z, set(n[2])));
+    most = max(most, hn::Add(h, hn::Mul(abs(z), set(look.per_depth))));
+  }
+  return hn::Lt(most, set(-look.slack));
+}
+
+/// A group that may be touched: its first ray and its active lanes.
+struct Candidate {
+  std::uint16_t ray;
+  std::uint8_t active;
+};
+
+/// The window's groups with material at its heights that `under` does not see out of reach.
+template <class Under>
+HWY_INLINE int find_groups(RayWindow& w, const Under& under, Candidate* out) {
   const V low = set(w.low), high = set(w.high);
+  int n = 0;
   for (int a = w.first_row; a <= w.last_row; ++a)
     for (int b = w.first[a]; b < w.end[a]; b += lanes()) {
-      Group g{a * kTileSide + b,
-              (b - w.first[a]) % kLanes,
-              hn::LoadU(kD, w.v + b),
-              zero(),
-              zero(),
-              hn::FirstN(kD, static_cast<std::size_t>(w.end[a] - b))};
-      load_material(w, g);
-      g.active = both(g.active, both(hn::Lt(g.near, high), hn::Gt(g.far, low)));
-      if (none(g.active)) continue;
-      w.tested += hn::CountTrue(kD, g.active);
-      body(w.u[a], g);
+      const Group g = group_at(w, a, b);
+      const M inside = hn::FirstN(kD, static_cast<std::size_t>(w.end[a] - b));
+      const M there = both(inside, both(hn::Lt(g.near, high), hn::Gt(g.far, low)));
+      const unsigned active = bits(without(there, under(w.u[a], g)));
+      out[n] = {static_cast<std::uint16_t>(g.ray), static_cast<std::uint8_t>(active)};
+      n += active != 0;
+      w.tested += static_cast<unsigned>(std::popcount(active));
     }
+  return n;
+}
+
+/// Calls body(u, group) for all groups that the step may touch.
+template <class Body>
+HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
+  Candidate found[kTileRays];
+  int n = 0;
+  switch (w.look.kind) {
+    case FirstLook::Kind::None:
+      n = find_groups(w, [](double, const Group&) { return no_lane(); }, found);
+      break;
+    case FirstLook::Kind::Ball:
+      n = find_groups(w, [&](double u, const Group& g) { return under_ball<false>(w.look, u, g); }, found);
+      break;
+    case FirstLook::Kind::BallAndFlank:
+      n = find_groups(w, [&](double u, const Group& g) { return under_ball<true>(w.look, u, g); }, found);
+      break;
+    case FirstLook::Kind::Planes:
+      n = find_groups(w, [&](double u, const Group& g) { return under_planes(w.look, u, g); }, found);
+      break;
+  }
+  for (int k = 0; k < n; ++k) {
+    const int row = found[k].ray / kTileSide;
+    Group g = group_at(w, row, found[k].ray % kTileSide);
+    g.active = from_bits(found[k].active);
+    body(w.u[row], g);
+  }
 }
 
 HWY_INLINE void add_to(double* slots, int slot, V x) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "dexel/tile.hpp"
+#include "sweep/first_look.hpp"
 
 namespace riffler {
 
@@ -43,6 +44,7 @@ struct RayWindow {
   int first_row, last_row;
   std::uint8_t first[kTileSide], end[kTileSide];
   double low, high;
+  FirstLook look;
   // What is wanted.
   bool in_place;    ///< cut single spans here; otherwise every cut goes to `cut`
   bool measured;    ///< add up the lengths taken

@@ -82,9 +82,12 @@ void TileCutter::cut(const Step& step) {
   RayWindow& w = window_;
   w.tested = w.changed = w.hits = 0;
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
+    w.look = FirstLook(part->group, *step.motion, part->t0, part->t1, step.footprint);
     cut_turning(TurningBody(part->group, *step.motion, part->t0, part->t1, options_.tolerance), w);
   } else {
-    cut_straight(std::get<StraightPart>(step.body).body, w);
+    const StraightBody& body = std::get<StraightPart>(step.body).body;
+    w.look = FirstLook(body);
+    cut_straight(body, w);
   }
   if (w.changed > 0 && w.measured) add_share();
   result_.stats.rays_tested += w.tested, result_.stats.rays_changed += w.changed, result_.stats.hits += w.hits;
