@@ -145,11 +145,9 @@ HWY_INLINE void add_to(double* slots, int slot, V x) {
   hn::StoreU(hn::Add(hn::LoadU(kD, slots + slot), x), kD, slots + slot);
 }
 
-/// (3.20)–(3.22) in one: against the velocity of the tool's material point at the middle of what is taken.
-HWY_INLINE void add_force(RayWindow& w, double u, const Group& g, V length, V middle, V t) {
-  const ForceLaw& law = *w.law;
-  const V p[3] = {set(u), g.v, middle};
-  V arm[3], force[3], moment[3], square = zero();
+/// (3.20)–(3.22) in one: `force` against the velocity of the tool's material point p at time t, as long as `length`.
+HWY_INLINE void force_at(const ForceLaw& law, const V (&p)[3], V length, V t, V (&force)[3]) {
+  V arm[3], square = zero();
   for (int i = 0; i < 3; ++i) arm[i] = hn::Sub(p[i], hn::Add(set(law.tip[i]), hn::Mul(t, set(law.way[i]))));
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -159,14 +157,22 @@ HWY_INLINE void add_force(RayWindow& w, double u, const Group& g, V length, V mi
   // Along the axis where that point stands still.
   const M moves = hn::Gt(square, zero());
   const V scale = hn::Div(length, sqrt(pick(moves, square, set(1))));
-  for (int i = 0; i < 3; ++i) {
-    force[i] = pick(moves, hn::Mul(force[i], scale), hn::Mul(length, set(law.axis[i])));
-    arm[i] = hn::Sub(p[i], set(law.pivot[i]));
-  }
+  for (int i = 0; i < 3; ++i) force[i] = pick(moves, hn::Mul(force[i], scale), hn::Mul(length, set(law.axis[i])));
+}
+/// The same for a tool that does not turn.
+HWY_INLINE void force_along(const ForceLaw& law, V length, V (&force)[3]) {
+  const bool moves = law.speed > 0;
+  const V scale = moves ? hn::Div(length, set(law.speed)) : length;
+  for (int i = 0; i < 3; ++i) force[i] = hn::Mul(scale, set(moves ? -law.way[i] : law.axis[i]));
+}
+
+HWY_INLINE void add_force(RayWindow& w, const V (&p)[3], const V (&force)[3], int slot) {
+  V arm[3];
+  for (int i = 0; i < 3; ++i) arm[i] = hn::Sub(p[i], set(w.law->pivot[i]));
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    moment[i] = hn::Sub(hn::Mul(arm[j], force[k]), hn::Mul(arm[k], force[j]));
-    add_to(w.sums->direction[i], g.slot, force[i]), add_to(w.sums->moment[i], g.slot, moment[i]);
+    const V moment = hn::Sub(hn::Mul(arm[j], force[k]), hn::Mul(arm[k], force[j]));
+    add_to(w.sums->direction[i], slot, force[i]), add_to(w.sums->moment[i], slot, moment);
   }
 }
 
@@ -194,7 +200,17 @@ HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, Stretch
       add_to(w.sums->length, g.slot, length);
       // Lanes that lose nothing may hold infinities.
       const V middle = hn::IfThenElseZero(simple, hn::Mul(set(0.5), hn::Add(low, high)));
-      if (w.with_force) add_force(w, u, g, length, middle, hn::Mul(set(0.5), hn::Add(t_near, t_far)));
+      if (w.with_force) {
+        const V p[3] = {set(u), g.v, middle};
+        V force[3];
+        if (w.law->turns) {
+          force_at(*w.law, p, length, hn::Mul(set(0.5), hn::Add(t_near, t_far)), force);
+          add_force(w, p, force, g.slot);
+        } else {
+          force_along(*w.law, length, force);
+          add_force(w, p, force, g.slot);
+        }
+      }
     }
   }
   const unsigned rest = bits(without(touched, simple));

@@ -30,6 +30,8 @@ struct ForceLaw {
   double tip[3], way[3], spin[3];
   double axis[3];   ///< direction where nothing moves
   double pivot[3];  ///< of the moment
+  bool turns;       ///< spin is not zero
+  double speed;     ///< |way|
 };
 
 struct RayWindow {

@@ -71,6 +71,8 @@ void TileCutter::set_motion(const Motion& motion) {
     law_.tip[i] = from[i], law_.way[i] = to[i] - from[i], law_.spin[i] = motion.rotation()[i];
     law_.axis[i] = axis[i], law_.pivot[i] = to[i];
   }
+  law_.turns = motion.rotation() != Vec3(0);
+  law_.speed = glm::length(to - from);
 }
 
 void TileCutter::cut(const Step& step) {
