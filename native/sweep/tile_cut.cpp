@@ -1,19 +1,10 @@
 #include "sweep/tile_cut.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <numeric>
 
 namespace riffler {
 
 namespace {
-
-/// Where rays begin that hold one span each.
-const auto kOneEach = [] {
-  decltype(Tile::offset) offset;
-  std::iota(offset.begin(), offset.end(), 0U);
-  return offset;
-}();
 
 /// Whether the rays of a row hold one span each.
 bool one_each(const std::uint32_t* offset) {
@@ -43,8 +34,7 @@ Interval hull(const std::vector<Span>& spans) {
 TileCut::TileCut(const Tile& tile, bool with_normals, double thinnest)
     : tile_(tile),
       with_normals_(with_normals),
-      packed_(tile.spans.size() == kTileRays &&
-              std::memcmp(tile.offset.data(), kOneEach.data(), sizeof tile.offset) == 0),
+      packed_(tile.offset.one_each()),
       thinnest_(thinnest),
       rays_(tile.spans.data()),
       normals_(tile.normals.data()),
@@ -108,30 +98,34 @@ void TileCut::store(int r) {
 
 /// No ray holds several spans: drops the empty places.
 void TileCut::pack_single(Tile& tile) const {
+  RayOffsets::Array offset;
   std::uint32_t total = 0;
   for (int r = 0; r < kTileRays; ++r) {
-    tile.offset[r] = total;
+    offset[r] = total;
     const Span span = tile.spans[r];
     tile.spans[total] = span;
     if (with_normals_) tile.normals[total] = tile.normals[r];
     total += span.near < span.far;
   }
-  tile.offset[kTileRays] = total;
+  offset[kTileRays] = total;
+  tile.offset = RayOffsets(offset);
   tile.spans.resize(total), tile.spans.shrink_to_fit();
   if (with_normals_) tile.normals.resize(total), tile.normals.shrink_to_fit();
 }
 
 void TileCut::pack_all(Tile& tile) const {
+  RayOffsets::Array offset;
   std::uint32_t total = 0;
-  for (int r = 0; r < kTileRays; ++r) tile.offset[r] = total, total += count(r);
-  tile.offset[kTileRays] = total;
+  for (int r = 0; r < kTileRays; ++r) offset[r] = total, total += count(r);
+  offset[kTileRays] = total;
   std::vector<Span> spans(total);
   std::vector<SpanNormals> normals(with_normals_ ? total : 0);
   for (int r = 0; r < kTileRays; ++r)
-    for (std::uint32_t k = 0, at = tile.offset[r]; at + k < tile.offset[r + 1]; ++k) {
+    for (std::uint32_t k = 0, at = offset[r]; at + k < offset[r + 1]; ++k) {
       spans[at + k] = span(r, k);
       if (with_normals_) normals[at + k] = normal(r, k);
     }
+  tile.offset = RayOffsets(offset);
   tile.spans = std::move(spans), tile.normals = std::move(normals);
 }
 

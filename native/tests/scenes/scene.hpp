@@ -59,7 +59,7 @@ inline std::uint64_t hash(const Volume& volume) {
   for (const Grid& grid : volume.grids())
     for (std::size_t t = 0; t < grid.tile_count(); ++t) {
       const Tile& tile = grid.tile(t);
-      add(tile.offset.data(), sizeof tile.offset);
+      add(tile.offset.data(), tile.offset.size() * sizeof tile.offset[0]);
       for (const Span& s : tile.spans) add(&s.near, sizeof s.near), add(&s.far, sizeof s.far);
     }
   return h;
