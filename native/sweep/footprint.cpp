@@ -27,23 +27,36 @@ Footprint::Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> 
       else
         add(bottom(piece)), add(top(piece));
     }
+    add_sides(hull);
   }
 }
 
 void Footprint::add_corner(Hull& hull, const Vec2& p) {
   for (int k = 0; k < hull.corners; ++k)
     if (hull.corner[k] == p) return;  // the other end of an axis along the rays
-  for (int k = 0; k < hull.corners; ++k) {
-    const Vec2 edge = p - hull.corner[k];
-    // A side that stands at one u ends where a corner's disc ends too.
-    if (edge.x == 0) continue;
-    const Vec2 across = Vec2(-edge.y, edge.x) * (hull.thickness / glm::length(edge));
-    for (const Vec2 from : {p + across, p - across}) {
-      const double slope = edge.y / edge.x, other = from.x - edge.x;
-      hull.side[hull.sides++] = {std::min(from.x, other), std::max(from.x, other), from.x, from.y, slope};
-    }
-  }
   hull.corner[hull.corners++] = p;
+}
+
+/// The hull's edges are among the connections of its corners. Of these, a side beyond which there is another corner is
+/// within the hull.
+void Footprint::add_sides(Hull& hull) {
+  for (int i = 0; i < hull.corners; ++i)
+    for (int k = i + 1; k < hull.corners; ++k) {
+      const Vec2 a = hull.corner[i], b = hull.corner[k], edge = b - a;
+      // A side that stands at one u ends where a corner's disc ends too.
+      if (edge.x == 0) continue;
+      const Vec2 across = Vec2(-edge.y, edge.x) * (hull.thickness / glm::length(edge));
+      const double slope = edge.y / edge.x, square = hull.thickness * hull.thickness;
+      for (const double side : {1.0, -1.0}) {
+        double beyond = 0;
+        for (int m = 0; m < hull.corners; ++m)
+          beyond = std::max(beyond, side * glm::dot(hull.corner[m] - a, across));
+        if (beyond > 1e-9 * square) continue;
+        const Vec2 from = b + side * across;
+        const double other = from.x - edge.x;
+        hull.side[hull.sides++] = {std::min(from.x, other), std::max(from.x, other), from.x, from.y, slope};
+      }
+    }
 }
 
 // Loops without branches or calls, which compilers turn into vector instructions.
@@ -66,7 +79,6 @@ void Footprint::rows(const double* u, int n, Rows& out) const {
         include(k, half >= 0 ? p.y - root : kInfinity, half >= 0 ? p.y + root : -kInfinity);
       }
     }
-    // The hull's edges are among the connections of its corners.
     for (int c = 0; c < hull.sides; ++c) {
       const Side s = hull.side[c];
       for (int k = 0; k < n; ++k) {

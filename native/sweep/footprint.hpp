@@ -42,7 +42,8 @@ class Footprint {
     Vec2 corner[4];
     Side side[12];
   };
-  void add_corner(Hull& hull, const Vec2& p);
+  static void add_corner(Hull& hull, const Vec2& p);
+  static void add_sides(Hull& hull);
 
   std::size_t count_ = 0;
   Hull hulls_[ConvexGroup::kMost];
