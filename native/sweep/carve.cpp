@@ -162,7 +162,8 @@ class GridCarver {
     std::optional<TileCutter> cutter;
     for (std::size_t k = work.begin; k < work.end; ++k) {
       const Step& step = steps_[pairs_[k].second];
-      if (tile.reach.cut(step.footprint.height()).empty()) continue;  // the tool stays above or below the tile
+      const Interval& height = step.footprint.height();
+      if (!(tile.reach.near < height.far && tile.reach.far > height.near)) continue;  // the tool stays above or below
       if (!cutter) cutter.emplace(grid_, work.tile, measured_, options_);
       cutter->cut(step);
     }

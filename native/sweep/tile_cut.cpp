@@ -13,20 +13,21 @@ bool one_each(const std::uint32_t* offset) {
   return other == 0;
 }
 
-/// Of sorted spans or single ones, in several strands so that none waits for the other.
-Interval hull(const std::vector<Span>& spans) {
-  constexpr std::size_t kStrands = 4;
-  Interval out[kStrands];
+/// Hull of spans that lie within `before`; often the first few reach its ends.
+Interval hull(const std::vector<Span>& spans, const Interval& before) {
+  constexpr std::size_t kBlock = 32, kStrands = 4;  // no comparison waits for the one before
+  Interval strands[kStrands], out;
+  const auto include = [](Interval& to, const Interval& s) {
+    to.near = s.near < to.near ? s.near : to.near, to.far = s.far > to.far ? s.far : to.far;
+  };
   std::size_t k = 0;
-  for (; k + kStrands <= spans.size(); k += kStrands)
-    for (std::size_t i = 0; i < kStrands; ++i) {
-      out[i].near = std::min(out[i].near, spans[k + i].near);
-      out[i].far = std::max(out[i].far, spans[k + i].far);
-    }
-  for (; k < spans.size(); ++k) out[0].include(spans[k].near), out[0].include(spans[k].far);
-  for (std::size_t i = 1; i < kStrands; ++i)
-    out[0].near = std::min(out[0].near, out[i].near), out[0].far = std::max(out[0].far, out[i].far);
-  return out[0];
+  while (k + kBlock <= spans.size() && out != before) {
+    for (const std::size_t end = k + kBlock; k < end; k += kStrands)
+      for (std::size_t i = 0; i < kStrands; ++i) include(strands[i], {spans[k + i].near, spans[k + i].far});
+    for (const Interval& s : strands) include(out, s);
+  }
+  for (; k < spans.size() && out != before; ++k) include(out, {spans[k].near, spans[k].far});
+  return out;
 }
 
 }  // namespace
@@ -136,7 +137,7 @@ std::shared_ptr<Tile> TileCut::finish() {
     pack_all(tile);
   else if (!packed_)
     pack_single(tile);
-  tile.reach = hull(tile.spans);
+  tile.reach = hull(tile.spans, tile_.reach);
   tile.revision = next_revision();
   return std::move(fresh_);
 }
