@@ -56,7 +56,11 @@ HWY_INLINE void store_material(RayWindow& w, int ray, V near, V far) {
 }
 
 HWY_INLINE Group group_at(const RayWindow& w, int row, int column) {
-  Group g{row * kTileSide + column, (column - w.first[row]) % kLanes, hn::LoadU(kD, w.v + column), zero(), zero(),
+  Group g{row * kTileSide + column,
+          (column - w.first[row]) % kLanes,
+          hn::LoadU(kD, w.v + column),
+          zero(),
+          zero(),
           no_lane()};
   load_material(w, g);
   return g;
@@ -76,7 +80,8 @@ HWY_INLINE M under_ball(const FirstLook& look, double u, const Group& g) {
   const M out = both(hn::Ge(square, set(look.square)), hn::Le(c, zero()));
   if (!kFlank) return out;
   const V rise = dot(a, b, c, look.axis);
-  return both(out, both(hn::Le(rise, zero()), hn::Ge(hn::Mul(rise, rise), hn::Mul(square, set(look.lean * look.lean)))));
+  return both(out,
+              both(hn::Le(rise, zero()), hn::Ge(hn::Mul(rise, rise), hn::Mul(square, set(look.lean * look.lean)))));
 }
 HWY_INLINE M under_planes(const FirstLook& look, double u, const Group& g) {
   V most = set(-kInfinity);
@@ -84,7 +89,8 @@ HWY_INLINE M under_planes(const FirstLook& look, double u, const Group& g) {
     const double* foot = look.foot[k];
     const double* n = look.normal[k];
     const V z = hn::Sub(g.far, set(foot[2]));
-    const V h = hn::Add(hn::Add(set((u - foot[0]) * n[0]), hn::Mul(hn::Sub(g.v, set(foot[1])), set(n[1]))), hn::Mul(z, set(n[2])));
+    const V h = hn::Add(hn::Add(set((u - foot[0]) * n[0]), hn::Mul(hn::Sub(g.v, set(foot[1])), set(n[1]))),
+                        hn::Mul(z, set(n[2])));
     most = max(most, hn::Add(h, hn::Mul(abs(z), set(look.per_depth))));
   }
   return hn::Lt(most, set(-look.slack));

@@ -49,8 +49,7 @@ void Footprint::add_sides(Hull& hull) {
       const double slope = edge.y / edge.x, square = hull.thickness * hull.thickness;
       for (const double side : {1.0, -1.0}) {
         double beyond = 0;
-        for (int m = 0; m < hull.corners; ++m)
-          beyond = std::max(beyond, side * glm::dot(hull.corner[m] - a, across));
+        for (int m = 0; m < hull.corners; ++m) beyond = std::max(beyond, side * glm::dot(hull.corner[m] - a, across));
         if (beyond > 1e-9 * square) continue;
         const Vec2 from = b + side * across;
         const double other = from.x - edge.x;

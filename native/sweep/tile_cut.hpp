@@ -75,7 +75,7 @@ class TileCut {
   bool packed_;  // every ray holds one span, as tiles have them
   double thinnest_;
   const Span* rays_;
-  const SpanNormals* normals_;  // of the places
+  const SpanNormals* normals_;   // of the places
   std::shared_ptr<Tile> fresh_;  // once it is opened, holds the places
   std::uint32_t many_[kTileSide];
   std::vector<std::uint32_t> begin_, count_;  // of rays with several spans, in the pool
