@@ -27,33 +27,37 @@ double beyond(double x, double low, double high) {
   return std::max({0.0, low - x, x - high});
 }
 
+double length_of(double a, double b) {
+  return std::sqrt(a * a + b * b);
+}
+
 void add_side(const PieceShape& s, const Vec2& p, Nearest& out) {
   const double past = beyond(p.y, s.z0, s.z1);
   if (s.round) {
     const Vec2 d(std::max(p.x - s.e, 0.0), p.y - s.zc);
     const double length = glm::length(d);
-    out.add(length > 0 ? d / length : Vec2(1, 0), std::hypot(length - s.r, past));
+    out.add(length > 0 ? d / length : Vec2(1, 0), length_of(length - s.r, past));
   } else {
     const double aside = (p.x - s.r0 - s.slope * (p.y - s.z0)) * s.cosine;
-    out.add(Vec2(s.cosine, -s.slope * s.cosine), std::hypot(aside, past));
+    out.add(Vec2(s.cosine, -s.slope * s.cosine), length_of(aside, past));
   }
 }
 
-Nearest nearest(const ConvexGroup& group, const Vec2& p) {
+Nearest nearest(std::span<const PieceShape> group, const Vec2& p) {
   Nearest out;
-  for (std::size_t k = 0; k < group.count; ++k) {
-    const PieceShape s = shape_of(group.pieces[k]);
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const PieceShape& s = group[k];
     add_side(s, p, out);
-    if (k == 0 && !(s.round && s.z0 <= s.zc - s.r)) out.add({0, -1}, std::hypot(p.y - s.z0, beyond(p.x, 0, s.r0)));
-    if (k + 1 == group.count && !(s.round && s.z1 >= s.zc + s.r))
-      out.add({0, 1}, std::hypot(p.y - s.z1, beyond(p.x, 0, s.r1)));
+    if (k == 0 && !(s.round && s.z0 <= s.zc - s.r)) out.add({0, -1}, length_of(p.y - s.z0, beyond(p.x, 0, s.r0)));
+    if (k + 1 == group.size() && !(s.round && s.z1 >= s.zc + s.r))
+      out.add({0, 1}, length_of(p.y - s.z1, beyond(p.x, 0, s.r1)));
   }
   return out;
 }
 
 }  // namespace
 
-Vec3 swept_normal(const ConvexGroup& group, const Motion& motion, const Vec3& p, double t) {
+Vec3 swept_normal(std::span<const PieceShape> group, const Motion& motion, const Vec3& p, double t) {
   const Vec3 axis = motion.axis(t), w = p - motion.tip(t);
   const double z = glm::dot(w, axis);
   const Vec3 aside = w - z * axis;

@@ -24,13 +24,13 @@ class TileCut {
   Span* open();
   void emptied() { packed_ = false; }
 
-  /// Takes [cut.near, cut.far] from ray r. `normals(near, far)` is asked for the normals of the two new ends only if
-  /// there are any; `removed(near, far)` is told every piece of material taken.
-  template <class Normals, class Removed>
-  void subtract(int r, const Interval& cut, const Normals& normals, const Removed& removed) {
+  /// Takes [cut.near, cut.far] from ray r. `normal_at(s)` is asked for the normal of a new end at s, if normals are
+  /// wanted; `removed(near, far)` is told every piece of material taken.
+  template <class Normal, class Removed>
+  void subtract(int r, const Interval& cut, const Normal& normal_at, const Removed& removed) {
     kept_.clear(), kept_normals_.clear();
-    SpanNormals ends;
-    bool have_ends = false, any = false;
+    const auto end = [&](double s) { return with_normals_ ? normal_at(s) : PackedNormal{}; };
+    bool any = false;
     const std::uint32_t n = count(r);
     for (std::uint32_t k = 0; k < n; ++k) {
       const Span s = span(r, k);
@@ -41,9 +41,8 @@ class TileCut {
       }
       any = true;
       const bool below = cut.near - s.near > thinnest_, above = s.far - cut.far > thinnest_;
-      if (with_normals_ && (below || above) && !have_ends) normals(ends.near, ends.far), have_ends = true;
-      if (below) keep({s.near, cut.near}, {old.near, ends.near});
-      if (above) keep({cut.far, s.far}, {ends.far, old.far});
+      if (below) keep({s.near, cut.near}, {old.near, end(cut.near)});
+      if (above) keep({cut.far, s.far}, {end(cut.far), old.far});
       removed(below ? cut.near : s.near, above ? cut.far : s.far);
     }
     if (any) store(r);

@@ -75,12 +75,19 @@ void TileCutter::set_motion(const Motion& motion) {
   law_.speed = glm::length(to - from);
 }
 
+void TileCutter::set_shapes(const Step& step) {
+  const ConvexGroup& group = std::visit([](const auto& part) -> const ConvexGroup& { return part.group; }, step.body);
+  shape_count_ = group.count;
+  std::transform(group.pieces.begin(), group.pieces.begin() + group.count, shapes_.begin(), shape_of);
+}
+
 void TileCutter::cut(const Step& step) {
   step_ = &step;
   if (motion_ != step.motion) set_motion(*step.motion);
   if (!set_window(step.footprint)) return;
   result_.stats.tiles_visited += step.move != last_move_;
   last_move_ = step.move;
+  if (grid_.has_normals()) set_shapes(step);
   RayWindow& w = window_;
   w.tested = w.changed = w.hits = 0;
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
@@ -105,10 +112,11 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
   const int row = ray / kTileSide, column = ray % kTileSide;
   const double u = window_.u[row], v = window_.v[column];
   const int slot = (column - window_.first[row]) % kLanes;
-  const auto normals = [&](PackedNormal& near, PackedNormal& far) {
+  const auto normal_at = [&](double end) {
+    const std::span<const PieceShape> group(shapes_.data(), shape_count_);
+    const Vec3 n = swept_normal(group, *motion_, {u, v, end}, end == cut.near ? cut.near_t : cut.far_t);
     // The material's new surface looks into the tool.
-    const auto [a, b] = ends(u, v, cut);
-    near = PackedNormal::pack(to_world(grid_.axis(), -a)), far = PackedNormal::pack(to_world(grid_.axis(), -b));
+    return PackedNormal::pack(to_world(grid_.axis(), -n));
   };
   const auto removed = [&](double low, double high) {
     if (!window_.measured) return;
@@ -122,15 +130,8 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
     for (int i = 0; i < 3; ++i)
       sums_.direction[i][slot] += length * direction[i], sums_.moment[i][slot] += length * moment[i];
   };
-  rays_.subtract(ray, {cut.near, cut.far}, normals, removed);
+  rays_.subtract(ray, {cut.near, cut.far}, normal_at, removed);
   window_.rays = rays_.rays();
-}
-
-/// Normals of the swept body at both ends of a cut.
-std::pair<Vec3, Vec3> TileCutter::ends(double u, double v, const RayCut& cut) const {
-  const ConvexGroup& group = std::visit([](const auto& part) -> const ConvexGroup& { return part.group; }, step_->body);
-  return {swept_normal(group, *motion_, {u, v, cut.near}, cut.near_t),
-          swept_normal(group, *motion_, {u, v, cut.far}, cut.far_t)};
 }
 
 /// (3.18)–(3.24) with k per volume and second.

@@ -1,6 +1,7 @@
 // Cuts one tile with one step after the other.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -39,10 +40,10 @@ class TileCutter {
 
  private:
   void set_motion(const Motion& motion);
+  void set_shapes(const Step& step);
   bool set_window(const Footprint& footprint);
   void open();
   void cut_one(int ray, const RayCut& cut);
-  std::pair<Vec3, Vec3> ends(double u, double v, const RayCut& cut) const;
   void add_share();
 
   const Grid& grid_;
@@ -55,6 +56,8 @@ class TileCutter {
   TileResult result_;
   std::uint32_t last_move_ = ~0U;
   const Step* step_ = nullptr;
+  std::array<PieceShape, ConvexGroup::kMost> shapes_;  // of the step, where normals are stored
+  std::size_t shape_count_ = 0;
   const Motion* motion_ = nullptr;
 };
 
