@@ -145,25 +145,6 @@ class RayComparison {
   Comparison& out_;
 };
 
-/// What a test needs to make the move again.
-std::string describe(const Stage& stage, const Move& move) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "\n  profile (radius, height)";
-  for (const ProfileSegment& s : stage.tool.profile().segments()) {
-    text << " to " << s.to.x << ", " << s.to.y;
-    if (s.centre) text << " about " << s.centre->x << ", " << s.centre->y;
-  }
-  for (const auto& [word, pose] : {std::pair("from", move.from), {"to", move.to}}) {
-    text << "\n  " << word;
-    for (const double x : {pose.tip.x, pose.tip.y, pose.tip.z, pose.axis.x, pose.axis.y, pose.axis.z}) text << ' ' << x;
-  }
-  const Box3& box = stage.frame.box;
-  text << "\n  box " << box.lower.x << ' ' << box.lower.y << ' ' << box.lower.z << " to " << box.upper.x << ' '
-       << box.upper.y << ' ' << box.upper.z << ", pitch " << stage.frame.pitch << ", " << stage.frame.directions;
-  return text.str();
-}
-
 }  // namespace
 
 Comparison compare_with_reference(Random& random, const Stage& stage, const Move& move, const Volume& before,
@@ -173,7 +154,6 @@ Comparison compare_with_reference(Random& random, const Stage& stage, const Move
   const Allowed allowed = allowed_error(stage, move);
   for (const RayName& ray : choose_rays(random, before, after, rays))
     RayComparison(swept, allowed, before.grids()[ray.grid], after.grids()[ray.grid], ray, out).run(random);
-  if (!out.problem.empty()) out.problem += describe(stage, move);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -82,10 +83,12 @@ void print_heading() {
               "worst", "failed");
 }
 
-void print_failures(const Results& results) {
-  for (const Failure& f : results.failures)
+/// Those from the number `first` on, at once: a long run may be cut short.
+void print_failures(const Results& results, std::size_t first = 0) {
+  for (const Failure& f : std::span(results.failures).subspan(first))
     std::printf("FAILED: %s, move %d of session %llu: %s\n  again: %s\n", f.cutter.c_str(), f.move,
                 static_cast<unsigned long long>(f.session), f.text.c_str(), reproducer(f).c_str());
+  std::fflush(stdout);
 }
 
 /// Tells how far a cutter has come, on the standard error, every other second.
@@ -93,6 +96,8 @@ class Progress {
  public:
   Progress(std::string cutter, long moves) : cutter_(std::move(cutter)), moves_(moves) {}
   bool operator()(const Results& results) {
+    print_failures(results, failures_);
+    failures_ = results.failures.size();
     const auto now = std::chrono::steady_clock::now();
     if (now - told_ < std::chrono::seconds(2)) return true;
     told_ = now;
@@ -106,6 +111,7 @@ class Progress {
  private:
   std::string cutter_;
   long moves_;
+  std::size_t failures_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), told_ = start_;
 };
 
@@ -132,7 +138,6 @@ int run_all(const Arguments& arguments) {
       for (std::size_t k = 0; k < results.kinds.size(); ++k)
         print_row(cutter, name(static_cast<Kind>(k)), results.kinds[k]);
     print_row(cutter, "all", results.total());
-    print_failures(results);
     std::fflush(stdout);
     for (std::size_t k = 0; k < all.kinds.size(); ++k) all.kinds[k] += results.kinds[k];
     for (std::size_t k = 0; k < all.settings.size(); ++k) all.settings[k] += results.settings[k];

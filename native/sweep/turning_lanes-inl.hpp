@@ -272,8 +272,9 @@ class TurningLanes {
         const M mask = from_bits(taken);
         Group g{ray, (b - w_.first[a]) % kLanes, hn::LoadU(kD, w_.v + b), zero(), zero(), mask};
         load_material(w_, g);
-        subtract(w_, w_.u[a], g, mask, {hn::LoadU(kD, near_ + ray), hn::LoadU(kD, far_ + ray)},
-                 hn::LoadU(kD, t_near_ + ray), hn::LoadU(kD, t_far_ + ray));
+        // The other lanes' places were never written, and no number times zero need be zero.
+        const auto load = [&](const double* from) { return hn::IfThenElseZero(mask, hn::LoadU(kD, from + ray)); };
+        subtract(w_, w_.u[a], g, mask, {load(near_), load(far_)}, load(t_near_), load(t_far_));
       }
   }
 

@@ -242,6 +242,29 @@ TEST(Carve, ForceActsAgainstThePlungeAndTorqueAboutTheTip) {
   EXPECT_NEAR(cut.torque[0].y, 0, 1e-6);
 }
 
+/// Fills the stack below, where the kernels have their places next.
+[[gnu::noinline]] double fill_stack(double value) {
+  volatile double places[1 << 16];
+  for (volatile double& place : places) place = value;
+  return places[1];
+}
+
+TEST(Carve, ForceIsOfTheRaysThatAreCutAlone) {
+  // As a time, this takes one coordinate of the tool beyond all numbers, and none of the others.
+  const double never = 8e307;
+  const std::vector<Pose> poses{{{3, 7, 6}, glm::normalize(Vec3(0.1, 0.2, 1))},
+                                {{11, 7.005, 5.999}, glm::normalize(Vec3(0.3, -0.2, 1))}};
+  for (const Tool& tool : {cutters::flat(6, 0.3), cutters::fillet(6, 1, 30)}) {
+    Volume volume = Volume::block({{{0, 0, 0}, {15, 15, 10}}, 0.7, "z"});
+    CarveOptions options;
+    options.dt = {0.001};
+    EXPECT_EQ(fill_stack(never), never);
+    const Cut cut = carve(volume, tool, poses, options);
+    EXPECT_GT(cut.removed[0], 1);
+    EXPECT_TRUE(finite(cut.force[0]) && finite(cut.torque[0])) << tool.kind();
+  }
+}
+
 TEST(Carve, StandingToolThatRemovesMaterialIsPushedOutAlongItsAxis) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 10}}, 0.5, "z"});
   const Pose pose{{10, 10, 5}, {0, 0, 1}};
