@@ -9,7 +9,8 @@ namespace riffler::stress {
 
 namespace {
 
-constexpr double kGrazing = 0.44721359549995793;  // 1/√5: below it an end is measured in space, not along the ray
+constexpr double kGrazing = 2.23606797749979;  // √5: where the way along the ray is longer than so many times that
+                                               // in space, an end is measured in space
 
 struct RayName {
   std::size_t grid;
@@ -107,14 +108,12 @@ class RayComparison {
   /// Distance from an end, which is `off` mm outside of the swept volume, to the surface along the ray: into the
   /// material if too little was cut, else away from it. Where the ray grazes, in space.
   double along(double end, bool near, double off) const {
-    const double least = std::abs(off), step = allowed_ / 4;
-    const double slope = std::abs(distance(end + step) - distance(end - step)) / (2 * step);
-    if (slope < kGrazing) return least;
-    if (least < allowed_ / 20) return least / slope;
+    const double least = std::abs(off), furthest = kGrazing * least;
+    if (furthest < allowed_ / 20) return least;
     const double onwards = (off <= 0) == near ? 1 : -1;
-    for (double reach = least; reach < allowed_; reach *= 1.25)
+    for (double reach = least; reach < furthest; reach *= 1.1)
       if ((distance(end + onwards * reach) <= 0) != (off <= 0)) return reach;
-    return (distance(end + onwards * allowed_) <= 0) != (off <= 0) ? allowed_ : 1.25 * allowed_;
+    return (distance(end + onwards * furthest) <= 0) != (off <= 0) ? furthest : least;
   }
 
   void compare_point(double s) {

@@ -7,7 +7,7 @@
 #include "dexel/tile.hpp"
 #include "geom/interval.hpp"
 #include "geom/pose.hpp"
-#include "sweep/turning_part.hpp"
+#include "sweep/convex_group.hpp"
 #include "tool/piece.hpp"
 
 namespace riffler {

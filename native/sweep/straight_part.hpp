@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "geom/vec.hpp"
-#include "sweep/turning_part.hpp"
+#include "geom/pose.hpp"
+#include "sweep/convex_group.hpp"
 
 namespace riffler {
 

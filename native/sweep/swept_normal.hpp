@@ -4,7 +4,7 @@
 #include <span>
 
 #include "geom/pose.hpp"
-#include "sweep/turning_part.hpp"
+#include "sweep/convex_group.hpp"
 
 namespace riffler {
 

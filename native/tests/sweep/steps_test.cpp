@@ -8,6 +8,7 @@
 
 #include "reference/swept_distance.hpp"
 #include "sweep/carve.hpp"
+#include "sweep/convex_group.hpp"
 #include "sweep/turning_part.hpp"
 #include "tool/cutters.hpp"
 

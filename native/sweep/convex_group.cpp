@@ -1,0 +1,98 @@
+#include "sweep/convex_group.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler {
+
+namespace {
+
+/// dr/dz of the piece's profile at one of its ends; infinite where it starts or ends flat.
+double slope_at(const Piece& piece, double z) {
+  if (const auto* f = std::get_if<Frustum>(&piece)) return (f->r1 - f->r0) / (f->z1 - f->z0);
+  const auto& r = std::get<Round>(piece);
+  const double d = z - r.zc;
+  return -d / std::sqrt(std::max(0.0, r.r * r.r - d * d));
+}
+
+/// Whether two pieces, one above the other, make one convex body: same radius where they meet, no hollow there.
+bool convex_together(const Piece& below, const Piece& above) {
+  const double z = bottom(above), size = std::max(max_radius(below), max_radius(above));
+  // A ball or torus that is taken whole reaches into the piece above (Profile::pieces).
+  if (z > top(below) + 1e-12 * size || z < bottom(below)) return false;
+  if (std::abs(radius_at(below, z) - radius_at(above, z)) > 1e-9 * size) return false;
+  return slope_at(below, z) >= slope_at(above, z) - 1e-9;
+}
+
+/// Whether a truncated cone lies within the piece, between heights that the piece has too.
+bool within(const Frustum& f, const Piece& piece) {
+  // The piece's radius is a concave function of the height, so the ends decide.
+  const double slack = 1 + 1e-12;
+  return f.r0 >= 0 && f.r1 >= 0 && f.z0 >= bottom(piece) && f.z1 <= top(piece) &&
+         f.r0 <= radius_at(piece, f.z0) * slack && f.r1 <= radius_at(piece, f.z1) * slack;
+}
+
+/// Lets one of two groups reach into the other inside of the tool, where it is hollow between them. Their ends on a ray
+/// are found separately, each up to the tolerance, so that what only touched might leave a crumb.
+void overlap(ConvexGroup& below, ConvexGroup& above) {
+  Piece &low = below.pieces[below.count - 1], &high = above.pieces[0];
+  for (int k = 1; k <= 8; ++k) {
+    if (auto* f = std::get_if<Frustum>(&high)) {  // along its own line
+      const double z = f->z0 - (top(low) - bottom(low)) / (1 << k);
+      const double r = f->r0 - (f->r1 - f->r0) / (f->z1 - f->z0) * (f->z0 - z);
+      if (within({z, r, f->z0, f->r0}, low)) return void((f->z0 = z, f->r0 = r));
+    }
+    if (auto* f = std::get_if<Frustum>(&low)) {
+      const double z = f->z1 + (top(high) - bottom(high)) / (1 << k);
+      const double r = f->r1 + (f->r1 - f->r0) / (f->z1 - f->z0) * (z - f->z1);
+      if (within({f->z1, f->r1, z, r}, high)) return void((f->z1 = z, f->r1 = r));
+      // Or by a collar, which keeps a group convex that widens upwards.
+      const Frustum collar{f->z1, f->r1, z, f->r1};
+      if (f->r1 > f->r0 && below.count < ConvexGroup::kMost && within(collar, high)) {
+        below.pieces[below.count++] = collar;
+        return;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+PieceShape shape_of(const Piece& piece) {
+  PieceShape s{};
+  s.z0 = bottom(piece), s.z1 = top(piece);
+  s.r0 = radius_at(piece, s.z0), s.r1 = radius_at(piece, s.z1);
+  s.slope = std::holds_alternative<Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0,
+  s.cosine = 1 / std::hypot(1.0, s.slope);
+  s.inverse = 1 / s.r0;
+  if (const auto* round = std::get_if<Round>(&piece)) {
+    s.round = true, s.e = round->e, s.zc = round->zc, s.r = round->r;
+    s.inverse = 1 / s.r;
+    s.ball = s.e == 0 && s.z0 <= s.zc - s.r && s.z1 >= s.zc + s.r;
+  }
+  s.support = s.cosine * (s.r0 - s.slope * s.z0);
+  return s;
+}
+
+bool smooth_together(const Piece& below, const Piece& above) {
+  return slope_at(below, bottom(above)) <= slope_at(above, bottom(above)) + 1e-9;
+}
+
+std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
+  std::vector<ConvexGroup> out;
+  for (const Piece& piece : pieces) {
+    const bool joins = !out.empty() && out.back().count < ConvexGroup::kMost &&
+                       convex_together(out.back().pieces[out.back().count - 1], piece);
+    if (!joins) out.emplace_back();
+    out.back().pieces[out.back().count++] = piece;
+  }
+  for (std::size_t k = 0; k + 1 < out.size(); ++k) overlap(out[k], out[k + 1]);
+  for (ConvexGroup& group : out) {
+    double radius = 0;
+    for (const Piece& piece : group.all()) radius = std::max(radius, max_radius(piece));
+    group.thinnest = std::min(radius, top(group.pieces[group.count - 1]) - bottom(group.pieces[0]));
+  }
+  return out;
+}
+
+}  // namespace riffler
