@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "session/journal_file.hpp"
 #include "stress/run.hpp"
 
 using namespace riffler::stress;
@@ -19,6 +20,7 @@ struct Arguments {
   long moves = 2000;
   std::optional<std::string> cutter;
   std::optional<std::uint64_t> session;
+  std::optional<std::string> journal;
   bool table = false;
 };
 
@@ -29,6 +31,7 @@ void usage() {
       "  --seed N           (1)\n"
       "  --cutter NAME      one cutter only\n"
       "  --session N        one session of it only, with every move compared: what a failure's reproducer says\n"
+      "  --journal FILE     with --session: write it as a .rjournal, a stroke a move\n"
       "  --compare-every N  moves from one comparison with the reference to the next (8)\n"
       "  --table            errors by cutter and kind of degeneracy\n"
       "Cutters:");
@@ -62,10 +65,13 @@ Arguments parse(int argc, char** argv) {
       out.options.compare_every = static_cast<int>(whole_number("--compare-every", value));
     else if (key == "--cutter" && value)
       out.cutter = value;
+    else if (key == "--journal" && value)
+      out.journal = value;
     else
       throw std::invalid_argument("unknown or incomplete option " + key);
     ++k;
   }
+  if (out.journal && !out.session) throw std::invalid_argument("--journal needs --session");
   if (out.session && !out.cutter) throw std::invalid_argument("--session needs --cutter");
   bool known = !out.cutter;
   for (const char* name : cutter_names()) known = known || *out.cutter == name;
@@ -118,6 +124,8 @@ class Progress {
 int run_one_session(const Arguments& arguments) {
   Options options = arguments.options;
   options.compare_every = 1, options.threads_every = 1;
+  if (arguments.journal)
+    write_journal(session_journal(options, *arguments.cutter, *arguments.session), *arguments.journal);
   Results results;
   run_session(options, *arguments.cutter, *arguments.session, results);
   print_failures(results);

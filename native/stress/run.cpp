@@ -53,6 +53,28 @@ std::string describe(const Stage& stage, const Move& move) {
   return out.str();
 }
 
+/// The tool's dict, as Python's Tool.from_dict reads it.
+std::string to_json(const Tool& tool) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "{\"name\": \"\", \"kind\": \"" << tool.kind() << "\"";
+  for (const auto& [key, value] : tool.parameters()) {
+    out << ", \"" << key << "\": ";
+    key == "flat_tip" ? out << (value != 0 ? "true" : "false") : out << value;
+  }
+  if (tool.kind() == "profile") {
+    const char* between = ", \"segments\": [";
+    for (const ProfileSegment& s : tool.profile().segments()) {
+      out << between << '[' << s.to.x << ", " << s.to.y;
+      if (s.centre) out << ", " << s.centre->x << ", " << s.centre->y;
+      out << ']', between = ", ";
+    }
+    out << ']';
+  }
+  out << '}';
+  return out.str();
+}
+
 class Session {
  public:
   Session(const Options& options, const std::string& cutter, std::uint64_t number, std::uint64_t stream)
@@ -107,6 +129,14 @@ class Session {
     if (Problem p = check_spans(volumes[0]); !p.empty()) return "in one go: " + p;
     const Problem p = check_same_bytes(volumes[0], volumes[1]);
     return p.empty() ? p : "4 threads give other bytes than 1: " + p;
+  }
+
+  Journal journal() const {
+    Journal out;
+    out.set_stock({stage_.frame.box, stage_.frame.pitch, stage_.frame.directions, ""});
+    out.add_tool(1, to_json(stage_.tool));
+    for (const Move& m : moves_) out.add_stroke({1, m.tolerance, name(m.kind), {m.from, m.to}, {}});
+    return out;
   }
 
   const Stage& stage() const { return stage_; }
@@ -194,6 +224,14 @@ void run_session(const Options& options, const std::string& cutter, std::uint64_
   if (!problem.empty() && out.failures.size() < kFailuresKept)
     out.failures.push_back(
         {cutter, options.seed, session, s.moves() - 1, s.last().kind, problem + "\n" + describe(s.stage(), s.last())});
+}
+
+Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session) {
+  Session s(options, cutter, session, stream_of(cutter));
+  Tally tally;
+  while (s.moves() < kMovesInSession && s.step(tally).empty()) {
+  }
+  return s.journal();
 }
 
 Results run(const Options& options, const std::string& cutter, long moves,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "session/journal.hpp"
 #include "stress/checks.hpp"
 
 namespace riffler::stress {
@@ -46,6 +47,9 @@ struct Results {
 /// Session number `session` of a cutter depends on nothing but the seed, the cutter and the number. It ends with its
 /// first failure.
 void run_session(const Options& options, const std::string& cutter, std::uint64_t session, Results& out);
+
+/// Its stock, tool and moves, up to the first failure, one stroke a move.
+Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session);
 
 /// At least `moves` moves. `progress`, called after every session, may stop the run by returning false.
 Results run(const Options& options, const std::string& cutter, long moves,

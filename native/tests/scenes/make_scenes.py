@@ -1,6 +1,11 @@
 """Makes the journals of this folder anew: inputs that stay as they are, so run it to add a scene, not to mend a hash.
 
 PYTHONPATH=native/python python native/tests/scenes/make_scenes.py
+
+Others are sessions in which the stress run once found something, written by riffler_stress --journal:
+- long-fillet (fillet, seed 11, session 529): a way of 14 m left one ray short;
+- shank-below (taper-ball, seed 3, session 10): a piece whose neighbour stays below the stock lost its lower end;
+- disc-far (disc, seed 101, session 5632): a force that was not a number.
 """
 
 from __future__ import annotations
