@@ -128,7 +128,7 @@ def b5x(data: Data) -> Figure:
                                   fontsize=7.5)  # fmt: skip
         if 0.25 in pitches:
             goal = data["settings"]["targets"]["ball_s" if name.startswith("ball") else "other_s"]
-            target(axis, x=1e6 * goal, text=f"target at 0.01, h = 0.25: {1e6 * goal:.0f} µs")
+            axis.axvline(1e6 * goal, color=TARGET, linewidth=1.2, linestyle=":")
         logarithmic(axis.xaxis, sub=few)
         logarithmic(axis.yaxis)
         axis.set_title(name, fontsize=10, loc="left")
@@ -143,6 +143,7 @@ def b5x(data: Data) -> Figure:
         Line2D([], [], color=INK, marker="o", label="largest error"),
         Line2D([], [], color=INK, marker="o", linestyle="--", markerfacecolor="white", label="RMS error"),
         *(Line2D([], [], color=c, linewidth=4, label=f"h = {h:g} mm") for h, c in zip(pitches, COLOURS, strict=False)),
+        *([Line2D([], [], color=TARGET, linestyle=":", label="target at 0.01, h = 0.25")] if 0.25 in pitches else []),
     ]
     title(figure, data, "Five-axis moves (B5X): time against measured error")
     figure.tight_layout(rect=(0, 0.05, 1, 0.97))
@@ -239,16 +240,16 @@ def b200(data: Data) -> Figure:
             for x, y in zip(places, ratios, strict=True):
                 axis.annotate(f"{y:.3g}", (x, y), ha="center", va="bottom", fontsize=6.5, rotation=90,
                               xytext=(0, 2), textcoords="offset points")  # fmt: skip
-        target(axis, y=data["settings"]["target_ratio"], text="target for z")
+        axis.axhline(data["settings"]["target_ratio"], color=TARGET, linewidth=1.2, linestyle=":", label="target for z")
         logarithmic(axis.yaxis)
         axis.set_xticks(range(len(names)), names, rotation=35, ha="right")
         axis.set_title(f"h = {pitch:g} mm; loop {1e6 * mine[0]['loop_s']:.3g} µs a move", fontsize=9, loc="left")
         axis.grid(axis="x", visible=False)
         axis.margins(y=0.12)
     axes.flat[0].set_ylabel("time ÷ plain capsule loop")
-    axes.flat[0].legend(loc="upper left")
     title(figure, data, "Straight moves (B200): time of one move beside the plain capsule loop in the same run")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    figure.tight_layout(rect=(0, 0.06, 1, 0.97))
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     return figure
 
 
