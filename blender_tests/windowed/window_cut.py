@@ -63,7 +63,7 @@ def steps(screen):
     screen.shoot("02-new-stock")
 
     with screen.override():
-        settings.cut.curve = bpy.data.objects[spiral(6, 6000, "Spiral")]
+        settings.cut.curve = bpy.data.objects[spiral(6, 50_000, "Spiral")]
         settings.cut.depth = 1.0
         bpy.ops.ed.undo_push(message="Curve")
     before = state()
@@ -113,7 +113,7 @@ def undo_and_redo(screen, before, after):
 
 def cancel(screen, after):
     """Esc in mid-cut, after the surface was shown half cut: all is as it was, and no undo step is left."""
-    name = spiral(6, 60_000, "Long")  # long enough on any machine
+    name = spiral(6, 250_000, "Long")  # long enough on any machine
     bpy.data.objects[name].hide_set(True)
     bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
     with screen.override():
