@@ -74,17 +74,18 @@ Span* TileCut::open() {
 void TileCut::put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n) {
   std::uint32_t& row = many_[r / kTileSide];
   const std::uint32_t bit = 1U << (r % kTileSide);
-  const bool was_many = row & bit;
   fresh_->spans[r] = n ? Span{spans[0].near, spans[n - 1].far} : Span{kNone, -kNone};
   row = n > 1 ? row | bit : row & ~bit;
   if (n == 1 && with_normals_) fresh_->normals[r] = normals[0];
   if (n == 1) return;
   packed_ = false;
   if (n == 0) return;
-  if (begin_.empty()) begin_.resize(kTileRays), count_.resize(kTileRays);
-  if (!was_many || n > count_[r]) {
+  if (begin_.empty()) begin_.resize(kTileRays), count_.resize(kTileRays), room_.resize(kTileRays);
+  if (n > room_[r]) {
+    // Twice as much for a ray that grows again, so that all its places together are a few times the last.
+    room_[r] = room_[r] > 0 ? 2 * n : n;
     begin_[r] = static_cast<std::uint32_t>(pool_.size());
-    pool_.resize(pool_.size() + n);
+    pool_.resize(pool_.size() + room_[r]);
     if (with_normals_) pool_normals_.resize(pool_.size());
   }
   count_[r] = n;

@@ -77,8 +77,8 @@ class TileCut {
   const SpanNormals* normals_;   // of the places
   std::shared_ptr<Tile> fresh_;  // once it is opened, holds the places
   std::uint32_t many_[kTileSide];
-  std::vector<std::uint32_t> begin_, count_;  // of rays with several spans, in the pool
-  std::vector<Span> pool_;                    // rays that grew lie at the end; their old places are forgotten
+  std::vector<std::uint32_t> begin_, count_, room_;  // of rays with several spans, in the pool
+  std::vector<Span> pool_;                           // rays that grew lie at the end; their old places are forgotten
   std::vector<SpanNormals> pool_normals_;
   std::vector<Span> kept_;
   std::vector<SpanNormals> kept_normals_;

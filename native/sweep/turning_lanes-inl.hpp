@@ -182,10 +182,12 @@ class TurningLanes {
     if (!none(high)) s.above = choose(high, certificate_.between(pose, above(o), missed), s.below);
   }
 
-  /// Joins a hit to what was found where both overlap. Returns the lanes in which they lie apart.
-  static M merge(Found& found, V t, Stretch s, M mask) {
+  /// Joins a hit to what was found, but for lanes in which they lie further apart than an end may miss; returns those.
+  /// (Where a tool that moves along the ray only grazes it, hits may be shorter than the steps between them.)
+  M merge(Found& found, V t, Stretch s, M mask) const {
     const M hit = both(mask, hn::Lt(s.near, s.far)), fresh = hn::Gt(found.at.near, found.at.far);
-    const M overlap = both(hn::Le(s.near, found.at.far), hn::Ge(s.far, found.at.near));
+    const V gap = max(hn::Sub(s.near, found.at.far), hn::Sub(found.at.near, s.far));
+    const M overlap = hn::Le(gap, set(b_.along));
     const M join = both(hit, either(fresh, overlap));
     const M lower = both(join, hn::Lt(s.near, found.at.near)), higher = both(join, hn::Gt(s.far, found.at.far));
     found.at.near = pick(lower, s.near, found.at.near), found.t_near = pick(lower, t, found.t_near);

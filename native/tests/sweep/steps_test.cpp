@@ -198,6 +198,21 @@ TEST(Carve, APieceThatCannotReachLeavesItsNeighbourBounded) {
   EXPECT_GT(ends, 200);
 }
 
+TEST(Carve, ATurningToolThatGrazesARayAllAlongDoesNotCombIt) {
+  // Turning about y leaves the disc's reach along y as it is; chords are 5e-5 mm, one after the other for 90 mm.
+  const double h = 0.5, beside = 3 - 1e-10;
+  Volume volume = Volume::block({{{0, 0, 0}, {100, 8, 4}}, h, "x"});
+  const Grid& grid = volume.grids()[0];
+  const double y = to_world(grid.axis(), {grid.shifted_u(8), grid.shifted_v(4), 0}).y;
+  const std::vector<Pose> poses{{{5, y - beside, 1}, {0, 0, 1}},
+                                {{95, y - beside, 1}, glm::normalize(Vec3(0.2, 0, 1))}};
+  CarveOptions options;
+  options.tolerance = 1e-3;
+  carve(volume, cutters::flat(6, 3), poses, options);
+  EXPECT_GT(volume.take_stats().rays_changed, 50U);
+  EXPECT_LT(volume.grids()[0].span_count(), 1000U);
+}
+
 TEST(SweptNormal, IsTheGradientOfTheDistance) {
   const double tilt = 0.3;
   const Vec3 upright(0, 0, 1), leaning(std::sin(tilt), 0, std::cos(tilt));
