@@ -64,14 +64,19 @@ PieceShape shape_of(const Piece& piece) {
   s.r0 = radius_at(piece, s.z0), s.r1 = radius_at(piece, s.z1);
   s.slope = std::holds_alternative<Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0,
   s.cosine = 1 / std::hypot(1.0, s.slope);
-  s.inverse = 1 / s.r0;
+  s.cut0 = s.cut1 = true;
   if (const auto* round = std::get_if<Round>(&piece)) {
     s.round = true, s.e = round->e, s.zc = round->zc, s.r = round->r;
-    s.inverse = 1 / s.r;
-    s.ball = s.e == 0 && s.z0 <= s.zc - s.r && s.z1 >= s.zc + s.r;
+    s.cut0 = s.z0 > s.zc - s.r, s.cut1 = s.z1 < s.zc + s.r;
+    s.ball = whole_ball(piece);
   }
   s.support = s.cosine * (s.r0 - s.slope * s.z0);
   return s;
+}
+
+bool whole_ball(const Piece& piece) {
+  const auto* r = std::get_if<Round>(&piece);
+  return r && r->e == 0 && r->z0 <= r->zc - r->r && r->z1 >= r->zc + r->r;
 }
 
 bool smooth_together(const Piece& below, const Piece& above) {

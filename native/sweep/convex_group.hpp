@@ -12,14 +12,16 @@ namespace riffler {
 /// Frustum or Round (piece.hpp) in numbers; all fields are set for both, unless they say otherwise.
 struct PieceShape {
   bool round, ball;       ///< ball: a Round that is a whole ball
+  bool cut0, cut1;        ///< it ends in a flat face at z0, at z1; an end at a pole is none
   double z0, r0, z1, r1;  ///< ends
   double slope, cosine;   ///< Frustum: dr/dz and 1 / √(1 + slope²)
   double e, zc, r;        ///< Round
-  double inverse;         ///< 1 / r0 of a cylinder, 1 / r of a Round
   double support;         ///< Frustum: height of its flank's plane over the tip, along the plane's normal
 };
 
 PieceShape shape_of(const Piece& piece);
+/// Whether a piece is a ball of which nothing is cut off.
+bool whole_ball(const Piece& piece);
 
 /// Pieces whose union is convex, from the tip upwards; perhaps without what cannot reach the material.
 struct ConvexGroup {

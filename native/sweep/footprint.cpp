@@ -10,9 +10,8 @@ Footprint::Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> 
     Hull& hull = hulls_[count_++];
     const double radius = max_radius(piece);
     hull.thickness = radius + slack;
-    const auto* round = std::get_if<Round>(&piece);
     // Of a whole ball only the centre matters.
-    const bool ball = round && round->e == 0 && round->z0 <= round->zc - round->r && round->z1 >= round->zc + round->r;
+    const bool ball = whole_ball(piece);
     for (const Pose& pose : poses) {
       const double reach = ball ? hull.thickness : radius * std::hypot(pose.axis.x, pose.axis.y) + slack;
       const auto add = [&](double z) {
@@ -23,7 +22,7 @@ Footprint::Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> 
         height_.include(p.z - reach), height_.include(p.z + reach);
       };
       if (ball)
-        add(round->zc);
+        add(std::get<Round>(piece).zc);
       else
         add(bottom(piece)), add(top(piece));
     }

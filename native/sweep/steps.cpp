@@ -83,11 +83,6 @@ Interval near_box(const ConvexGroup& group, const Motion& motion, const Box3& bo
 /// steeper against the ray than 2, √5 times that along it.
 constexpr double kChordShare = 0.4;
 
-bool is_ball(const Piece& piece) {
-  const auto* r = std::get_if<Round>(&piece);
-  return r && r->e == 0 && r->z0 <= r->zc - r->r && r->z1 >= r->zc + r->r;
-}
-
 /// The centre of a ball moves on an arc about the tip: |c″| = zc φ², so n chords leave it by at most zc φ² / (8 n²).
 void ball_chords(const ConvexGroup& group, const Motion& motion, double t0, double t1, std::uint32_t move,
                  const Box3& box, double tolerance, const std::function<void(Step&&)>& sink) {
@@ -120,7 +115,7 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
     const double t0 = times.near + length * k / n, t1 = k + 1 == n ? times.far : times.near + length * (k + 1) / n;
     const Pose to = motion.at(t1);
     ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
-    if (group.count > 0 && is_ball(group.pieces[0])) {
+    if (group.count > 0 && whole_ball(group.pieces[0])) {
       ConvexGroup ball = group;
       ball.count = 1;
       ball_chords(ball, motion, t0, t1, move, box, tolerance, sink);

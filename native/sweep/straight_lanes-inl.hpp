@@ -121,8 +121,8 @@ class StraightLanes {
     V s, way;
     const M near = StraightRound(b_, p, r_).end(mask, 1, low, high, s, way);
     mask_ = mask;
-    add_near(both(near, on_side(p, height(s, way))), s, way);
     const V z = height(s, way);
+    add_near(both(near, on_side(p, z)), s, way);
     M own = near;
     if (p.cut0) own = both(own, hn::Ge(z, set(p.z0)));
     if (k + 1 < b_.count) own = both(own, hn::Le(z, set(b_.pieces[k + 1].z0)));

@@ -10,8 +10,7 @@ namespace {
 
 SweptShape swept_shape(const Piece& piece, bool hidden0, bool hidden1) {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-  SweptShape s{shape_of(piece), true, true, false, false, -kEverywhere, kEverywhere, 0, 0, {}};
-  if (s.round) s.cut0 = s.z0 > s.zc - s.r, s.cut1 = s.z1 < s.zc + s.r;
+  SweptShape s{shape_of(piece), false, false, -kEverywhere, kEverywhere, 0, 0, {}};
   s.face0 = s.cut0 && !hidden0, s.face1 = s.cut1 && !hidden1;
   // A hit at an end of the side must not get lost to rounding: there the edge's own hits may be tangent.
   const double slack = 1e-11 * (std::abs(s.z0) + std::abs(s.z1) + std::max(s.r0, s.r1));

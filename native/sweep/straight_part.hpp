@@ -21,8 +21,8 @@ struct SectionLine {
 struct SweptShape : PieceShape {
   /// A ray through the line that a cone's apex sweeps touches its side in a double root (at_most_zero).
   static constexpr double kTangent = 1e-13;
-  bool cut0, cut1;        ///< it ends in a flat face at z0, at z1
-  bool face0, face1;      ///< that face is not hidden within the group, or its rim is an edge of it
+  bool face0,
+      face1;  ///< its flat face at z0, at z1, is there and not hidden within the group, or its rim is an edge of it
   double low, high;       ///< heights between which its side is, up to rounding
   double floor, ceiling;  ///< heights along the rays between which it stays on the way
   /// n · V = 0 on a Frustum: F = ρ² − k², ∂F/∂τ = 0 is a line of the section, on which F is quadratic.

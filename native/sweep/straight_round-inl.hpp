@@ -117,8 +117,7 @@ class StraightRound {
     const V half = sqrt(max(chord, zero()));
     way = pick(over, last, on_way(hn::Add(hn::Add(last, ahead), half)));
     s = pick(over, s, crossing(way));
-    const bool flat = below ? p_.z0 <= p_.zc - p_.r : p_.z1 >= p_.zc + p_.r;
-    return flat ? over : no_lane();
+    return (below ? p_.cut0 : p_.cut1) ? no_lane() : over;
   }
 
   /// Outside of the round; over the disc, F would not say where to go.

@@ -48,9 +48,8 @@ Nearest nearest(std::span<const PieceShape> group, const Vec2& p) {
   for (std::size_t k = 0; k < group.size(); ++k) {
     const PieceShape& s = group[k];
     add_side(s, p, out);
-    if (k == 0 && !(s.round && s.z0 <= s.zc - s.r)) out.add({0, -1}, length_of(p.y - s.z0, beyond(p.x, 0, s.r0)));
-    if (k + 1 == group.size() && !(s.round && s.z1 >= s.zc + s.r))
-      out.add({0, 1}, length_of(p.y - s.z1, beyond(p.x, 0, s.r1)));
+    if (k == 0 && s.cut0) out.add({0, -1}, length_of(p.y - s.z0, beyond(p.x, 0, s.r0)));
+    if (k + 1 == group.size() && s.cut1) out.add({0, 1}, length_of(p.y - s.z1, beyond(p.x, 0, s.r1)));
   }
   return out;
 }

@@ -1,4 +1,4 @@
-// A tile while it is being cut: its rays as planes of ends that can be cut many at a time, packed again at the end.
+// A tile while it is being cut: read where it lies, copied when something of it goes, packed again at the end.
 #pragma once
 
 #include <limits>

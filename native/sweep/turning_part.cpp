@@ -10,7 +10,7 @@ namespace {
 /// Ends a Round that reaches into the piece above it where that one begins. Of that one, what is too high to matter is
 /// cut off (steps.cpp), and then the Round must not look out of it.
 void end_at(PieceShape& round, const Piece& above) {
-  round.z1 = bottom(above), round.r1 = radius_at(above, round.z1), round.ball = false;
+  round.z1 = bottom(above), round.r1 = radius_at(above, round.z1), round.ball = false, round.cut1 = true;
 }
 
 /// n · axis of the outward normal at the lower or upper end of a piece's side.

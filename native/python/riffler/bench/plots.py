@@ -83,6 +83,7 @@ def title(figure: Figure, data: Data, text: str) -> None:
 
 
 def target(axis: Axes, x: float | None = None, y: float | None = None, text: str = "target") -> None:
+    """A line at a target, named beside it; with an empty text, by the figure's legend."""
     if x is not None:
         axis.axvline(x, color=TARGET, linewidth=1, linestyle=":")
         axis.annotate(text, (x, 1), xycoords=("data", "axes fraction"), rotation=90, va="top", ha="right",
@@ -128,7 +129,7 @@ def b5x(data: Data) -> Figure:
                                   fontsize=7.5)  # fmt: skip
         if 0.25 in pitches:
             goal = data["settings"]["targets"]["ball_s" if name.startswith("ball") else "other_s"]
-            axis.axvline(1e6 * goal, color=TARGET, linewidth=1.2, linestyle=":")
+            target(axis, x=1e6 * goal, text="")
         logarithmic(axis.xaxis, sub=few)
         logarithmic(axis.yaxis)
         axis.set_title(name, fontsize=10, loc="left")
@@ -240,7 +241,7 @@ def b200(data: Data) -> Figure:
             for x, y in zip(places, ratios, strict=True):
                 axis.annotate(f"{y:.3g}", (x, y), ha="center", va="bottom", fontsize=6.5, rotation=90,
                               xytext=(0, 2), textcoords="offset points")  # fmt: skip
-        axis.axhline(data["settings"]["target_ratio"], color=TARGET, linewidth=1.2, linestyle=":", label="target for z")
+        target(axis, y=data["settings"]["target_ratio"], text="")
         logarithmic(axis.yaxis)
         axis.set_xticks(range(len(names)), names, rotation=35, ha="right")
         axis.set_title(f"h = {pitch:g} mm; loop {1e6 * mine[0]['loop_s']:.3g} µs a move", fontsize=9, loc="left")
@@ -249,7 +250,11 @@ def b200(data: Data) -> Figure:
     axes.flat[0].set_ylabel("time ÷ plain capsule loop")
     title(figure, data, "Straight moves (B200): time of one move beside the plain capsule loop in the same run")
     figure.tight_layout(rect=(0, 0.06, 1, 0.97))
-    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
+    marks = [
+        Line2D([], [], color=TARGET, linestyle=":", label="target for z"),
+        *axes.flat[0].get_legend_handles_labels()[0],
+    ]
+    figure.legend(handles=marks, loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     return figure
 
 
