@@ -120,14 +120,16 @@ Allowed allowed_error(const Stage& stage, const Move& move) {
   const double way = glm::length(move.to.tip - move.from.tip), radius = stage.tool.profile().max_radius();
   // Rays stand 6e-10 pitches beside their places; the rest is rounding, of sizes, of coordinates and along the way.
   const double rounding = 3e-9 * (radius + stage.frame.pitch) + 1.5e-14 * most + 3e-11 * way;
-  double hollow = 0;
+  double hollow = 0, apex = 0;
   Vec2 start{0, 0};
   for (const ProfileSegment& s : stage.tool.profile().segments()) {
+    // Two roots fall together where a ray meets the line that a cone's apex sweeps (sweep/straight_part.cpp).
+    if (!s.centre && start.x == 0 && s.to.y > start.y) apex = 1e-7 * (s.to.y - start.y);
     if (s.centre && start.x + s.to.x < 2 * s.centre->x) hollow = Profile::kConcaveTolerance;
     start = s.to;
   }
   const bool turns = Motion(move.from, move.to).angle() > 0;
-  return {rounding + hollow + (turns ? move.tolerance : 0), turns && hollow == 0};
+  return {rounding + apex + hollow + (turns ? move.tolerance : 0), turns && hollow == 0};
 }
 
 }  // namespace riffler::stress
