@@ -4,6 +4,7 @@
 #include <array>
 
 #include "geom/vec.hpp"
+#include "marching/lattice.hpp"
 
 namespace riffler::marching {
 
@@ -21,6 +22,11 @@ struct Diagonals {
 
 /// Exact: coordinates are multiples of one step with at most 24 bits, so their products fit a double.
 Diagonals valid_diagonals(const Quad& quad);
+
+/// Heights of two diagonals over their edge that differ by less are the same, mm: two steps of rounding at each end.
+inline double diagonal_tie(const Lattice& lattice) {
+  return 4 * lattice.step();
+}
 
 /// 0 for c0–c2, 1 for c1–c3, −1 if neither is valid. Of two valid ones the one whose surface passes nearer the hit,
 /// and where both do within `tie` (mm), the shorter.

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "geom/parallel.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {
@@ -20,48 +22,57 @@ bool folded(const Mesh& mesh, std::size_t s, std::size_t t) {
   return glm::dot(a, b) < kFolded * std::sqrt(glm::dot(a, a) * glm::dot(b, b));
 }
 
-/// One side of a quad: its ends in order and the triangle that has it.
-struct Side {
-  std::int32_t low, high;
-  std::uint32_t triangle;
-  bool operator<(const Side& o) const {
-    if (low != o.low) return low < o.low;
-    if (high != o.high) return high < o.high;
-    return triangle < o.triangle;
-  }
-};
-
-/// The sides of quad n: c0–c1 and c1–c2 belong to its first triangle, c2–c3 and c3–c0 to its second.
-Side side_of(const std::array<std::int32_t, 4>& c, std::uint32_t n, int s) {
-  const std::int32_t a = c[s], b = c[(s + 1) & 3];
-  return {std::min(a, b), std::max(a, b), 2 * n + (s >= 2)};
+CellVertex corner(const Surface& surface, const QuadRef& ref, int n) {
+  return {surface.corners(ref.quad)[n], corner_cell(ref.edge, n)};
 }
 
-/// Ends of the edges at which two triangles fold, among the edges of quads with a marked corner; ascending. `cells` are
-/// the cells of all marked vertices.
-std::vector<std::int32_t> folded_vertices(Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark) {
-  std::vector<std::int32_t> ends;
-  const std::vector<std::uint32_t> quads = quads_marked(surface, columns_near(surface, cells, 0), mark);
-  for (const std::uint32_t n : quads) {
-    const auto c = surface.corners(n);
-    for (const std::int32_t v : c) surface.marks[v] |= kNear;
-    if (folded(surface.mesh, 2 * n, 2 * n + 1)) ends.insert(ends.end(), c.begin(), c.end());
-  }
-  // Quads on the other side of such an edge have both its ends near.
-  std::vector<Side> sides;
-  for (const std::uint32_t n : quads_marked(surface, columns_near(surface, cells, 1), kNear)) {
-    const auto c = surface.corners(n);
-    for (int s = 0; s < 4; ++s)
-      if (surface.marks[c[s]] & surface.marks[c[(s + 1) & 3]] & kNear) sides.push_back(side_of(c, n, s));
-  }
-  std::sort(sides.begin(), sides.end());
-  for (std::size_t n = 1; n < sides.size(); ++n) {
-    const Side &a = sides[n - 1], &b = sides[n];
-    if (a.low == b.low && a.high == b.high && folded(surface.mesh, a.triangle, b.triangle))
-      ends.push_back(a.low), ends.push_back(a.high);
-  }
-  for (const std::uint32_t n : quads)
-    for (const std::int32_t v : surface.corners(n)) surface.marks[v] &= static_cast<std::uint8_t>(~kNear);
+/// Which side of a quad runs from one vertex to the other, either way; −1 if none does.
+int side_between(const std::array<std::int32_t, 4>& c, std::int32_t a, std::int32_t b) {
+  for (int s = 0; s < 4; ++s)
+    if ((c[s] == a && c[(s + 1) & 3] == b) || (c[s] == b && c[(s + 1) & 3] == a)) return s;
+  return -1;
+}
+
+/// The triangle beyond the side from corner s to the next: its quad stands for another edge of the face that the two
+/// corners' cells share.
+std::uint32_t across(const Surface& surface, const QuadRef& ref, int s) {
+  const CellVertex a = corner(surface, ref, s), b = corner(surface, ref, (s + 1) & 3);
+  const Vec3i origin = glm::max(a.cell, b.cell);
+  const int along = a.cell.x != b.cell.x ? 0 : a.cell.y != b.cell.y ? 1 : 2;
+  for (int d = 1; d <= 2; ++d)
+    for (int side = 0; side < 2; ++side) {
+      const int axis = (along + d) % 3;
+      Vec3i from = origin;
+      from[(along + 3 - d) % 3] += side;
+      Vec3i to = from;
+      ++to[axis];
+      const bool inside = surface.bricks.at(from.x, from.y, from.z);
+      if (inside == surface.bricks.at(to.x, to.y, to.z)) continue;
+      const std::uint32_t quad = surface.bricks.quad_of({axis, from.x, from.y, from.z, !inside});
+      if (quad == ref.quad) continue;
+      const int there = side_between(surface.corners(quad), a.vertex, b.vertex);
+      if (there >= 0) return surface.triangle_at(quad, there);
+    }
+  throw std::logic_error("a quad of the mesh without a neighbour");
+}
+
+/// Ends of the edges at which a triangle of these quads folds onto its neighbour; ascending.
+std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vector<QuadRef>& quads) {
+  constexpr std::size_t chunk = 1024;
+  std::vector<std::vector<CellVertex>> parts((quads.size() + chunk - 1) / chunk);
+  parallel_for(quads.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellVertex>& ends = parts[begin / chunk];
+    for (std::size_t q = begin; q < end; ++q) {
+      const QuadRef& ref = quads[q];
+      if (folded(surface.mesh, 2 * std::size_t{ref.quad}, 2 * std::size_t{ref.quad} + 1))
+        for (int n = 0; n < 4; ++n) ends.push_back(corner(surface, ref, n));
+      for (int s = 0; s < 4; ++s)
+        if (folded(surface.mesh, surface.triangle_at(ref.quad, s), across(surface, ref, s)))
+          ends.push_back(corner(surface, ref, s)), ends.push_back(corner(surface, ref, (s + 1) & 3));
+    }
+  });
+  std::vector<CellVertex> ends;
+  for (const auto& part : parts) ends.insert(ends.end(), part.begin(), part.end());
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   return ends;
@@ -75,44 +86,39 @@ bool coincides(const Mesh& mesh, std::int32_t vertex, const Vec3& place) {
   return false;
 }
 
-Vec3i cell_of(Surface& surface, std::int32_t vertex) {
-  if (surface.marks[vertex] & kSpecial) return surface.special(vertex).cell;
-  return surface.grid.cell_of(surface.mesh.vertices[vertex]);
-}
-
 /// Moves a vertex a share of the way to its anchor; one that stands at its candidate goes to its safe place first.
-void pull(Surface& surface, std::int32_t vertex, double share) {
-  Vec3& place = surface.mesh.vertices[vertex];
+void pull(Surface& surface, const CellVertex& v, double share) {
+  Vec3& place = surface.mesh.vertices[v.vertex];
   const FloatGrid& grid = surface.grid;
-  Special* const special = surface.marks[vertex] & kSpecial ? &surface.special(vertex) : nullptr;
+  Special* const special = surface.marks[v.vertex] & kSpecial ? &surface.special(v) : nullptr;
   if (special && place != special->other) {
     place = special->other;
     return;
   }
-  const Vec3i cell = cell_of(surface, vertex);
   const Vec3 anchor = special ? special->anchor : Vec3(0.5);
-  const Vec3 from = glm::clamp(grid.to_cell(cell, place), 0.0, 1.0);
-  const Vec3 to = grid.free_place(cell, grid.inside(cell, from + share * (anchor - from)),
-                                  [&](const Vec3& p) { return coincides(surface.mesh, vertex, p); });
+  const Vec3 from = glm::clamp(grid.to_cell(v.cell, place), 0.0, 1.0);
+  const Vec3 to = grid.free_place(v.cell, grid.inside(v.cell, from + share * (anchor - from)),
+                                  [&](const Vec3& p) { return coincides(surface.mesh, v.vertex, p); });
   place = to;
   if (special) special->other = place;
 }
 
 /// Splits the quads round moved vertices anew. Where a neighbour's candidate no longer leaves a diagonal, it goes back
 /// to its safe place too, and joins the moved ones; with safe places alone there always is a diagonal.
-void split_again(Surface& surface, std::vector<std::int32_t>& moved, std::vector<Vec3i>& cells) {
+void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<Vec3i>& cells) {
   for (std::size_t done = 0; done < moved.size();) {
     for (; done < moved.size(); ++done) {
-      surface.marks[moved[done]] |= kMoved;
-      cells.push_back(cell_of(surface, moved[done]));
+      surface.marks[moved[done].vertex] |= kMoved;
+      cells.push_back(moved[done].cell);
     }
-    for (const std::uint32_t n : quads_marked(surface, columns_near(surface, cells, 0), kMoved)) {
-      if (surface.split(n, surface.counts.locate(surface.signs, n))) continue;
-      for (const std::int32_t v : surface.corners(n)) {
-        if (!(surface.marks[v] & kSpecial)) continue;
+    for (const QuadRef& ref : quads_near(surface, cells, kMoved)) {
+      if (surface.split(ref, surface.hits)) continue;
+      for (int n = 0; n < 4; ++n) {
+        const CellVertex v = corner(surface, ref, n);
+        if (!(surface.marks[v.vertex] & kSpecial)) continue;
         const Vec3& safe = surface.special(v).other;
-        if (surface.mesh.vertices[v] == safe) continue;
-        surface.mesh.vertices[v] = safe;
+        if (surface.mesh.vertices[v.vertex] == safe) continue;
+        surface.mesh.vertices[v.vertex] = safe;
         moved.push_back(v);
       }
     }
@@ -121,17 +127,20 @@ void split_again(Surface& surface, std::vector<std::int32_t>& moved, std::vector
 
 }  // namespace
 
-void unfold(Surface& surface) {
-  std::vector<Vec3i> cells = surface.sharp;
-  for (const Special& s : surface.specials) cells.push_back(s.cell);
-  std::vector<std::int32_t> moved = folded_vertices(surface, cells, kSharp | kSpecial);
+void unfold(Surface& surface, const Progress& progress) {
+  std::vector<QuadRef> suspects = surface.moved;
+  for (std::size_t n = 0; n < surface.bricks.size(); ++n)
+    if (const ActiveBrick* const brick = surface.bricks.active(n))
+      suspects.insert(suspects.end(), brick->suspects.begin(), brick->suspects.end());
+  std::vector<CellVertex> moved = folded_vertices(surface, suspects);
   double share = 0.04;
   for (int round = 0; round < kRounds && !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
-    for (const std::int32_t v : moved) pull(surface, v, share);
-    cells.clear();
+    report(progress, static_cast<double>(round) / kRounds);
+    for (const CellVertex& v : moved) pull(surface, v, share);
+    std::vector<Vec3i> cells;
     split_again(surface, moved, cells);
-    std::vector<std::int32_t> next = folded_vertices(surface, cells, kMoved);
-    for (const std::int32_t v : moved) surface.marks[v] &= static_cast<std::uint8_t>(~kMoved);
+    std::vector<CellVertex> next = folded_vertices(surface, quads_near(surface, cells, kMoved));
+    for (const CellVertex& v : moved) surface.marks[v.vertex] &= static_cast<std::uint8_t>(~kMoved);
     moved = std::move(next);
   }
 }

@@ -4,8 +4,6 @@
 #include <limits>
 #include <span>
 
-#include "geom/parallel.hpp"
-
 namespace riffler::marching {
 
 namespace {
@@ -44,78 +42,35 @@ Hit axis_hit(double t, const LatticeEdge& edge, bool weak) {
   return hit;
 }
 
-/// Reads hits off the rays that run along one lattice axis.
-class AxisHits {
- public:
-  AxisHits(const Grid* grid, const Lattice& lattice, int axis) : grid_(grid), lattice_(lattice), axis_(axis) {}
-
-  Hit operator()(const LatticeEdge& edge) {
-    if (!grid_) return axis_hit(0.5, edge, false);
-    const auto [u, v] = ray_of(edge);
-    const std::span<const Span> spans = grid_->ray(u, v);
-    const int index = axis_ == 0 ? edge.i : axis_ == 1 ? edge.j : edge.k;
-    const double low = lattice_.at(axis_, index), high = lattice_.at(axis_, index + 1), h = lattice_.pitch();
-    const int n = nearest_end(spans, low, high, kReach * h, !edge.rising);
-    if (n < 0) return axis_hit(0.5, edge, true);
-    const double t = (place_of(spans[n], !edge.rising) - low) / h;
-    if (!grid_->has_normals()) return axis_hit(t, edge, false);
-    const SpanNormals& normals = grid_->ray_normals(u, v)[n];
-    const PackedNormal packed = edge.rising ? normals.near : normals.far;
-    if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();  // flat faces have one for all
-    const Vec3& normal = last_;
-    if ((edge.rising ? -normal[axis_] : normal[axis_]) <= 0) return axis_hit(std::clamp(t, 0.0, 1.0), edge, true);
-    return {static_cast<float>(t),
-            {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)}};
-  }
-
- private:
-  /// Indices of the ray in its grid's cyclic frame. (A grid of one direction stands along the lattice's third axis.)
-  std::array<int, 2> ray_of(const LatticeEdge& edge) const {
-    switch (axis_) {
-      case 0:
-        return {edge.j - 1, edge.k - 1};
-      case 1:
-        return {edge.k - 1, edge.i - 1};
-      default:
-        return {edge.i - 1, edge.j - 1};
-    }
-  }
-
-  const Grid* grid_;
-  const Lattice& lattice_;
-  int axis_;
-  PackedNormal last_packed_{};
-  Vec3 last_ = PackedNormal{}.unpack();
-};
-
 }  // namespace
 
-std::vector<Hit> hits_of(const Volume& volume, const Lattice& lattice, const SignField& signs, const Counts& counts,
-                         const Progress& progress) {
-  const bool three = volume.grids().size() == 3;
-  const AxisHits hits_along[3] = {{three ? volume.grid(Axis::X) : nullptr, lattice, 0},
-                                  {three ? volume.grid(Axis::Y) : nullptr, lattice, 1},
-                                  {&volume.reference(), lattice, 2}};
-  std::vector<Hit> hits(counts.edges());
-  parallel_for(
-      static_cast<std::size_t>(lattice.cells(0)), 4,
-      [&](std::size_t begin, std::size_t end) {
-        AxisHits along[3] = {hits_along[0], hits_along[1], hits_along[2]};
-        for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
-          Hit* out = hits.data() + counts.edge(i, 0, 0);
-          for (int j = 0; j < lattice.cells(1); ++j)
-            for (int axis = 0; axis < 3; ++axis)
-              for (int w = 0; w < signs.words(); ++w) {
-                const std::uint64_t inside = signs.column(i, j)[w];
-                for (std::uint64_t word = crossed_edges(signs, i, j, axis, w); word; word &= word - 1) {
-                  const int b = std::countr_zero(word);
-                  *out++ = along[axis]({axis, i, j, 64 * w + b, !(inside >> b & 1)});
-                }
-              }
-        }
-      },
-      progress);
-  return hits;
+HitFinder::HitFinder(const Volume& volume, const Lattice& lattice)
+    : lattice_(&lattice), grids_{nullptr, nullptr, &volume.reference()} {
+  if (volume.grids().size() == 3) grids_[0] = volume.grid(Axis::X), grids_[1] = volume.grid(Axis::Y);
+}
+
+Hit HitFinder::operator()(const LatticeEdge& edge) {
+  const Grid* const grid = grids_[edge.axis];
+  if (!grid) return axis_hit(0.5, edge, false);
+  // Indices of the ray in its grid's cyclic frame. (A grid of one direction stands along the lattice's third axis.)
+  const int place[5] = {edge.i, edge.j, edge.k, edge.i, edge.j};
+  const int u = place[edge.axis + 1] - 1, v = place[edge.axis + 2] - 1;
+  const Tile& tile = grid->tile(grid->tile_index(u / kTileSide, v / kTileSide));
+  const int ray = Grid::ray_index(u, v);
+  const std::span<const Span> spans = tile.ray(ray);
+  const double low = lattice_->at(edge.axis, place[edge.axis]), high = lattice_->at(edge.axis, place[edge.axis] + 1),
+               h = lattice_->pitch();
+  const int n = nearest_end(spans, low, high, kReach * h, !edge.rising);
+  if (n < 0) return axis_hit(0.5, edge, true);
+  const double t = (place_of(spans[n], !edge.rising) - low) / h;
+  if (!grid->has_normals()) return axis_hit(t, edge, false);
+  const SpanNormals& normals = tile.ray_normals(ray)[n];
+  const PackedNormal packed = edge.rising ? normals.near : normals.far;
+  if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();  // flat faces have one for all
+  const double along = (&last_.x)[edge.axis];
+  if ((edge.rising ? -along : along) <= 0) return axis_hit(std::clamp(t, 0.0, 1.0), edge, true);
+  return {static_cast<float>(t),
+          {static_cast<float>(last_.x), static_cast<float>(last_.y), static_cast<float>(last_.z)}};
 }
 
 }  // namespace riffler::marching

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
-#include "marching/counts.hpp"
+#include "dexel/volume.hpp"
+#include "marching/bricks.hpp"
 
 namespace riffler::marching {
 
@@ -21,10 +21,19 @@ struct Hit {
   double t() const { return weak() ? place + kWeak : place; }
 };
 
-/// One hit for each crossed edge, in the order of `counts`. In a volume of one direction the edges across the rays are
-/// crossed in the middle, half a pitch from the ray, with the axis as normal; the ends of its rays have the ray's
-/// direction as normal.
-std::vector<Hit> hits_of(const Volume& volume, const Lattice& lattice, const SignField& signs, const Counts& counts,
-                         const Progress& progress);
+/// Reads hits off the rays. In a volume of one direction the edges across the rays are crossed in the middle, half a
+/// pitch from the ray, with the axis as normal; the ends of its rays have the ray's direction as normal.
+/// For one thread: it remembers the last normal.
+class HitFinder {
+ public:
+  HitFinder(const Volume& volume, const Lattice& lattice);
+  Hit operator()(const LatticeEdge& edge);
+
+ private:
+  const Lattice* lattice_;
+  std::array<const Grid*, 3> grids_;  // null: no rays along that axis
+  PackedNormal last_packed_{};
+  Vec3 last_ = PackedNormal{}.unpack();
+};
 
 }  // namespace riffler::marching

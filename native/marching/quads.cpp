@@ -1,49 +1,82 @@
+#include <algorithm>
+
 #include "geom/parallel.hpp"
-#include "marching/diagonal.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {
 
-Quad Surface::quad(std::size_t n, const LatticeEdge& edge) const {
-  Quad out{{}, edge.axis, edge.rising ? -1.0 : 1.0};
-  const auto corner = corners(n);
+Vec3i corner_cell(const LatticeEdge& edge, int n) {
+  const int slot = edge.rising ? (4 - n) & 3 : n;
+  // The other way round from make_edge: cells below the edge have it on their upper sides.
+  Vec3i cell{edge.i, edge.j, edge.k};
+  if (slot == 3 || slot == 0) --cell[(edge.axis + 1) % 3];
+  if (slot == 1 || slot == 0) --cell[(edge.axis + 2) % 3];
+  return cell;
+}
+
+Quad Surface::quad(const QuadRef& ref) const {
+  Quad out{{}, ref.edge.axis, ref.edge.rising ? -1.0 : 1.0};
+  const auto corner = corners(ref.quad);
   for (int c = 0; c < 4; ++c) out.corner[c] = mesh.vertices[corner[c]];
   return out;
 }
 
-bool Surface::split(std::size_t n, const LatticeEdge& edge) {
+bool Surface::split(const QuadRef& ref, HitFinder& finder) {
+  const LatticeEdge& edge = ref.edge;
   Vec3 hit{lattice.at(0, edge.i), lattice.at(1, edge.j), lattice.at(2, edge.k)};
-  hit[edge.axis] += hits[n].t() * lattice.pitch();
-  // Two steps of rounding at each end of what is compared.
-  const int diagonal = choose_diagonal(quad(n, edge), hit, 4 * lattice.step());
-  const auto c = corners(n);
-  Vec3i &a = mesh.triangles[2 * n], &b = mesh.triangles[2 * n + 1];
-  if (diagonal == 1)
-    a = {c[1], c[2], c[3]}, b = {c[1], c[3], c[0]};
-  else
-    a = {c[0], c[1], c[2]}, b = {c[0], c[2], c[3]};
+  hit[edge.axis] += finder(edge).t() * lattice.pitch();
+  const int diagonal = choose_diagonal(quad(ref), hit, diagonal_tie(lattice));
+  write(ref.quad, corners(ref.quad), diagonal);
   return diagonal >= 0;
 }
 
-void choose_diagonals(Surface& surface, const Progress& progress) {
-  const SignField& signs = surface.signs;
-  parallel_for(
-      static_cast<std::size_t>(surface.lattice.cells(0)), 4,
-      [&](std::size_t begin, std::size_t end) {
-        for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
-          std::size_t n = surface.counts.edge(i, 0, 0);
-          for (int j = 0; j < surface.lattice.cells(1); ++j)
-            for (int axis = 0; axis < 3; ++axis)
-              for (int w = 0; w < signs.words(); ++w) {
-                const std::uint64_t inside = signs.column(i, j)[w];
-                for (std::uint64_t word = crossed_edges(signs, i, j, axis, w); word; word &= word - 1) {
-                  const int b = std::countr_zero(word);
-                  surface.split(n++, {axis, i, j, 64 * w + b, !(inside >> b & 1)});
-                }
-              }
+Special& Surface::special(const CellVertex& v) {
+  std::vector<Special>& all = bricks.owner(v.cell).specials;
+  return *std::lower_bound(all.begin(), all.end(), v.vertex,
+                           [](const Special& s, std::int32_t vertex) { return s.vertex < vertex; });
+}
+
+namespace {
+
+void add_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std::vector<QuadRef>& out) {
+  const Bricks& bricks = surface.bricks;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = cell.x; i <= cell.x + (axis != 0); ++i)
+      for (int j = cell.y; j <= cell.y + (axis != 1); ++j) {
+        const std::uint64_t here = bricks.bits(i, j, cell.z);
+        std::uint64_t crossed = here ^ (axis == 2 ? here >> 1 : bricks.bits(i + (axis == 0), j + (axis == 1), cell.z));
+        for (crossed &= axis == 2 ? 1 : 3; crossed; crossed &= crossed - 1) {
+          const int b = std::countr_zero(crossed);
+          const LatticeEdge edge{axis, i, j, cell.z + b, !(here >> b & 1)};
+          const std::uint32_t quad = bricks.quad_of(edge);
+          const auto c = surface.corners(quad);
+          const std::vector<std::uint8_t>& m = surface.marks;
+          if ((m[c[0]] | m[c[1]] | m[c[2]] | m[c[3]]) & mark) out.push_back({quad, edge});
         }
-      },
-      progress);
+      }
+  }
+}
+
+}  // namespace
+
+std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark) {
+  constexpr std::size_t chunk = 1024;
+  std::vector<std::vector<QuadRef>> parts((cells.size() + chunk - 1) / chunk);
+  const auto by_quad = [](const QuadRef& a, const QuadRef& b) { return a.quad < b.quad; };
+  const auto tidy = [&](std::vector<QuadRef>& quads) {
+    std::sort(quads.begin(), quads.end(), by_quad);
+    quads.erase(std::unique(quads.begin(), quads.end(), [](const auto& a, const auto& b) { return a.quad == b.quad; }),
+                quads.end());
+  };
+  parallel_for(cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<QuadRef>& found = parts[begin / chunk];
+    for (std::size_t n = begin; n < end; ++n) add_quads(surface, cells[n], mark, found);
+    tidy(found);
+  });
+  std::vector<QuadRef> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  if (parts.size() > 1) tidy(all);
+  return all;
 }
 
 }  // namespace riffler::marching

@@ -1,39 +1,89 @@
-// Inside or outside, one bit for every lattice point.
+// Inside or outside for every point of the lattice, read from the rays.
 #pragma once
 
-#include <bit>
-#include <cstddef>
-#include <cstdint>
+#include <span>
 #include <vector>
 
+#include "dexel/volume.hpp"
 #include "geom/progress.hpp"
-#include "marching/lattice.hpp"
+#include "marching/bricks.hpp"
 
 namespace riffler::marching {
 
-/// The bits of a column (I, J) stand in `words()` consecutive words, bit K % 64 of word K / 64. The outer layer is
-/// outside; hence bit 0 of every column is 0, and reading the word after a column's last one for its lowest bit is
-/// harmless (one spare word follows the last column).
-class SignField {
- public:
-  explicit SignField(const Lattice& lattice) : columns_(lattice.points(1)), words_((lattice.points(2) + 63) / 64) {
-    bits_.assign(static_cast<std::size_t>(lattice.points(0)) * columns_ * words_ + 1, 0);
-  }
-  int words() const { return words_; }
-  const std::uint64_t* column(int i, int j) const { return bits_.data() + offset(i, j); }
-  std::uint64_t* column(int i, int j) { return bits_.data() + offset(i, j); }
-  bool at(int i, int j, int k) const { return column(i, j)[k / 64] >> (k % 64) & 1; }
-
- private:
-  std::size_t offset(int i, int j) const { return (static_cast<std::size_t>(i) * columns_ + j) * words_; }
-  int columns_, words_;
-  std::vector<std::uint64_t> bits_;
+/// The lattice points that a span holds: first … last, none where first > last.
+struct PointRange {
+  int first, last;
 };
 
-/// Signs of the lattice points. A ray calls a point inside where near + εh < point < far − εh, ε = 10⁻³: planes that
-/// lie on lattice planes are then classified alike by all rays, whatever the last bits of their ends. The three rays
-/// through a point of a tri-dexel volume decide by majority. In a volume of one direction a span that misses every
-/// lattice point takes the nearest: a floor thinner than the pitch stays closed.
-SignField signs_of(const Volume& volume, const Lattice& lattice, const Progress& progress);
+/// Turns spans of the rays along one lattice axis into lattice points: those where near + εh < point < far − εh,
+/// ε = 10⁻³. Planes that lie on lattice planes are then classified alike by all rays, whatever the last bits of their
+/// ends.
+class PointsOfSpan {
+ public:
+  PointsOfSpan(const Lattice& lattice, int axis)
+      : zero_(lattice.at(axis, 0)), per_pitch_(1 / lattice.pitch()), last_(lattice.rays(axis)) {}
+
+  PointRange operator()(const Span& s) const {
+    const double near = (s.near - zero_) * per_pitch_, far = (s.far - zero_) * per_pitch_;
+    return {above(near + kMargin), below(far - kMargin)};
+  }
+  /// A floor thinner than the pitch stays closed: a span that misses every point takes the nearest.
+  PointRange or_nearest(const Span& s) const {
+    const PointRange range = (*this)(s);
+    if (range.first <= range.last) return range;
+    const int nearest = above(((s.near - zero_) + (s.far - zero_)) * per_pitch_ / 2 - 0.5);
+    const int kept = nearest > last_ ? last_ : nearest;
+    return {kept, kept};
+  }
+
+ private:
+  static constexpr double kMargin = 1e-3;
+  /// The least point > x and the greatest point < x, within the lattice; a span may stick out of the box anywhere.
+  int above(double x) const {
+    if (!(x >= 1)) return 1;
+    if (x >= last_ + 1) return last_ + 1;
+    return static_cast<int>(x) + 1;
+  }
+  int below(double x) const {
+    if (!(x > 0)) return 0;
+    if (x > last_) return last_;
+    const int whole = static_cast<int>(x);
+    return whole < x ? whole : whole - 1;
+  }
+
+  double zero_, per_pitch_;
+  int last_;
+};
+
+/// The three rays through a point of a tri-dexel volume decide by majority.
+class SignReader {
+ public:
+  SignReader(const Volume& volume, const Lattice& lattice);
+
+  /// Reads the signs of the bricks (a, b, c0 … c1).
+  void read(Bricks& bricks, int a, int b, int c0, int c1) const;
+
+ private:
+  /// What the rays of a tile have in common.
+  struct TileExtent {
+    int hull_first, hull_last;  // no ray holds a point outside of these
+    int core_first, core_last;  // every ray holds all of these
+  };
+  using Rows = std::vector<SignRows>;
+
+  void read_reference(int a, int b, int c0, int c1, Rows& rows) const;
+  bool agree(const Vec3i& brick, bool inside) const;
+  void read_y(const Vec3i& brick, SignRows& rows) const;
+  void vote(const Vec3i& brick, const SignRows& y, SignRows& z) const;
+  bool along_x(int i, int j, int k) const;
+
+  const Lattice& lattice_;
+  const Grid &reference_, *x_ = nullptr, *y_ = nullptr;
+  PointsOfSpan points_x_, points_y_, points_z_;
+  std::vector<TileExtent> extents_;  // of the tiles of y
+};
+
+/// Signs of all bricks.
+void read_signs(const Volume& volume, const Lattice& lattice, Bricks& bricks, const Progress& progress);
 
 }  // namespace riffler::marching

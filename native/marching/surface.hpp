@@ -1,9 +1,11 @@
-// A mesh under construction: what the stages after the hits share.
+// A mesh under construction: what the stages share.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "geom/progress.hpp"
+#include "marching/bricks.hpp"
 #include "marching/diagonal.hpp"
 #include "marching/float_grid.hpp"
 #include "marching/hits.hpp"
@@ -11,71 +13,79 @@
 
 namespace riffler::marching {
 
-/// A vertex that did not simply fall into its cell: the few that later stages look at.
-struct Special {
-  std::int32_t vertex;
-  Vec3i cell;
-  Vec3 anchor;  // where it is pulled to when triangles fold, cell units
-  Vec3 other;   // until candidates are chosen, the candidate (the safe place if there is none); then the safe place
+enum VertexMark : std::uint8_t {
+  kSpecial = 1,    // its brick has a Special for it
+  kCandidate = 2,  // has a candidate that is not decided yet
+  kSharp = 4,      // its hits' normals differ: triangles round it may fold
+  kMoved = 8,      // moved from where the bricks put it, or in the last round of `unfold`
 };
 
-enum VertexMark : std::uint8_t {
-  kSpecial = 1,    // has a Special
-  kCandidate = 2,  // has a candidate that is not decided yet
-  kNear = 8,       // corner of a quad under scrutiny
-  kSharp = 32,     // its hits' normals differ: triangles round it may fold
-  kMoved = 16,     // moved in the last round of `unfold`
+/// A vertex and the cell that it belongs to.
+struct CellVertex {
+  std::int32_t vertex;
+  Vec3i cell;
+  bool operator==(const CellVertex& o) const { return vertex == o.vertex; }
+  bool operator<(const CellVertex& o) const { return vertex < o.vertex; }
 };
 
 struct Surface {
   const Lattice& lattice;
-  const SignField& signs;
-  const Counts& counts;
-  const std::vector<Hit>& hits;
+  Bricks& bricks;
+  HitFinder hits;  // each thread takes a copy
   FloatGrid grid;
-  /// Quad n stands in triangles 2n and 2n + 1 as (c0, c1, c2), (c0, c2, c3), counter-clockwise round the edge seen from
-  /// outside; the diagonal c0–c2 means nothing before the quads' stage.
+  /// Quad n stands in triangles 2n and 2n + 1, as (c0, c1, c2), (c0, c2, c3) or as (c0, c1, c3), (c1, c2, c3); its
+  /// corners are counter-clockwise round the edge seen from outside.
   Mesh mesh;
   std::vector<std::uint8_t> marks;  // of each vertex
-  std::vector<Special> specials;    // by vertex, ascending
-  std::vector<Vec3i> sharp;         // cells of the vertices marked kSharp
+  std::vector<QuadRef> moved;       // quads round the vertices that could choose their place
 
-  std::size_t quads() const { return mesh.triangles.size() / 2; }
-  void set_corner(std::size_t quad, int n, std::int32_t vertex) {
-    Vec3i& triangle = mesh.triangles[2 * quad + (n == 3)];
-    (&triangle.x)[n - (n == 3)] = vertex;  // glm's operator branches
-  }
+  Surface(const Volume& volume, const Lattice& on, Bricks& of)
+      : lattice(on), bricks(of), hits(volume, on), grid(on), mesh{}, marks{}, moved{} {}
+
   std::array<std::int32_t, 4> corners(std::size_t quad) const {
     const Vec3i &a = mesh.triangles[2 * quad], &b = mesh.triangles[2 * quad + 1];
-    return {a.x, a.y, a.z, b.z};
+    if (a.x == b.x) return {a.x, a.y, a.z, b.z};
+    return {a.x, a.y, b.y, a.z};
   }
-  Quad quad(std::size_t n, const LatticeEdge& edge) const;
+  /// Which of a quad's triangles has the side from corner s to the next.
+  std::uint32_t triangle_at(std::size_t quad, int s) const {
+    const bool first = mesh.triangles[2 * quad].x == mesh.triangles[2 * quad + 1].x ? s < 2 : s % 3 == 0;
+    return static_cast<std::uint32_t>(2 * quad + (first ? 0 : 1));
+  }
+  void write(std::size_t quad, const std::array<std::int32_t, 4>& c, int diagonal) {
+    Vec3i &a = mesh.triangles[2 * quad], &b = mesh.triangles[2 * quad + 1];
+    if (diagonal == 1)
+      a = {c[0], c[1], c[3]}, b = {c[1], c[2], c[3]};
+    else
+      a = {c[0], c[1], c[2]}, b = {c[0], c[2], c[3]};
+  }
+  Quad quad(const QuadRef& ref) const;
   /// Writes the quad's two triangles along its best diagonal; false if none is valid.
-  bool split(std::size_t n, const LatticeEdge& edge);
+  bool split(const QuadRef& ref, HitFinder& finder);
   /// The special of a vertex marked kSpecial.
-  Special& special(std::int32_t vertex);
+  Special& special(const CellVertex& v);
 };
 
-/// Columns of cells (i, j), each once, in order.
-using Columns = std::vector<std::array<int, 2>>;
-/// The columns whose edges can be edges of the given cells, or of cells next to them too (`rings` = 1).
-Columns columns_near(const Surface& surface, const std::vector<Vec3i>& cells, int rings);
-/// Quads of these columns with a corner that has one of the marks, ascending.
-std::vector<std::uint32_t> quads_marked(const Surface& surface, const Columns& columns, std::uint8_t mark);
+/// The cell whose vertex is corner n of the quad that stands for an edge.
+Vec3i corner_cell(const LatticeEdge& edge, int n);
 
-/// Places every vertex and enters it into the quads round its edges. Marks are 0, kSharp, kSpecial or both kSpecial and
-/// kCandidate.
-void place_vertices(Surface& surface, const Progress& progress);
+/// Quads of the edges of these cells with a corner that has the mark; ascending.
+std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark);
+
+/// Finds the bricks that the surface runs through and numbers their quads and vertices. Throws std::invalid_argument if
+/// there are more triangles than 32-bit indices can tell apart.
+void number_bricks(Bricks& bricks, const Progress& progress);
+
+/// Places every vertex and gives every quad a diagonal whose triangles both face outward: their projections along the
+/// edge are positive. Of two such it takes the one nearer the hit, else the shorter. Marks are 0, kSharp, kSpecial or
+/// both kSpecial and kCandidate.
+void mesh_bricks(Surface& surface, const Progress& progress);
 
 /// Moves vertices from their safe places to their candidates, or part of the way, as long as all quads keep a valid
 /// diagonal.
-void choose_candidates(Surface& surface);
-
-/// Gives every quad a diagonal whose triangles both face outward: their projections along the edge are positive. Of two
-/// such it takes the one nearer the hit, else the shorter.
-void choose_diagonals(Surface& surface, const Progress& progress);
+void choose_candidates(Surface& surface, const Progress& progress);
 
 /// Pulls vertices towards the middle of their cells where two triangles fold onto each other.
-void unfold(Surface& surface);
+void unfold(Surface& surface, const Progress& progress);
 
 }  // namespace riffler::marching

@@ -1,6 +1,7 @@
 #include "marching/to_mesh.hpp"
 
 #include "geom/parallel.hpp"
+#include "marching/signs.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler {
@@ -25,15 +26,13 @@ void turn_to_world(Axis axis, std::vector<Vec3>& vertices) {
 Mesh to_mesh(const Volume& volume, const Progress& progress) {
   using namespace marching;
   const Lattice lattice(volume);
-  const SignField signs = signs_of(volume, lattice, stage(progress, 0, 0.15));
-  const Counts counts(lattice, signs, stage(progress, 0.15, 0.2));
-  if (counts.edges() == 0) return {};
-  const std::vector<Hit> hits = hits_of(volume, lattice, signs, counts, stage(progress, 0.2, 0.4));
-  Surface surface{lattice, signs, counts, hits, FloatGrid(lattice), {}, {}, {}, {}};
-  place_vertices(surface, stage(progress, 0.4, 0.7));
-  choose_candidates(surface);
-  choose_diagonals(surface, stage(progress, 0.7, 0.95));
-  unfold(surface);
+  Bricks bricks(lattice);
+  read_signs(volume, lattice, bricks, stage(progress, 0, 0.2));
+  number_bricks(bricks, stage(progress, 0.2, 0.3));
+  Surface surface(volume, lattice, bricks);
+  mesh_bricks(surface, stage(progress, 0.3, 0.9));
+  choose_candidates(surface, stage(progress, 0.9, 0.94));
+  unfold(surface, stage(progress, 0.94, 0.98));
   turn_to_world(lattice.axis(), surface.mesh.vertices);
   report(progress, 1);
   return std::move(surface.mesh);

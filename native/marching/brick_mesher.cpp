@@ -1,0 +1,221 @@
+#include <bit>
+
+#include "geom/parallel.hpp"
+#include "marching/neighbourhood.hpp"
+#include "marching/surface.hpp"
+#include "marching/vertices.hpp"
+
+namespace riffler::marching {
+
+namespace {
+
+/// Whether a triangle of a quad may lie on a neighbour's. Where two triangles with the normals n and −n share an edge,
+/// each looks to its own lattice edge's side, e and f: n·e > 0 and n·f < 0, and the other way round. So one of them is
+/// nearly edge-on to its side, or the other looks away from it. `sides`: bits 2 axis + (looks down) of the edges that
+/// the corners' cycles have.
+bool may_fold(const Quad& quad, int diagonal, int sides) {
+  constexpr double kEdgeOn = 0.35, kAway = -0.25;
+  const auto& c = quad.corner;
+  const Vec3 normals[2] = {diagonal == 1 ? glm::cross(c[1] - c[0], c[3] - c[0]) : glm::cross(c[1] - c[0], c[2] - c[0]),
+                           diagonal == 1 ? glm::cross(c[2] - c[1], c[3] - c[1]) : glm::cross(c[2] - c[0], c[3] - c[0])};
+  for (const Vec3& n : normals) {
+    const double length = glm::length(n);
+    if (!(quad.side * n[quad.axis] > kEdgeOn * length)) return true;
+    for (int a = 0; a < 3; ++a)
+      if ((sides >> (2 * a) & 1 && n[a] < kAway * length) || (sides >> (2 * a) & 2 && -n[a] < kAway * length))
+        return true;
+  }
+  return false;
+}
+
+/// Vertices and quads of one brick. It sees the cells −1 … 31 along each axis: its own, and the layer below that its
+/// quads need too, whose vertices its neighbours place, by the same code from the same hits.
+class BrickMesher {
+ public:
+  explicit BrickMesher(Surface& surface) : surface_(surface), finder_(surface.hits), table_(case_table()) {}
+
+  void mesh(ActiveBrick& brick) {
+    const Neighbourhood signs(surface_.bricks, brick.at);
+    brick_ = &brick, signs_ = &signs;
+    origin_ = brick.at * kBrickSide;
+    find_hits();
+    place_cells();
+    split_quads();
+  }
+
+ private:
+  static constexpr int kSide = kBrickSide + 2;  // columns −1 … 32 of points
+  // Bits of a Neighbourhood's words: points −1 … 32, and those of them that are the lower ends of cells or edges.
+  static constexpr std::uint64_t kPoints = ((std::uint64_t{1} << 34) - 1) << 1, kLower = kPoints >> 1 & kPoints;
+
+  static constexpr std::uint8_t kUneven = 64;
+
+  static int column(int i, int j) { return (i + 1) * kSide + j + 1; }
+
+  void find_hits() {
+    hits_.clear();
+    for (int i = -1; i <= kBrickSide; ++i)
+      for (int j = -1; j <= kBrickSide; ++j)
+        for (int axis = 0; axis < 3; ++axis) {
+          const bool within = axis == 2 || (axis == 0 ? i : j) < kBrickSide;
+          const std::uint64_t crossed = within ? signs_->crossed(axis, i, j) & (axis == 2 ? kLower : kPoints) : 0;
+          crossed_[axis][column(i, j)] = crossed;
+          start_[axis][column(i, j)] = static_cast<std::uint32_t>(hits_.size());
+          const std::uint64_t inside = signs_->column(i, j);
+          for (std::uint64_t rest = crossed; rest; rest &= rest - 1) {
+            const int b = std::countr_zero(rest);
+            const LatticeEdge edge{axis, origin_.x + i, origin_.y + j, origin_.z + b - Neighbourhood::kLayers,
+                                   !(inside >> b & 1)};
+            hits_.push_back(finder_(edge));
+          }
+        }
+    corners_.resize(hits_.size());
+  }
+
+  void place_cells() {
+    places_.clear(), numbers_.clear(), sides_.clear();
+    for (int i = -1; i < kBrickSide; ++i)
+      for (int j = -1; j < kBrickSide; ++j)
+        if (const std::uint64_t mixed = signs_->mixed(i, j) & kLower) place_column(i, j, mixed);
+  }
+
+  void place_column(int i, int j, std::uint64_t mixed) {
+    // Edges of a cell that start in its lower layer of points have a cursor each; those of the upper layer come next in
+    // the same column.
+    static constexpr int lower[8] = {0, 1, 4, 6, 8, 9, 10, 11};
+    const Vec3i& at = brick_->at;
+    const int a = at.x - (i < 0), b = at.y - (j < 0);
+    const ActiveBrick *const here = surface_.bricks.active(a, b, at.z), *const below =
+                                                                            surface_.bricks.active(a, b, at.z - 1);
+    auto next = static_cast<std::int32_t>(here ? here->vertex(i & 31, j & 31) : 0);
+    std::uint32_t cursor[8] = {start_[0][column(i, j)],     start_[0][column(i, j + 1)],    start_[1][column(i, j)],
+                               start_[1][column(i + 1, j)], start_[2][column(i, j)],        start_[2][column(i + 1, j)],
+                               start_[2][column(i, j + 1)], start_[2][column(i + 1, j + 1)]};
+    for (; mixed; mixed &= mixed - 1) {
+      const int k = std::countr_zero(mixed) - Neighbourhood::kLayers;
+      const CellCase& entry = signs_->entry(table_, i, j, k);
+      const int crossed = entry.crossed;
+      const std::uint32_t edge[12] = {cursor[0],
+                                      cursor[1],
+                                      cursor[0] + (crossed & 1),
+                                      cursor[1] + (crossed >> 1 & 1),
+                                      cursor[2],
+                                      cursor[2] + (crossed >> 4 & 1),
+                                      cursor[3],
+                                      cursor[3] + (crossed >> 6 & 1),
+                                      cursor[4],
+                                      cursor[5],
+                                      cursor[6],
+                                      cursor[7]};
+      const bool own = i >= 0 && j >= 0 && k >= 0;
+      std::int32_t number = next;
+      if (k < 0)
+        number = static_cast<std::int32_t>(below->vertex_after(i & 31, j & 31)) - entry.cycles;
+      else
+        next += entry.cycles;
+      siblings_.clear();
+      for (int c = 0; c < entry.cycles; ++c) place_cycle(origin_ + Vec3i(i, j, k), entry, c, edge, number + c, own);
+      for (int n = 0; n < 8; ++n) cursor[n] += static_cast<std::uint32_t>(crossed >> lower[n] & 1);
+    }
+  }
+
+  void place_cycle(const Vec3i& cell, const CellCase& entry, int c, const std::uint32_t* edge, std::int32_t number,
+                   bool own) {
+    Cycle cycle{cell, entry, c, {}};
+    std::uint8_t sides = 0;
+    const auto local = static_cast<std::uint32_t>(places_.size());
+    for (int n = entry.begin[c], m = 0; n < entry.begin[c + 1]; ++n, ++m) {
+      const CellEdge& shape = kEdges[entry.edge[n]];
+      const std::uint32_t e = edge[entry.edge[n]];
+      const bool rising = !(entry.code >> shape.low & 1);
+      corners_[e][rising ? (4 - shape.slot) & 3 : shape.slot] = local;
+      cycle.hits[m] = &hits_[e];
+      sides = static_cast<std::uint8_t>(sides | 1 << (2 * shape.axis + rising));
+    }
+    const Placed placed = place_vertex(surface_.grid, cycle, siblings_);
+    places_.push_back(placed.place), numbers_.push_back(number);
+    sides_.push_back(placed.marks ? static_cast<std::uint8_t>(sides | kUneven) : sides);
+    if (entry.cycles > 1) siblings_.push_back(placed.place);
+    if (!own) return;
+    surface_.mesh.vertices[number] = placed.place;
+    surface_.marks[number] = placed.marks;
+    if (placed.marks & kSpecial) brick_->specials.push_back({number, cell, placed.anchor, placed.other});
+  }
+
+  void split_quads() {
+    const double tie = diagonal_tie(surface_.lattice);
+    std::size_t quad = brick_->first_edge;
+    for (int i = 0; i < kBrickSide; ++i)
+      for (int j = 0; j < kBrickSide; ++j)
+        for (int axis = 0; axis < 3; ++axis) {
+          const std::uint64_t crossed = crossed_[axis][column(i, j)], inside = signs_->column(i, j);
+          std::uint32_t e = start_[axis][column(i, j)] +
+                            static_cast<std::uint32_t>(std::popcount(crossed & ~Neighbourhood::kOwn & kLower &
+                                                                     ((1U << Neighbourhood::kLayers) - 1)));
+          for (std::uint64_t rest = crossed & Neighbourhood::kOwn; rest; rest &= rest - 1, ++e, ++quad) {
+            const int b = std::countr_zero(rest);
+            split(quad, e,
+                  {axis, origin_.x + i, origin_.y + j, origin_.z + b - Neighbourhood::kLayers, !(inside >> b & 1)},
+                  tie);
+          }
+        }
+  }
+
+  void split(std::size_t quad, std::uint32_t e, const LatticeEdge& edge, double tie) {
+    const Lattice& lattice = surface_.lattice;
+    Quad shape{{}, edge.axis, edge.rising ? -1.0 : 1.0};
+    std::array<std::int32_t, 4> numbers;
+    int sides = 0;
+    for (int n = 0; n < 4; ++n) {
+      const std::uint32_t corner = corners_[e][n];
+      shape.corner[n] = places_[corner], numbers[n] = numbers_[corner];
+      sides |= sides_[corner];
+    }
+    Vec3 hit{lattice.at(0, edge.i), lattice.at(1, edge.j), lattice.at(2, edge.k)};
+    (&hit.x)[edge.axis] += hits_[e].t() * lattice.pitch();
+    const int diagonal = choose_diagonal(shape, hit, tie);
+    surface_.write(quad, numbers, diagonal);
+    if (sides & kUneven && may_fold(shape, diagonal, sides))
+      brick_->suspects.push_back({static_cast<std::uint32_t>(quad), edge});
+  }
+
+  Surface& surface_;
+  HitFinder finder_;
+  const CaseTable& table_;
+  ActiveBrick* brick_ = nullptr;
+  const Neighbourhood* signs_ = nullptr;
+  Vec3i origin_{0};  // the brick's first point
+  // Of the edges of all these cells, by column, axis and K:
+  std::array<std::array<std::uint64_t, kSide * kSide>, 3> crossed_;
+  std::array<std::array<std::uint32_t, kSide * kSide>, 3> start_;
+  std::vector<Hit> hits_;
+  std::vector<std::array<std::uint32_t, 4>> corners_;  // of the quads round them, as indices into the two below
+  std::vector<Vec3> places_;
+  std::vector<std::int32_t> numbers_;
+  std::vector<std::uint8_t> sides_;  // that the cycle's edges look to; kUneven where triangles may fold
+  std::vector<Vec3> siblings_;
+};
+
+}  // namespace
+
+void mesh_bricks(Surface& surface, const Progress& progress) {
+  std::vector<std::size_t> active;
+  std::size_t quads = 0, vertices = 0;
+  for (std::size_t n = 0; n < surface.bricks.size(); ++n)
+    if (const ActiveBrick* const brick = surface.bricks.active(n)) {
+      active.push_back(n);
+      quads += brick->edges(), vertices += brick->vertices();
+    }
+  surface.mesh.vertices.resize(vertices);
+  surface.mesh.triangles.resize(2 * quads);
+  surface.marks.resize(vertices);
+  parallel_for(
+      active.size(), 8,
+      [&](std::size_t begin, std::size_t end) {
+        BrickMesher mesher(surface);
+        for (std::size_t n = begin; n < end; ++n) mesher.mesh(*surface.bricks.active(active[n]));
+      },
+      progress);
+}
+
+}  // namespace riffler::marching

@@ -1,0 +1,122 @@
+// The lattice in bricks of 32 × 32 × 32 cells: their signs, and where their quads and vertices stand in the mesh.
+//
+// A brick is meshed by itself, from its rays and the signs around it: small enough for the nearest caches, large
+// enough that the layer of cells it needs of its neighbours does not count.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "marching/lattice.hpp"
+
+namespace riffler::marching {
+
+inline constexpr int kBrickSide = 32;
+inline constexpr int kBrickColumns = kBrickSide * kBrickSide;
+
+/// Inside or outside for the lattice points of a brick: bit K of row 32 I + J.
+using SignRows = std::array<std::uint32_t, kBrickColumns>;
+
+/// A crossed edge of the lattice, from (i, j, k) along `axis`.
+struct LatticeEdge {
+  int axis, i, j, k;
+  bool rising;  // from outside to inside: the material's surface looks down the axis
+};
+
+/// A quad and the edge that it stands for.
+struct QuadRef {
+  std::uint32_t quad;
+  LatticeEdge edge;
+};
+
+/// A vertex that did not simply fall into its cell: the few that later stages look at.
+struct Special {
+  std::int32_t vertex;
+  Vec3i cell;
+  Vec3 anchor;  // where it is pulled to when triangles fold, cell units
+  Vec3 other;   // until candidates are chosen, the candidate (the safe place if there is none); then the safe place
+};
+
+/// What a brick that the surface runs through has besides signs. Its edges (one quad stands for each) are those that
+/// start at its points, numbered by column, axis and K; its vertices are those of its cells, numbered by column, K and
+/// cycle.
+struct ActiveBrick {
+  Vec3i at;                                                // in bricks
+  std::size_t first_edge = 0, first_vertex = 0;            // number in the mesh of its first
+  std::array<std::uint32_t, kBrickSide + 1> plane_edge{};  // before each plane I; the last: all
+  std::array<std::uint32_t, kBrickSide + 1> plane_vertex{};
+  std::array<std::uint16_t, kBrickColumns> column_edge{};  // of its plane, before each column
+  std::array<std::uint16_t, kBrickColumns> column_vertex{};
+  std::vector<Special> specials;  // by vertex, ascending
+  std::vector<QuadRef> suspects;  // quads that may fold onto a neighbour
+
+  std::size_t edges() const { return plane_edge[kBrickSide]; }
+  std::size_t vertices() const { return plane_vertex[kBrickSide]; }
+  std::size_t edge(int i, int j) const { return first_edge + plane_edge[i] + column_edge[i * kBrickSide + j]; }
+  std::size_t vertex(int i, int j) const { return first_vertex + plane_vertex[i] + column_vertex[i * kBrickSide + j]; }
+  /// Number of the first vertex after a column.
+  std::size_t vertex_after(int i, int j) const {
+    return j + 1 < kBrickSide ? vertex(i, j + 1) : first_vertex + plane_vertex[i + 1];
+  }
+};
+
+class Bricks {
+ public:
+  /// All points outside.
+  explicit Bricks(const Lattice& lattice);
+
+  int count(int axis) const { return count_[axis]; }
+  std::size_t size() const { return bricks_.size(); }
+  std::size_t index(int a, int b, int c) const { return (static_cast<std::size_t>(a) * count_[1] + b) * count_[2] + c; }
+  Vec3i place(std::size_t n) const;
+  bool has(int a, int b, int c) const {
+    return a >= 0 && b >= 0 && c >= 0 && a < count_[0] && b < count_[1] && c < count_[2];
+  }
+
+  /// Signs of a brick; of one beyond the lattice too.
+  const SignRows& signs(int a, int b, int c) const { return has(a, b, c) ? *bricks_[index(a, b, c)].signs : outside(); }
+  /// Bricks without a surface share their signs.
+  void set_signs(std::size_t n, const SignRows& rows);
+  static const SignRows& outside();
+  static const SignRows& inside();
+
+  /// Null where no edge or cell of the brick has both signs.
+  const ActiveBrick* active(int a, int b, int c) const {
+    return has(a, b, c) ? bricks_[index(a, b, c)].active.get() : nullptr;
+  }
+  ActiveBrick* active(std::size_t n) { return bricks_[n].active.get(); }
+  const ActiveBrick* active(std::size_t n) const { return bricks_[n].active.get(); }
+  void set_active(std::size_t n, std::unique_ptr<ActiveBrick> brick) { bricks_[n].active = std::move(brick); }
+  /// The active brick that owns a cell with both signs, or an edge that starts at such a point.
+  ActiveBrick& owner(const Vec3i& cell) {
+    return *bricks_[index(cell.x / kBrickSide, cell.y / kBrickSide, cell.z / kBrickSide)].active;
+  }
+  const ActiveBrick& owner(const Vec3i& cell) const { return const_cast<Bricks&>(*this).owner(cell); }
+
+  /// Sign of a lattice point; of one beyond the lattice too.
+  bool at(int i, int j, int k) const {
+    return signs(i >> 5, j >> 5, k >> 5)[(i & 31) * kBrickSide + (j & 31)] >> (k & 31) & 1;
+  }
+  /// Signs of the points (i, j, k) … (i, j, k + 31), the first in the lowest bit.
+  std::uint64_t bits(int i, int j, int k) const {
+    const int row = (i & 31) * kBrickSide + (j & 31), low = k & 31;
+    const std::uint64_t here = signs(i >> 5, j >> 5, k >> 5)[row], above = signs(i >> 5, j >> 5, (k >> 5) + 1)[row];
+    return (here | above << 32) >> low & 0xffffffff;
+  }
+  /// Number of the quad that stands for a crossed edge.
+  std::uint32_t quad_of(const LatticeEdge& edge) const;
+
+ private:
+  struct Brick {
+    const SignRows* signs = &outside();
+    std::unique_ptr<SignRows> own;
+    std::unique_ptr<ActiveBrick> active;
+  };
+  std::array<int, 3> count_;
+  std::vector<Brick> bricks_;
+};
+
+}  // namespace riffler::marching
