@@ -21,7 +21,7 @@ using NoGil = py::gil_scoped_release;
 
 /// A read-only view of a vector that `owner` keeps; a Mesh never changes once Python has it.
 template <class T, class V>
-py::array view(const std::vector<V>& values, py::handle owner) {
+py::array view(const BulkVector<V>& values, py::handle owner) {
   const std::array<py::ssize_t, 2> shape{static_cast<py::ssize_t>(values.size()), 3};
   py::array array(py::dtype::of<T>(), shape, values.data(), owner);
   array.attr("flags").attr("writeable") = false;
@@ -33,7 +33,7 @@ bool is_empty(const py::array& array) {
   return array.ndim() == 1 && array.shape(0) == 0;
 }
 
-std::vector<Vec3> to_vertices(const py::object& object) {
+Vertices to_vertices(const py::object& object) {
   Doubles array = Doubles::ensure(object);
   if (!array) {
     PyErr_Clear();
@@ -41,12 +41,12 @@ std::vector<Vec3> to_vertices(const py::object& object) {
   }
   if (is_empty(array)) return {};
   const std::size_t n = check_rows(array, 3, "vertices");
-  std::vector<Vec3> vertices(n);
+  Vertices vertices(n);
   if (n > 0) std::memcpy(vertices.data(), array.data(), n * sizeof(Vec3));
   return vertices;
 }
 
-std::vector<Vec3i> to_triangles(const py::object& object) {
+Triangles to_triangles(const py::object& object) {
   const py::array given = py::array::ensure(object);
   if (!given) {
     PyErr_Clear();
@@ -61,7 +61,7 @@ std::vector<Vec3i> to_triangles(const py::object& object) {
     throw py::value_error("triangles must be integers, not " + py::str(given.dtype()).cast<std::string>());
   // What does not fit 64 bits becomes negative there, and so is out of range as well.
   const auto array = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(given);
-  std::vector<Vec3i> triangles(static_cast<std::size_t>(array.shape(0)));
+  Triangles triangles(static_cast<std::size_t>(array.shape(0)));
   const std::int64_t* p = array.data();
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int k = 0; k < 3; ++k, ++p) {

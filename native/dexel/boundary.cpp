@@ -36,7 +36,7 @@ bool all_zero(const std::vector<std::uint64_t>& sums) {
 }
 
 /// For each vertex the first one with equal coordinates.
-std::vector<int> weld(const std::vector<Vec3>& vertices) {
+std::vector<int> weld(const Vertices& vertices) {
   const std::size_t slots = std::bit_ceil(vertices.size() * 2 + 1);
   std::vector<int> table(slots, -1), same(vertices.size());
   for (std::size_t k = 0; k < vertices.size(); ++k) {

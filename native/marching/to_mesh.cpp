@@ -14,7 +14,7 @@ Progress stage(const Progress& progress, double from, double to) {
   return [&progress, from, to](double share) { return progress(from + share * (to - from)); };
 }
 
-void turn_to_world(Axis axis, std::vector<Vec3>& vertices) {
+void turn_to_world(Axis axis, Vertices& vertices) {
   if (axis == Axis::Z) return;
   parallel_for(vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) vertices[n] = to_world(axis, vertices[n]);

@@ -57,7 +57,7 @@ class Closest {
   std::vector<Box3> boxes_;     // of the nodes
   std::vector<int> id_, slot_;  // place in the leaves ↔ triangle of the mesh
   std::vector<Corners> corners_;
-  std::vector<Vec3i> triangles_;  // the rest only with sides
+  Triangles triangles_;  // the rest only with sides
   std::vector<Vec3> face_normals_, edge_normals_, vertex_normals_;
 };
 

@@ -1,17 +1,19 @@
 // Indexed triangle mesh: the currency between files, volumes and Blender.
 #pragma once
 
-#include <vector>
-
+#include "geom/bulk.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {
 
+using Vertices = BulkVector<Vec3>;
+using Triangles = BulkVector<Vec3i>;
+
 /// Vertices (mm) and triangles (vertex indices, counter-clockwise seen from outside the material).
 /// Nothing here is checked: `audit.hpp` says what a mesh is worth, `validate` below whether it can be used at all.
 struct Mesh {
-  std::vector<Vec3> vertices;
-  std::vector<Vec3i> triangles;
+  Vertices vertices;
+  Triangles triangles;
 
   bool empty() const { return triangles.empty(); }
 };

@@ -27,7 +27,7 @@ class ObjReader {
   Mesh read() {
     for (; !scan_.at_end(); scan_.next_line()) statement();
     if (mesh_.triangles.empty()) scan_.fail("zero faces");
-    mesh_.vertices = welder_.points();
+    mesh_.vertices.assign(welder_.points().begin(), welder_.points().end());
     return std::move(mesh_);
   }
 

@@ -241,7 +241,7 @@ class BodyReader {
     }
     values_.check_end();
     if (mesh_.triangles.empty()) values_.fail("zero faces");
-    mesh_.vertices = welder_.points();
+    mesh_.vertices.assign(welder_.points().begin(), welder_.points().end());
     return std::move(mesh_);
   }
 

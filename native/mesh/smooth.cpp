@@ -54,7 +54,7 @@ Vec3 limited(const Vec3& p, const Vec3& home, double limit) {
 }
 
 /// One step of every vertex towards (factor > 0) or away from the mean of its neighbours.
-void step(const std::vector<Vec3>& from, std::vector<Vec3>& to, const Mesh& mesh, const Neighbours& neighbours,
+void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours& neighbours,
           double factor, double limit) {
   parallel_for(from.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -68,7 +68,7 @@ void step(const std::vector<Vec3>& from, std::vector<Vec3>& to, const Mesh& mesh
   });
 }
 
-Vec3 cross_in_float(const std::vector<Vec3>& vertices, const Vec3i& t) {
+Vec3 cross_in_float(const Vertices& vertices, const Vec3i& t) {
   const Vec3 a = to_float32(vertices[t.x]), b = to_float32(vertices[t.y]), c = to_float32(vertices[t.z]);
   return glm::cross(b - a, c - a);
 }
@@ -80,7 +80,7 @@ bool opposed(const Vec3& a, const Vec3& b) {
 /// Puts vertices back until nothing is wrong; at the latest everything is back where it was.
 class Repair {
  public:
-  Repair(const Mesh& mesh, std::vector<Vec3>& vertices) : mesh_(mesh), vertices_(vertices), adjacency_(mesh) {
+  Repair(const Mesh& mesh, Vertices& vertices) : mesh_(mesh), vertices_(vertices), adjacency_(mesh) {
     for (const Vec3i& t : mesh.triangles) old_.push_back(cross_in_float(mesh.vertices, t));
   }
 
@@ -128,7 +128,7 @@ class Repair {
   }
 
   const Mesh& mesh_;
-  std::vector<Vec3>& vertices_;
+  Vertices& vertices_;
   Adjacency adjacency_;
   std::vector<Vec3> old_;
   std::vector<char> back_;
@@ -144,7 +144,7 @@ Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, c
   const Neighbours neighbours(mesh);
   // A hair less than asked for, so that rounding does not exceed it.
   const double limit = tolerance ? *tolerance * (1 - 1e-12) : std::numeric_limits<double>::infinity();
-  std::vector<Vec3> vertices = mesh.vertices, scratch(vertices.size());
+  Vertices vertices = mesh.vertices, scratch(vertices.size());
   for (int i = 0; i < iterations; ++i) {
     report(progress, 0.9 * i / iterations);
     step(vertices, scratch, mesh, neighbours, kShrink, limit);

@@ -23,7 +23,7 @@ constexpr std::size_t kHeader = 80, kStart = 84, kRecord = 50;
 // Must not begin with "solid", which many readers take for ASCII.
 constexpr std::string_view kTitle = "Binary STL by Riffler; lengths in mm";
 
-Mesh to_mesh(const Welder<Vec3f>& welder, std::vector<Vec3i>&& triangles) {
+Mesh to_mesh(const Welder<Vec3f>& welder, Triangles&& triangles) {
   Mesh mesh;
   mesh.vertices.assign(welder.points().begin(), welder.points().end());
   mesh.triangles = std::move(triangles);
@@ -60,7 +60,7 @@ Mesh from_binary(std::span<const std::uint8_t> bytes, std::size_t count, const s
   if (count > 0x7fffffff / 3) throw FormatError(name, "byte 80", "more triangles than can be indexed");
   check_coordinates(bytes, count, name);
   Welder<Vec3f> welder(count / 2 + 2);  // Euler: a closed mesh has half as many vertices as triangles
-  std::vector<Vec3i> triangles(count);
+  Triangles triangles(count);
   constexpr std::size_t kBlock = 16;
   std::array<Vec3f, 3 * kBlock> corners;
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
@@ -74,7 +74,7 @@ Mesh from_binary(std::span<const std::uint8_t> bytes, std::size_t count, const s
 Mesh from_ascii(std::span<const std::uint8_t> bytes, const std::string& name) {
   Scanner scan(bytes, name);
   Welder<Vec3f> welder;
-  std::vector<Vec3i> triangles;
+  Triangles triangles;
   scan.expect("solid");
   scan.next_line();
   for (;;) {

@@ -69,7 +69,7 @@ std::vector<Vec3> rim(int n) {
 /// K of a loop modulo 1: the winding number of the cone over it.
 double cone_winding(const std::vector<Vec3>& loop, const Vec3& p) {
   Mesh cone;
-  cone.vertices = loop;
+  cone.vertices.assign(loop.begin(), loop.end());
   cone.vertices.emplace_back(0.3, 0.2, -50);
   const int n = static_cast<int>(loop.size());
   for (int k = 0; k < n; ++k) cone.triangles.emplace_back(k, (k + 1) % n, n);
@@ -220,7 +220,7 @@ TEST(FromOpenMesh, RandomHolesCracksAndSoups) {
     Mesh mesh = sphere({0, 0, 0}, 10, 10);
     mesh = joined(mesh, moved(box({-6, -6, -6}, {6, 6, 6}), rotation({1, 2, round + 0.1}, round), Vec3(4, 3, 2)));
     // Triangles lost, turned round and doubled.
-    std::vector<Vec3i> kept;
+    Triangles kept;
     for (const Vec3i& t : mesh.triangles) {
       const double dice = uniform(random);
       if (dice > 0.9) continue;

@@ -64,8 +64,8 @@ std::string ascii_stl() {
 }
 
 void expect_two(const Mesh& mesh) {
-  EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
-  EXPECT_EQ(mesh.triangles, (std::vector<Vec3i>{{0, 1, 2}, {1, 3, 2}}));
+  EXPECT_EQ(mesh.vertices, (Vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {1, 3, 2}}));
 }
 
 TEST(Stl, BinaryIsReadAndWelded) {
@@ -188,8 +188,8 @@ TEST(Obj, ReadsPolygonsNegativeIndicesAndTheirOtherForms) {
                                       "v 1 1 0 0.5 0.5 0.5\nv 0 1 0\nv -0 0 0\nvt 0 0\nvn nan 0 1\n"
                                       "f 1/1/1 2//1 3/1 4\ns off\nf -1 -3 \\\n  -2\n"),
                              "part");
-  EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
-  EXPECT_EQ(mesh.triangles, (std::vector<Vec3i>{{0, 1, 2}, {0, 2, 3}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.vertices, (Vertices{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 2, 3}}));
 }
 
 TEST(Obj, BadFilesNameTheLine) {
@@ -229,8 +229,8 @@ const std::string kPlyBody = "0 0 0 nan\n1 0 0 0\n1 1 0 0\n0 1 0 0\n255 4 0 1 2 
 
 TEST(Ply, ReadsAscii) {
   const Mesh mesh = from_ply(bytes_of(kPlyHeader + kPlyBody), "part");
-  EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
-  EXPECT_EQ(mesh.triangles, (std::vector<Vec3i>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.vertices, (Vertices{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}}));
 }
 
 /// A binary PLY by the book, in either byte order.
@@ -252,8 +252,8 @@ Bytes raw_ply(bool big, int last_index = 2) {
 TEST(Ply, ReadsBinaryOfBothByteOrders) {
   for (const bool big : {false, true}) {
     const Mesh mesh = from_ply(raw_ply(big), "part");
-    EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0.5}, {0.1, -2, 0.5}, {0.2, -8, 0.5}}));
-    EXPECT_EQ(mesh.triangles, (std::vector<Vec3i>{{0, 1, 2}}));
+    EXPECT_EQ(mesh.vertices, (Vertices{{0, 0, 0.5}, {0.1, -2, 0.5}, {0.2, -8, 0.5}}));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
   }
 }
 

@@ -29,7 +29,7 @@ inline Mesh subdivided(Mesh mesh, int times) {
       if (is_new) mesh.vertices.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
       return at->second;
     };
-    std::vector<Vec3i> triangles;
+    Triangles triangles;
     for (const Vec3i& t : mesh.triangles) {
       const int a = middle(t.x, t.y), b = middle(t.y, t.z), c = middle(t.z, t.x);
       triangles.insert(triangles.end(), {Vec3i(t.x, a, c), Vec3i(t.y, b, a), Vec3i(t.z, c, b), Vec3i(a, b, c)});
