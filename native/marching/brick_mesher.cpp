@@ -55,13 +55,13 @@ class BrickMesher {
   void find_hits() {
     hits_.clear();
     for (int i = -1; i <= kBrickSide; ++i)
-      for (int j = -1; j <= kBrickSide; ++j)
+      for (int j = -1; j <= kBrickSide; ++j) {
+        const std::uint64_t inside = signs_->column(i, j);
         for (int axis = 0; axis < 3; ++axis) {
           const bool within = axis == 2 || (axis == 0 ? i : j) < kBrickSide;
           const std::uint64_t crossed = within ? signs_->crossed(axis, i, j) & (axis == 2 ? kLower : kPoints) : 0;
           crossed_[axis][column(i, j)] = crossed;
           start_[axis][column(i, j)] = static_cast<std::uint32_t>(hits_.size());
-          const std::uint64_t inside = signs_->column(i, j);
           for (std::uint64_t rest = crossed; rest; rest &= rest - 1) {
             const int b = std::countr_zero(rest);
             const LatticeEdge edge{axis, origin_.x + i, origin_.y + j, origin_.z + b - Neighbourhood::kLayers,
@@ -69,6 +69,7 @@ class BrickMesher {
             hits_.push_back(finder_(edge));
           }
         }
+      }
     corners_.resize(hits_.size());
   }
 
@@ -121,25 +122,37 @@ class BrickMesher {
 
   void place_cycle(const Vec3i& cell, const CellCase& entry, int c, const std::uint32_t* edge, std::int32_t number,
                    bool own) {
-    Cycle cycle{cell, entry, c, {}};
-    std::uint8_t sides = 0;
     const auto local = static_cast<std::uint32_t>(places_.size());
-    for (int n = entry.begin[c], m = 0; n < entry.begin[c + 1]; ++n, ++m) {
+    std::uint8_t sides = 0;
+    CycleSums sums;
+    for (int n = entry.begin[c]; n < entry.begin[c + 1]; ++n) {
       const CellEdge& shape = kEdges[entry.edge[n]];
       const std::uint32_t e = edge[entry.edge[n]];
       const bool rising = !(entry.code >> shape.low & 1);
       corners_[e][rising ? (4 - shape.slot) & 3 : shape.slot] = local;
-      cycle.hits[m] = &hits_[e];
       sides = static_cast<std::uint8_t>(sides | 1 << (2 * shape.axis + rising));
+      sums.add(entry.edge[n], hits_[e]);
     }
-    const Placed placed = place_vertex(surface_.grid, cycle, siblings_);
+    Placed placed;
+    if (Vec3 x; entry.cycles == 1 &&
+                sums.smooth(entry, c, [&](int n) -> const Hit& { return hits_[edge[entry.edge[n]]]; }, x)) [[likely]]
+      placed.place = surface_.grid.inside(cell, x);
+    else
+      placed = place_uneven(cell, entry, c, edge);
     places_.push_back(placed.place), numbers_.push_back(number);
     sides_.push_back(placed.marks ? static_cast<std::uint8_t>(sides | kUneven) : sides);
-    if (entry.cycles > 1) siblings_.push_back(placed.place);
     if (!own) return;
     surface_.mesh.vertices[number] = placed.place;
     surface_.marks[number] = placed.marks;
     if (placed.marks & kSpecial) brick_->specials.push_back({number, cell, placed.anchor, placed.other});
+  }
+
+  Placed place_uneven(const Vec3i& cell, const CellCase& entry, int c, const std::uint32_t* edge) {
+    Cycle cycle{cell, entry, c, {}};
+    for (int n = entry.begin[c], m = 0; n < entry.begin[c + 1]; ++n, ++m) cycle.hits[m] = &hits_[edge[entry.edge[n]]];
+    const Placed placed = place_vertex(surface_.grid, cycle, siblings_);
+    if (entry.cycles > 1) siblings_.push_back(placed.place);
+    return placed;
   }
 
   void split_quads() {

@@ -11,7 +11,7 @@ double component(const Vec3& v, int axis) {
   return (&v.x)[axis];
 }
 
-/// The quad seen along its edge, from outside: two coordinates across, the height along.
+/// The quad seen along its edge, from outside: two coordinates across, the height along, from corner 0.
 struct Projection {
   Vec2 p[4];
   double height[4];
@@ -19,16 +19,17 @@ struct Projection {
 
   explicit Projection(const Quad& q) {
     const int b = (q.axis + 1) % 3, c = (q.axis + 2) % 3;
-    for (int n = 0; n < 4; ++n) {
+    const Vec3& origin = q.corner[0];
+    p[0] = Vec2(0.0), height[0] = 0;
+    for (int n = 1; n < 4; ++n) {
+      const Vec3& corner = q.corner[n];
       // Seen from the other side left and right change places.
-      p[n] = {q.side * (component(q.corner[n], b) - component(q.corner[0], b)),
-              component(q.corner[n], c) - component(q.corner[0], c)};
-      height[n] = component(q.corner[n], q.axis) - component(q.corner[0], q.axis);
+      p[n] = {q.side * (component(corner, b) - component(origin, b)), component(corner, c) - component(origin, c)};
+      height[n] = component(corner, q.axis) - component(origin, q.axis);
     }
-    area012 = twice_area(0, 1, 2), area023 = twice_area(0, 2, 3);
-    area123 = twice_area(1, 2, 3), area130 = twice_area(1, 3, 0);
+    area012 = cross(p[1], p[2]), area023 = cross(p[2], p[3]);
+    area123 = cross(p[2] - p[1], p[3] - p[1]), area130 = area012 + area023 - area123;
   }
-  double twice_area(int r, int s, int t) const { return cross(p[s] - p[r], p[t] - p[r]); }
   static double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
   /// Height over `o` of the triangle (r, s, t), whose doubled area is given.

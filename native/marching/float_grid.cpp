@@ -7,12 +7,6 @@ namespace riffler::marching {
 
 namespace {
 
-/// Nearest integer for |x| < 2^51, without a library call: the sum's unit is 1.
-double round_to_integer(double x) {
-  constexpr double shift = 0x1.8p52;
-  return (x + shift) - shift;
-}
-
 /// Nearest number ≡ rest modulo `modulus`.
 double round_to_class(double x, int rest, int modulus) {
   return modulus * round_to_integer((x - rest) / modulus) + rest;
@@ -32,13 +26,6 @@ FloatGrid::FloatGrid(const Lattice& lattice)
       if (a == 0) r.low = 2 * std::ceil(r.low / 2), r.high = 2 * std::floor(r.high / 2);
     }
   }
-}
-
-Vec3 FloatGrid::inside(const Vec3i& cell, const Vec3& p) const {
-  const Range &x = range_[0][cell.x], &y = range_[1][cell.y], &z = range_[2][cell.z];
-  const Vec3 q{2 * round_to_integer((x.base + p.x * steps_per_cell_) / 2),
-               round_to_integer(y.base + p.y * steps_per_cell_), round_to_integer(z.base + p.z * steps_per_cell_)};
-  return Vec3{std::clamp(q.x, x.low, x.high), std::clamp(q.y, y.low, y.high), std::clamp(q.z, z.low, z.high)} * step_;
 }
 
 Vec3 FloatGrid::outside(const Vec3i& cell, const Vec3& p, int opened) const {

@@ -4,6 +4,7 @@
 // that say which cell it came from. Vertices of different cells therefore differ, as do the floats written to a file.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -11,12 +12,23 @@
 
 namespace riffler::marching {
 
+/// Nearest integer for |x| < 2^51, without a library call: the sum's unit is 1.
+inline double round_to_integer(double x) {
+  constexpr double shift = 0x1.8p52;
+  return (x + shift) - shift;
+}
+
 class FloatGrid {
  public:
   explicit FloatGrid(const Lattice& lattice);
 
   /// Nearest place strictly inside cell `cell` to the point `p` (cell units: the cell is [0, 1]³).
-  Vec3 inside(const Vec3i& cell, const Vec3& p) const;
+  Vec3 inside(const Vec3i& cell, const Vec3& p) const {
+    const Range &x = range_[0][cell.x], &y = range_[1][cell.y], &z = range_[2][cell.z];
+    const Vec3 q{2 * round_to_integer((x.base + p.x * steps_per_cell_) / 2),
+                 round_to_integer(y.base + p.y * steps_per_cell_), round_to_integer(z.base + p.z * steps_per_cell_)};
+    return Vec3{std::clamp(q.x, x.low, x.high), std::clamp(q.y, y.low, y.high), std::clamp(q.z, z.low, z.high)} * step_;
+  }
   /// Nearest place for a vertex outside its cell: at least four steps off each wall whose bit in `opened` (2 axis +
   /// side) is not set, no limit at the others.
   Vec3 outside(const Vec3i& cell, const Vec3& p, int opened) const;

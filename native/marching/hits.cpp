@@ -19,13 +19,11 @@ double place_of(const Span& s, bool far) {
 int nearest_end(std::span<const Span> spans, double low, double high, double reach, bool far) {
   const int n = static_cast<int>(spans.size());
   int above = 0;  // first end ≥ low (far), or > high (near)
-  const double bound = far ? low : std::nextafter(high, std::numeric_limits<double>::infinity());
+  const auto before = [&](const Span& s) { return far ? s.far < low : s.near <= high; };
   if (n > 8)
-    above = static_cast<int>(
-        std::partition_point(spans.begin(), spans.end(), [&](const Span& s) { return place_of(s, far) < bound; }) -
-        spans.begin());
+    above = static_cast<int>(std::partition_point(spans.begin(), spans.end(), before) - spans.begin());
   else
-    while (above < n && place_of(spans[above], far) < bound) ++above;
+    while (above < n && before(spans[above])) ++above;
   const int below = above - 1;
   if (far && above < n && spans[above].far <= high) return above;
   if (!far && below >= 0 && spans[below].near >= low) return below;

@@ -9,14 +9,14 @@
 namespace riffler::marching {
 
 /// Topology never depends on hits: signs alone say which edges are crossed.
-struct Hit {
+struct alignas(16) Hit {
   /// Place along the edge in pitches, up to half a pitch outside [0, 1] where the ray's own end lies there. A weak hit
   /// is one that its ray does not really have: no end near, or an end whose normal looks the wrong way; it has the axis
   /// as its normal and is stored kWeak lower.
   float place;
   std::array<float, 3> normal;  // unit, out of the material, in the lattice's axes
 
-  static constexpr float kWeak = 16;
+  static constexpr float kWeak = 32;
   bool weak() const { return place < -kWeak / 2; }
   double t() const { return weak() ? place + kWeak : place; }
 };

@@ -36,6 +36,20 @@ struct RayRange {
   RayRange(int base, int rays) : first(std::max(base - 1, 0)), last(std::min(base + kBrickSide - 2, rays - 1)) {}
 };
 
+/// visit(u, v, spans) for the rays u × v of a grid, tile by tile.
+template <class Visit>
+void for_rays(const Grid& grid, const RayRange& us, const RayRange& vs, Visit&& visit) {
+  for (int a = us.first / kTileSide; a <= us.last / kTileSide; ++a)
+    for (int b = vs.first / kTileSide; b <= vs.last / kTileSide; ++b) {
+      const Tile& tile = grid.tile(grid.tile_index(a, b));
+      if (tile.spans.empty()) continue;
+      const int u0 = std::max(us.first, a * kTileSide), u1 = std::min(us.last, a * kTileSide + kTileSide - 1);
+      const int v0 = std::max(vs.first, b * kTileSide), v1 = std::min(vs.last, b * kTileSide + kTileSide - 1);
+      for (int u = u0; u <= u1; ++u)
+        for (int v = v0; v <= v1; ++v) visit(u, v, tile.ray(Grid::ray_index(u, v)));
+    }
+}
+
 }  // namespace
 
 SignReader::SignReader(const Volume& volume, const Lattice& lattice)
@@ -91,16 +105,17 @@ void SignReader::read(Bricks& bricks, int a, int b, int c0, int c1) const {
 void SignReader::read_reference(int a, int b, int c0, int c1, Rows& rows) const {
   for (SignRows& r : rows) r.fill(0);
   const RayRange is(a * kBrickSide, lattice_.rays(0)), js(b * kBrickSide, lattice_.rays(1));
-  for (int i = is.first; i <= is.last; ++i)
-    for (int j = js.first; j <= js.last; ++j) {
-      const int row = ((i + 1) & 31) * kBrickSide + ((j + 1) & 31);
-      for (const Span& s : reference_.ray(i, j)) {
-        const PointRange range = y_ ? points_z_(s) : points_z_.or_nearest(s);
-        const int from = std::max(range.first >> 5, c0), to = std::min(range.last >> 5, c1);
-        for (int c = from; c <= to && range.first <= range.last; ++c)
-          rows[static_cast<std::size_t>(c - c0)][row] |= bits_of(range, c * kBrickSide);
-      }
+  for_rays(reference_, is, js, [&](int i, int j, std::span<const Span> spans) {
+    const int row = ((i + 1) & 31) * kBrickSide + ((j + 1) & 31);
+    for (const Span& s : spans) {
+      const PointRange range = y_ ? points_z_(s) : points_z_.or_nearest(s);
+      if (range.first > range.last) continue;
+      const int low = range.first >> 5, high = range.last >> 5;
+      for (int c = std::max(low, c0); c <= std::min(high, c1); ++c)
+        rows[static_cast<std::size_t>(c - c0)][row] |=
+            low < c && c < high ? ~std::uint32_t{0} : bits_of(range, c * kBrickSide);
     }
+  });
 }
 
 /// Whether the y rays say of all points of a brick what the z rays say: seen from their tiles alone.
@@ -121,12 +136,11 @@ void SignReader::read_y(const Vec3i& brick, SignRows& rows) const {
   rows.fill(0);
   const RayRange is(brick.x * kBrickSide, lattice_.rays(0)), ks(brick.z * kBrickSide, lattice_.rays(2));
   const int base = brick.y * kBrickSide;
-  for (int k = ks.first; k <= ks.last; ++k)
-    for (int i = is.first; i <= is.last; ++i) {
-      std::uint32_t bits = 0;
-      for (const Span& s : y_->ray(k, i)) bits |= bits_of(points_y_(s), base);
-      rows[((i + 1) & 31) * kBrickSide + ((k + 1) & 31)] = bits;
-    }
+  for_rays(*y_, ks, is, [&](int k, int i, std::span<const Span> spans) {
+    std::uint32_t bits = 0;
+    for (const Span& s : spans) bits |= bits_of(points_y_(s), base);
+    rows[((i + 1) & 31) * kBrickSide + ((k + 1) & 31)] = bits;
+  });
   for (int i = 0; i < kBrickSide; ++i) transpose(rows.data() + i * kBrickSide);
 }
 

@@ -1,6 +1,7 @@
 // Inside or outside for every point of the lattice, read from the rays.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -32,23 +33,18 @@ class PointsOfSpan {
     const PointRange range = (*this)(s);
     if (range.first <= range.last) return range;
     const int nearest = above(((s.near - zero_) + (s.far - zero_)) * per_pitch_ / 2 - 0.5);
-    const int kept = nearest > last_ ? last_ : nearest;
+    const int kept = std::min(nearest, last_);
     return {kept, kept};
   }
 
  private:
   static constexpr double kMargin = 1e-3;
   /// The least point > x and the greatest point < x, within the lattice; a span may stick out of the box anywhere.
-  int above(double x) const {
-    if (!(x >= 1)) return 1;
-    if (x >= last_ + 1) return last_ + 1;
-    return static_cast<int>(x) + 1;
-  }
+  int above(double x) const { return static_cast<int>(std::clamp(x, 0.0, last_ + 1.0)) + 1; }
   int below(double x) const {
-    if (!(x > 0)) return 0;
-    if (x > last_) return last_;
-    const int whole = static_cast<int>(x);
-    return whole < x ? whole : whole - 1;
+    const double clamped = std::clamp(x, 0.0, last_ + 1.0);
+    const int whole = static_cast<int>(clamped);
+    return whole - static_cast<int>(whole == clamped);
   }
 
   double zero_, per_pitch_;

@@ -10,8 +10,6 @@ namespace riffler::marching {
 
 namespace {
 
-constexpr double kFlat = 0.9999;      // |mean normal|² above which the mean of the hits is the vertex
-constexpr double kSmooth = 0.985;     // |mean normal|² above which the surface is taken for smooth
 constexpr double kBroken = 0.05;      // residual, cells, above which hits contradict each other: stay in the cell
 constexpr double kOnWall = 1e-6;      // cells; less than this outside is on the wall
 constexpr double kClearlyOut = 1e-3;  // cells; a bound violated by more …
@@ -59,34 +57,6 @@ Vec3 anchor_of(const Cycle& cycle) {
   return sum / static_cast<double>(end - begin);
 }
 
-/// Sums over the hits of a cycle, in cell units (floats do: what matters here are means of a few).
-struct Sums {
-  double count;
-  Vec3 point, normal;
-  double along;  // of normal · point
-  bool weak;
-
-  explicit Sums(const Cycle& cycle) {
-    const int begin = cycle.entry.begin[cycle.number], end = cycle.entry.begin[cycle.number + 1];
-    float place[3] = {}, n[3] = {}, dot = 0;
-    for (int e = begin; e < end; ++e) {
-      const CellEdge& edge = kEdges[cycle.entry.edge[e]];
-      const Hit& hit = *cycle.hits[e - begin];
-      place[edge.axis] += hit.place;
-      for (int a = 0; a < 3; ++a) n[a] += hit.normal[a], dot += hit.normal[a] * static_cast<float>(edge.from[a]);
-      dot += hit.normal[edge.axis] * hit.place;
-    }
-    const auto& from = cycle.entry.from[cycle.number];
-    count = end - begin;
-    point = Vec3(place[0] + static_cast<float>(from[0]), place[1] + static_cast<float>(from[1]),
-                 place[2] + static_cast<float>(from[2]));
-    normal = Vec3(n[0], n[1], n[2]);
-    along = dot;
-    // At most four edges an axis, places from −½ to 1½: only a weak one makes a sum so small.
-    weak = std::min({place[0], place[1], place[2]}) < -Hit::kWeak / 2;
-  }
-};
-
 Tangents gather(const Cycle& cycle, bool& weak) {
   Tangents hits;
   const int begin = cycle.entry.begin[cycle.number], end = cycle.entry.begin[cycle.number + 1];
@@ -108,7 +78,9 @@ Vec3 apart_from_siblings(const FloatGrid& grid, const Vec3i& cell, const Vec3& v
       cell, v, [&](const Vec3& place) { return std::find(siblings.begin(), siblings.end(), place) != siblings.end(); });
 }
 
-Placed fit(const FloatGrid& grid, const Cycle& cycle, const std::vector<Vec3>& siblings) {
+}  // namespace
+
+Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const std::vector<Vec3>& siblings) {
   bool weak = false;
   const Tangents hits = gather(cycle, weak);
   const Qef qef(hits);
@@ -131,20 +103,6 @@ Placed fit(const FloatGrid& grid, const Cycle& cycle, const std::vector<Vec3>& s
   }
   if (!alone) out.other = out.place = apart_from_siblings(grid, cycle.cell, out.place, siblings);
   return out;
-}
-
-}  // namespace
-
-Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const std::vector<Vec3>& siblings) {
-  const Sums sums(cycle);
-  const double agreement = glm::dot(sums.normal, sums.normal), most = sums.count * sums.count;
-  if (!sums.weak && cycle.entry.cycles == 1 && agreement > kSmooth * most) [[likely]] {
-    Vec3 x = sums.point / sums.count;
-    // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel.
-    if (agreement <= kFlat * most) x += sums.normal * (0.5 * (sums.along - glm::dot(sums.normal, x)) / agreement);
-    if (contains({Vec3(0.0), Vec3(1.0)}, x)) return {grid.inside(cycle.cell, x), 0, {}, {}};
-  }
-  return fit(grid, cycle, siblings);
 }
 
 }  // namespace riffler::marching

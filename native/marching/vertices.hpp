@@ -1,6 +1,7 @@
 // Where the vertex of a cycle goes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -23,10 +24,54 @@ struct Cycle {
 struct Placed {
   Vec3 place;
   std::uint8_t marks = 0;
-  Vec3 anchor{0}, other{0};  // of a special: Special::anchor, Special::other
+  Vec3 anchor, other;  // of a special: Special::anchor, Special::other
 };
 
-/// The vertex of a cycle. `siblings` are the places of the cell's vertices so far: no two share one.
+/// Sums over the hits of a cycle, in cell units. Floats do: what matters here are means of a few.
+class CycleSums {
+ public:
+  void add(int edge, const Hit& hit) {
+    place_[kEdges[edge].axis] += hit.place;
+    for (int a = 0; a < 3; ++a) normal_[a] += hit.normal[a];
+  }
+
+  /// True where the surface in the cell is flat or smooth and its vertex falls into the cell: at `x`. `hit(n)` is the
+  /// hit of the entry's n-th edge.
+  template <class HitAt>
+  bool smooth(const CellCase& entry, int c, HitAt&& hit, Vec3& x) const {
+    constexpr double flat = 0.9999, smooth = 0.985;  // |mean normal|²
+    const double count = entry.begin[c + 1] - entry.begin[c], most = count * count;
+    const Vec3 normal(normal_[0], normal_[1], normal_[2]);
+    const double agreement = glm::dot(normal, normal);
+    // At most four edges an axis, places from −½ to 1½: only a weak one makes a sum so small.
+    const bool weak = std::min({place_[0], place_[1], place_[2]}) < -Hit::kWeak / 2;
+    if (weak || !(agreement > smooth * most)) return false;
+    const auto& from = entry.from[c];
+    x = Vec3(place_[0] + static_cast<float>(from[0]), place_[1] + static_cast<float>(from[1]),
+             place_[2] + static_cast<float>(from[2])) *
+        (1 / count);
+    if (agreement <= flat * most) {
+      // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel.
+      float along = 0;
+      for (int n = entry.begin[c]; n < entry.begin[c + 1]; ++n) along += along_normal(entry.edge[n], hit(n));
+      x += normal * (0.5 * (along - glm::dot(normal, x)) / agreement);
+    }
+    return x.x >= 0 && x.x <= 1 && x.y >= 0 && x.y <= 1 && x.z >= 0 && x.z <= 1;
+  }
+
+ private:
+  static float along_normal(int edge, const Hit& hit) {
+    const CellEdge& shape = kEdges[edge];
+    float along = hit.normal[shape.axis] * hit.place;
+    for (int a = 0; a < 3; ++a) along += hit.normal[a] * static_cast<float>(shape.from[a]);
+    return along;
+  }
+
+  float place_[3] = {}, normal_[3] = {};
+};
+
+/// The vertex of a cycle that is not `smooth` and alone in its cell. `siblings` are the places of the cell's vertices
+/// so far: no two share one.
 Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const std::vector<Vec3>& siblings);
 
 }  // namespace riffler::marching
