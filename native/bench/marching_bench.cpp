@@ -6,9 +6,10 @@
 
 #include "bench/scenes.hpp"
 #include "geom/parallel.hpp"
-#include "marching/signs.hpp"
-#include "marching/surface.hpp"
+#include "marching/mesher.hpp"
 #include "marching/to_mesh.hpp"
+#include "sweep/carve.hpp"
+#include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
@@ -103,36 +104,23 @@ void whole(benchmark::State& state) {
       benchmark::Counter(static_cast<double>(triangles), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// One stage at a time, so that the profile is a measurement.
-void stage(benchmark::State& state) {
-  using namespace marching;
+/// A cut of one ball that a mesh follows.
+void follow(benchmark::State& state) {
   const Volume volume = carved_block(pitch_of(state), directions_of(state));
-  const int timed = static_cast<int>(state.range(2));
-  const char* const names[] = {"signs", "numbering", "bricks", "candidates", "folds"};
-  state.SetLabel(names[timed]);
-  for (auto _ : state) {
-    const auto only = [&](int n, const auto& work) {
-      if (n == timed) state.ResumeTiming();
-      work();
-      if (n == timed) state.PauseTiming();
-    };
-    state.PauseTiming();
-    const Lattice lattice(volume);
-    Bricks bricks(lattice);
-    only(0, [&] { read_signs(volume, lattice, bricks, {}); });
-    only(1, [&] { number_bricks(bricks, {}); });
-    Surface surface(volume, lattice, bricks);
-    only(2, [&] { mesh_bricks(surface, {}); });
-    only(3, [&] { choose_candidates(surface, {}); });
-    only(4, [&] { unfold(surface, {}); });
-    state.counters["vertices"] = static_cast<double>(surface.mesh.vertices.size());
-    state.ResumeTiming();
-  }
+  Volume cut = volume;
+  const Tool tool = cutters::ball(2 * kRadius, 30);
+  const Vec3 at = Vec3(50, 15, 30 - 1.5);
+  carve(cut, tool, std::array{Pose{at, {0, 0, 1}}, Pose{at + Vec3(0.5, 0, 0), {0, 0, 1}}});
+  Mesher mesher(volume);
+  bool there = false;
+  std::size_t patches = 0;
+  for (auto _ : state) patches = mesher.update((there = !there) ? cut : volume).size();
+  state.counters["patches"] = static_cast<double>(patches);
 }
 
 // Pitch in µm, directions.
 BENCHMARK(whole)->ArgsProduct({{500, 250, 100}, {3, 1}})->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(stage)->ArgsProduct({{100}, {3}, {0, 1, 2, 3, 4}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(follow)->ArgsProduct({{500, 250, 100}, {3, 1}})->Unit(benchmark::kMicrosecond)->UseRealTime();
 
 }  // namespace
 }  // namespace riffler

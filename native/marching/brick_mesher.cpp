@@ -28,6 +28,28 @@ bool may_fold(const Quad& quad, int diagonal, int sides) {
   return false;
 }
 
+/// The numbers of the vertices in a column of cells of a brick or of the layer below it, K ascending.
+class ColumnNumbers {
+ public:
+  ColumnNumbers(const Bricks& bricks, const Vec3i& at, int i, int j) : column_{i & 31, j & 31} {
+    const int a = at.x - (i < 0), b = at.y - (j < 0);
+    const ActiveBrick* const here = bricks.active(a, b, at.z);
+    below_ = bricks.active(a, b, at.z - 1);
+    if (here) next_ = static_cast<std::int32_t>(here->vertex(column_[0], column_[1]));
+  }
+  /// The first of the next cell.
+  std::int32_t take(int k, int cycles) {
+    if (k < 0) return static_cast<std::int32_t>(below_->vertex_after(column_[0], column_[1])) - cycles;
+    next_ += cycles;
+    return next_ - cycles;
+  }
+
+ private:
+  int column_[2];
+  const ActiveBrick* below_;
+  std::int32_t next_ = 0;
+};
+
 /// Vertices and quads of one brick. It sees the cells −1 … 31 along each axis: its own, and the layer below that its
 /// quads need too, whose vertices its neighbours place, by the same code from the same hits.
 class BrickMesher {
@@ -35,6 +57,7 @@ class BrickMesher {
   explicit BrickMesher(Surface& surface) : surface_(surface), finder_(surface.hits), table_(case_table()) {}
 
   void mesh(ActiveBrick& brick) {
+    brick.specials.clear(), brick.suspects.clear(), brick.pulled.clear();
     const Neighbourhood signs(surface_.bricks, brick.at);
     brick_ = &brick, signs_ = &signs;
     origin_ = brick.at * kBrickSide;
@@ -84,11 +107,7 @@ class BrickMesher {
     // Edges of a cell that start in its lower layer of points have a cursor each; those of the upper layer come next in
     // the same column.
     static constexpr int lower[8] = {0, 1, 4, 6, 8, 9, 10, 11};
-    const Vec3i& at = brick_->at;
-    const int a = at.x - (i < 0), b = at.y - (j < 0);
-    const ActiveBrick *const here = surface_.bricks.active(a, b, at.z), *const below =
-                                                                            surface_.bricks.active(a, b, at.z - 1);
-    auto next = static_cast<std::int32_t>(here ? here->vertex(i & 31, j & 31) : 0);
+    ColumnNumbers numbers(surface_.bricks, brick_->at, i, j);
     std::uint32_t cursor[8] = {start_[0][column(i, j)],     start_[0][column(i, j + 1)],    start_[1][column(i, j)],
                                start_[1][column(i + 1, j)], start_[2][column(i, j)],        start_[2][column(i + 1, j)],
                                start_[2][column(i, j + 1)], start_[2][column(i + 1, j + 1)]};
@@ -109,11 +128,7 @@ class BrickMesher {
                                       cursor[6],
                                       cursor[7]};
       const bool own = i >= 0 && j >= 0 && k >= 0;
-      std::int32_t number = next;
-      if (k < 0)
-        number = static_cast<std::int32_t>(below->vertex_after(i & 31, j & 31)) - entry.cycles;
-      else
-        next += entry.cycles;
+      const std::int32_t number = numbers.take(k, entry.cycles);
       siblings_.clear();
       for (int c = 0; c < entry.cycles; ++c) place_cycle(origin_ + Vec3i(i, j, k), entry, c, edge, number + c, own);
       for (int n = 0; n < 8; ++n) cursor[n] += static_cast<std::uint32_t>(crossed >> lower[n] & 1);
@@ -144,7 +159,10 @@ class BrickMesher {
     if (!own) return;
     surface_.mesh.vertices[number] = placed.place;
     surface_.marks[number] = placed.marks;
-    if (placed.marks & kSpecial) brick_->specials.push_back({number, cell, placed.anchor, placed.other});
+    if (placed.marks & kSpecial) {
+      const Vec3& safe = placed.place;
+      brick_->specials.push_back({{number, cell}, safe, placed.other, placed.anchor, safe, safe});
+    }
   }
 
   Placed place_uneven(const Vec3i& cell, const CellCase& entry, int c, const std::uint32_t* edge) {
@@ -209,24 +227,75 @@ class BrickMesher {
   std::vector<Vec3> siblings_;
 };
 
+/// Enters new numbers of vertices into the quads of a brick. Until all are entered they stand there negated: which
+/// diagonal a quad has is told by equal numbers, and a new number may be what an old one was.
+class Linker {
+ public:
+  Linker(Surface& surface, const Vec3i& brick) : surface_(surface), origin_(brick * kBrickSide) {}
+
+  /// The vertex of a cycle, into those of its quads that stand for the brick's own edges.
+  void link(const Vec3i& cell, const CellCase& entry, int c, std::int32_t number) {
+    for (int n = entry.begin[c]; n < entry.begin[c + 1]; ++n) {
+      const CellEdge& shape = kEdges[entry.edge[n]];
+      const Vec3i from = cell + Vec3i(shape.from[0], shape.from[1], shape.from[2]);
+      if (from.x < 0 || from.y < 0 || from.z < 0) continue;
+      if (from.x >= kBrickSide || from.y >= kBrickSide || from.z >= kBrickSide) continue;
+      const bool rising = !(entry.code >> shape.low & 1);
+      const Vec3i at = origin_ + from;
+      const std::uint32_t quad = surface_.bricks.quad_of({shape.axis, at.x, at.y, at.z, rising});
+      auto corners = surface_.corners(quad);
+      corners[rising ? (4 - shape.slot) & 3 : shape.slot] = ~number;
+      surface_.write(quad, corners, surface_.diagonal(quad));
+      linked_.push_back(quad);
+    }
+  }
+  void finish() {
+    for (const std::uint32_t quad : linked_) {
+      auto corners = surface_.corners(quad);
+      const int diagonal = surface_.diagonal(quad);
+      for (std::int32_t& c : corners) c = c < 0 ? ~c : c;
+      surface_.write(quad, corners, diagonal);
+    }
+  }
+
+ private:
+  Surface& surface_;
+  Vec3i origin_;
+  std::vector<std::uint32_t> linked_;
+};
+
 }  // namespace
 
-void mesh_bricks(Surface& surface, const Progress& progress) {
-  std::vector<std::size_t> active;
-  std::size_t quads = 0, vertices = 0;
-  for (std::size_t n = 0; n < surface.bricks.size(); ++n)
-    if (const ActiveBrick* const brick = surface.bricks.active(n)) {
-      active.push_back(n);
-      quads += brick->edges(), vertices += brick->vertices();
+void link_bricks(Surface& surface, const std::vector<std::size_t>& bricks) {
+  const CaseTable& table = case_table();
+  parallel_for(bricks.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Vec3i at = surface.bricks.place(bricks[n]);
+      const Neighbourhood signs(surface.bricks, at);
+      Linker linker(surface, at);
+      for (int i = -1; i < kBrickSide; ++i)
+        for (int j = -1; j < kBrickSide; ++j) {
+          const std::uint64_t layer = i < 0 || j < 0 ? Neighbourhood::kOwn | Neighbourhood::kOwn >> 1 : 2;
+          std::uint64_t mixed = signs.mixed(i, j) & layer;
+          ColumnNumbers numbers(surface.bricks, at, i, j);
+          for (; mixed; mixed &= mixed - 1) {
+            const int k = std::countr_zero(mixed) - Neighbourhood::kLayers;
+            const CellCase& entry = signs.entry(table, i, j, k);
+            const std::int32_t number = numbers.take(k, entry.cycles);
+            for (int c = 0; c < entry.cycles; ++c) linker.link({i, j, k}, entry, c, number + c);
+          }
+        }
+      linker.finish();
     }
-  surface.mesh.vertices.resize(vertices);
-  surface.mesh.triangles.resize(2 * quads);
-  surface.marks.resize(vertices);
+  });
+}
+
+void mesh_bricks(Surface& surface, const std::vector<std::size_t>& bricks, const Progress& progress) {
   parallel_for(
-      active.size(), 8,
+      bricks.size(), 8,
       [&](std::size_t begin, std::size_t end) {
         BrickMesher mesher(surface);
-        for (std::size_t n = begin; n < end; ++n) mesher.mesh(*surface.bricks.active(active[n]));
+        for (std::size_t n = begin; n < end; ++n) mesher.mesh(*surface.bricks.active(bricks[n]));
       },
       progress);
 }

@@ -32,12 +32,28 @@ struct QuadRef {
   LatticeEdge edge;
 };
 
-/// A vertex that did not simply fall into its cell: the few that later stages look at.
-struct Special {
+/// A vertex and the cell that it belongs to.
+struct CellVertex {
   std::int32_t vertex;
   Vec3i cell;
-  Vec3 anchor;  // where it is pulled to when triangles fold, cell units
-  Vec3 other;   // until candidates are chosen, the candidate (the safe place if there is none); then the safe place
+  bool operator==(const CellVertex& o) const { return vertex == o.vertex; }
+  bool operator<(const CellVertex& o) const { return vertex < o.vertex; }
+};
+
+/// A vertex that did not simply fall into its cell: the few that later stages look at.
+struct Special {
+  CellVertex at;
+  Vec3 safe;       // whatever the neighbours do, the quads round it have a diagonal here
+  Vec3 candidate;  // a better place, or `safe`
+  Vec3 anchor;     // where it is pulled to when triangles fold, cell units
+  Vec3 chosen;     // between the two
+  Vec3 fallback;   // while triangles are unfolded: `safe`, pulled
+};
+
+/// A vertex that was moved to unfold triangles, and where it was before.
+struct Pulled {
+  CellVertex at;
+  Vec3 before;
 };
 
 /// What a brick that the surface runs through has besides signs. Its edges (one quad stands for each) are those that
@@ -52,6 +68,7 @@ struct ActiveBrick {
   std::array<std::uint16_t, kBrickColumns> column_vertex{};
   std::vector<Special> specials;  // by vertex, ascending
   std::vector<QuadRef> suspects;  // quads that may fold onto a neighbour
+  std::vector<Pulled> pulled;
 
   std::size_t edges() const { return plane_edge[kBrickSide]; }
   std::size_t vertices() const { return plane_vertex[kBrickSide]; }
@@ -72,6 +89,10 @@ class Bricks {
   std::size_t size() const { return bricks_.size(); }
   std::size_t index(int a, int b, int c) const { return (static_cast<std::size_t>(a) * count_[1] + b) * count_[2] + c; }
   Vec3i place(std::size_t n) const;
+  /// The brick that owns a cell or a lattice point.
+  std::size_t index_of(const Vec3i& cell) const {
+    return index(cell.x / kBrickSide, cell.y / kBrickSide, cell.z / kBrickSide);
+  }
   bool has(int a, int b, int c) const {
     return a >= 0 && b >= 0 && c >= 0 && a < count_[0] && b < count_[1] && c < count_[2];
   }
@@ -91,9 +112,7 @@ class Bricks {
   const ActiveBrick* active(std::size_t n) const { return bricks_[n].active.get(); }
   void set_active(std::size_t n, std::unique_ptr<ActiveBrick> brick) { bricks_[n].active = std::move(brick); }
   /// The active brick that owns a cell with both signs, or an edge that starts at such a point.
-  ActiveBrick& owner(const Vec3i& cell) {
-    return *bricks_[index(cell.x / kBrickSide, cell.y / kBrickSide, cell.z / kBrickSide)].active;
-  }
+  ActiveBrick& owner(const Vec3i& cell) { return *bricks_[index_of(cell)].active; }
   const ActiveBrick& owner(const Vec3i& cell) const { return const_cast<Bricks&>(*this).owner(cell); }
 
   /// Sign of a lattice point; of one beyond the lattice too.

@@ -26,7 +26,7 @@ class Surroundings {
     return true;
   }
 
-  std::vector<QuadRef>& quads() { return quads_; }
+  const std::vector<QuadRef>& quads() const { return quads_; }
 
  private:
   using Use = std::array<std::int64_t, 2>;  // vertex, index into quads_
@@ -37,45 +37,58 @@ class Surroundings {
 /// Moves a vertex from its safe place as far towards its candidate as its quads let it.
 void advance(Surface& surface, const Surroundings& around, Special& special) {
   const FloatGrid& grid = surface.grid;
-  Vec3& place = surface.mesh.vertices[special.vertex];
-  const Vec3 safe = place, from = grid.to_cell(special.cell, safe), to = grid.to_cell(special.cell, special.other);
+  const Vec3i& cell = special.at.cell;
+  Vec3& place = surface.mesh.vertices[special.at.vertex];
+  const Vec3 from = grid.to_cell(cell, special.safe), to = grid.to_cell(cell, special.candidate);
   for (double share = 1; share > 0; share -= 0.125) {
-    place = share == 1 ? special.other : grid.near(special.cell, from + share * (to - from));
-    if (around.valid(surface, special.vertex)) break;
-    place = safe;
+    place = share == 1 ? special.candidate : grid.near(cell, from + share * (to - from));
+    if (around.valid(surface, special.at.vertex)) break;
+    place = special.safe;
   }
-  special.other = safe;
+  special.chosen = place;
+}
+
+using Groups = std::array<std::vector<Special*>, 8>;
+
+void add_to(Groups& groups, const std::vector<Special*>& specials) {
+  for (Special* s : specials) {
+    const Vec3i& cell = s->at.cell;
+    groups[(cell.x & 1) | (cell.y & 1) << 1 | (cell.z & 1) << 2].push_back(s);
+  }
 }
 
 }  // namespace
 
-void choose_candidates(Surface& surface, const Progress& progress) {
+std::vector<Special*> undecided(Surface& surface, const std::vector<std::size_t>& bricks) {
+  std::vector<Special*> found;
+  for (const std::size_t n : bricks)
+    for (Special& s : surface.bricks.active(n)->specials)
+      if (surface.marks[s.at.vertex] & kCandidate) found.push_back(&s);
+  return found;
+}
+
+void choose_candidates(Surface& surface, const std::vector<Special*>& open, const std::vector<Special*>& known,
+                       const Progress& progress) {
   // Cells whose indices have equal parities share no quad: eight groups, one after the other, whose members do not see
   // each other. The result depends neither on an order within a group nor on threads, and on near cells only.
-  std::array<std::vector<Special*>, 8> groups;
+  if (open.empty()) return;
+  Groups open_groups, known_groups;
+  add_to(open_groups, open), add_to(known_groups, known);
   std::vector<Vec3i> cells;
-  for (std::size_t n = 0; n < surface.bricks.size(); ++n)
-    if (ActiveBrick* const brick = surface.bricks.active(n))
-      for (Special& s : brick->specials) {
-        if (!(surface.marks[s.vertex] & kCandidate)) continue;
-        groups[(s.cell.x & 1) | (s.cell.y & 1) << 1 | (s.cell.z & 1) << 2].push_back(&s);
-        cells.push_back(s.cell);
-      }
-  if (cells.empty()) return;
-  Surroundings around(surface, cells);
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    report(progress, static_cast<double>(g) / groups.size());
-    parallel_for(groups[g].size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) advance(surface, around, *groups[g][n]);
+  for (const Special* s : open) cells.push_back(s->at.cell);
+  const Surroundings around(surface, cells);
+  for (const Special* s : known) surface.mesh.vertices[s->at.vertex] = s->safe;
+  for (std::size_t g = 0; g < open_groups.size(); ++g) {
+    report(progress, static_cast<double>(g) / open_groups.size());
+    parallel_for(open_groups[g].size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) advance(surface, around, *open_groups[g][n]);
     });
+    for (const Special* s : known_groups[g]) surface.mesh.vertices[s->at.vertex] = s->chosen;
   }
-  for (const auto& group : groups)
-    for (const Special* s : group) surface.marks[s->vertex] = kSpecial;
   parallel_for(around.quads().size(), 1024, [&](std::size_t begin, std::size_t end) {
     HitFinder finder = surface.hits;
     for (std::size_t n = begin; n < end; ++n) surface.split(around.quads()[n], finder);
   });
-  surface.moved = std::move(around.quads());
 }
 
 }  // namespace riffler::marching

@@ -33,9 +33,14 @@ int side_between(const std::array<std::int32_t, 4>& c, std::int32_t a, std::int3
   return -1;
 }
 
-/// The triangle beyond the side from corner s to the next: its quad stands for another edge of the face that the two
+struct SideRef {
+  QuadRef quad;
+  int side;
+};
+
+/// What lies beyond the side from corner s to the next: its quad stands for another edge of the face that the two
 /// corners' cells share.
-std::uint32_t across(const Surface& surface, const QuadRef& ref, int s) {
+SideRef across(const Surface& surface, const QuadRef& ref, int s) {
   const CellVertex a = corner(surface, ref, s), b = corner(surface, ref, (s + 1) & 3);
   const Vec3i origin = glm::max(a.cell, b.cell);
   const int along = a.cell.x != b.cell.x ? 0 : a.cell.y != b.cell.y ? 1 : 2;
@@ -48,34 +53,72 @@ std::uint32_t across(const Surface& surface, const QuadRef& ref, int s) {
       ++to[axis];
       const bool inside = surface.bricks.at(from.x, from.y, from.z);
       if (inside == surface.bricks.at(to.x, to.y, to.z)) continue;
-      const std::uint32_t quad = surface.bricks.quad_of({axis, from.x, from.y, from.z, !inside});
+      const LatticeEdge edge{axis, from.x, from.y, from.z, !inside};
+      const std::uint32_t quad = surface.bricks.quad_of(edge);
       if (quad == ref.quad) continue;
       const int there = side_between(surface.corners(quad), a.vertex, b.vertex);
-      if (there >= 0) return surface.triangle_at(quad, there);
+      if (there >= 0) return {{quad, edge}, there};
     }
   throw std::logic_error("a quad of the mesh without a neighbour");
 }
 
-/// Ends of the edges at which a triangle of these quads folds onto its neighbour; ascending.
-std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vector<QuadRef>& quads) {
-  constexpr std::size_t chunk = 1024;
-  std::vector<std::vector<CellVertex>> parts((quads.size() + chunk - 1) / chunk);
-  parallel_for(quads.size(), chunk, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellVertex>& ends = parts[begin / chunk];
-    for (std::size_t q = begin; q < end; ++q) {
-      const QuadRef& ref = quads[q];
-      if (folded(surface.mesh, 2 * std::size_t{ref.quad}, 2 * std::size_t{ref.quad} + 1))
-        for (int n = 0; n < 4; ++n) ends.push_back(corner(surface, ref, n));
-      for (int s = 0; s < 4; ++s)
-        if (folded(surface.mesh, surface.triangle_at(ref.quad, s), across(surface, ref, s)))
-          ends.push_back(corner(surface, ref, s)), ends.push_back(corner(surface, ref, (s + 1) & 3));
-    }
-  });
+/// Vertices that fold, and bricks that were looked at.
+struct Folds {
   std::vector<CellVertex> ends;
-  for (const auto& part : parts) ends.insert(ends.end(), part.begin(), part.end());
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
+  std::vector<std::size_t> seen;
+
+  void tidy() {
+    const auto each_once = [](auto& list) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    };
+    each_once(ends), each_once(seen);
+  }
+};
+
+void look_at(const Surface& surface, const QuadRef& ref, bool note, Folds& out) {
+  const auto see = [&](const QuadRef& quad) {
+    for (int n = 0; note && n < 4; ++n) out.seen.push_back(surface.bricks.index_of(corner_cell(quad.edge, n)));
+  };
+  see(ref);
+  if (folded(surface.mesh, 2 * std::size_t{ref.quad}, 2 * std::size_t{ref.quad} + 1))
+    for (int n = 0; n < 4; ++n) out.ends.push_back(corner(surface, ref, n));
+  for (int s = 0; s < 4; ++s) {
+    const SideRef beyond = across(surface, ref, s);
+    see(beyond.quad);
+    if (folded(surface.mesh, surface.triangle_at(ref.quad, s), surface.triangle_at(beyond.quad.quad, beyond.side)))
+      out.ends.push_back(corner(surface, ref, s)), out.ends.push_back(corner(surface, ref, (s + 1) & 3));
+  }
+}
+
+/// Ends of the edges at which a triangle of these quads folds onto its neighbour; ascending.
+std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vector<QuadRef>& quads, Region& region) {
+  constexpr std::size_t chunk = 1024;
+  const bool note = !region.bricks.empty();
+  std::vector<Folds> parts((quads.size() + chunk - 1) / chunk);
+  parallel_for(quads.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t q = begin; q < end; ++q) look_at(surface, quads[q], note, parts[begin / chunk]);
+    parts[begin / chunk].tidy();
+  });
+  Folds all;
+  for (const Folds& part : parts) {
+    all.ends.insert(all.ends.end(), part.ends.begin(), part.ends.end());
+    all.seen.insert(all.seen.end(), part.seen.begin(), part.seen.end());
+  }
+  all.tidy();
+  for (const std::size_t brick : all.seen)
+    if (!region.has(brick) && !surface.bricks.active(brick)->pulled.empty()) region.missing.push_back(brick);
+  return std::move(all.ends);
+}
+
+/// Moves a vertex, and remembers where it was first.
+void move(Surface& surface, const CellVertex& v, const Vec3& place, Region& region) {
+  const std::size_t brick = surface.bricks.index_of(v.cell);
+  if (!region.has(brick)) region.missing.push_back(brick);
+  Vec3& now = surface.mesh.vertices[v.vertex];
+  if (!(surface.marks[v.vertex] & kPulled)) surface.bricks.active(brick)->pulled.push_back({v, now});
+  surface.marks[v.vertex] |= kPulled;
+  now = place;
 }
 
 /// Siblings have neighbouring numbers, and only siblings can coincide.
@@ -87,25 +130,25 @@ bool coincides(const Mesh& mesh, std::int32_t vertex, const Vec3& place) {
 }
 
 /// Moves a vertex a share of the way to its anchor; one that stands at its candidate goes to its safe place first.
-void pull(Surface& surface, const CellVertex& v, double share) {
-  Vec3& place = surface.mesh.vertices[v.vertex];
+void pull(Surface& surface, const CellVertex& v, double share, Region& region) {
+  const Vec3 place = surface.mesh.vertices[v.vertex];
   const FloatGrid& grid = surface.grid;
   Special* const special = surface.marks[v.vertex] & kSpecial ? &surface.special(v) : nullptr;
-  if (special && place != special->other) {
-    place = special->other;
+  if (special && place != special->fallback) {
+    move(surface, v, special->fallback, region);
     return;
   }
   const Vec3 anchor = special ? special->anchor : Vec3(0.5);
   const Vec3 from = glm::clamp(grid.to_cell(v.cell, place), 0.0, 1.0);
   const Vec3 to = grid.free_place(v.cell, grid.inside(v.cell, from + share * (anchor - from)),
                                   [&](const Vec3& p) { return coincides(surface.mesh, v.vertex, p); });
-  place = to;
-  if (special) special->other = place;
+  move(surface, v, to, region);
+  if (special) special->fallback = to;
 }
 
 /// Splits the quads round moved vertices anew. Where a neighbour's candidate no longer leaves a diagonal, it goes back
 /// to its safe place too, and joins the moved ones; with safe places alone there always is a diagonal.
-void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<Vec3i>& cells) {
+void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<Vec3i>& cells, Region& region) {
   for (std::size_t done = 0; done < moved.size();) {
     for (; done < moved.size(); ++done) {
       surface.marks[moved[done].vertex] |= kMoved;
@@ -116,9 +159,9 @@ void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<V
       for (int n = 0; n < 4; ++n) {
         const CellVertex v = corner(surface, ref, n);
         if (!(surface.marks[v.vertex] & kSpecial)) continue;
-        const Vec3& safe = surface.special(v).other;
+        const Vec3& safe = surface.special(v).fallback;
         if (surface.mesh.vertices[v.vertex] == safe) continue;
-        surface.mesh.vertices[v.vertex] = safe;
+        move(surface, v, safe, region);
         moved.push_back(v);
       }
     }
@@ -127,22 +170,28 @@ void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<V
 
 }  // namespace
 
-void unfold(Surface& surface, const Progress& progress) {
-  std::vector<QuadRef> suspects = surface.moved;
-  for (std::size_t n = 0; n < surface.bricks.size(); ++n)
-    if (const ActiveBrick* const brick = surface.bricks.active(n))
-      suspects.insert(suspects.end(), brick->suspects.begin(), brick->suspects.end());
-  std::vector<CellVertex> moved = folded_vertices(surface, suspects);
+void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region, const Progress& progress) {
+  std::vector<CellVertex> moved = folded_vertices(surface, quads, region);
   double share = 0.04;
   for (int round = 0; round < kRounds && !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
     report(progress, static_cast<double>(round) / kRounds);
-    for (const CellVertex& v : moved) pull(surface, v, share);
+    for (const CellVertex& v : moved) pull(surface, v, share, region);
     std::vector<Vec3i> cells;
-    split_again(surface, moved, cells);
-    std::vector<CellVertex> next = folded_vertices(surface, quads_near(surface, cells, kMoved));
+    split_again(surface, moved, cells, region);
+    std::vector<CellVertex> next = folded_vertices(surface, quads_near(surface, cells, kMoved), region);
     for (const CellVertex& v : moved) surface.marks[v.vertex] &= static_cast<std::uint8_t>(~kMoved);
     moved = std::move(next);
   }
+}
+
+void undo_unfold(Surface& surface, std::size_t brick) {
+  ActiveBrick& active = *surface.bricks.active(brick);
+  for (const Pulled& p : active.pulled) {
+    surface.mesh.vertices[p.at.vertex] = p.before;
+    surface.marks[p.at.vertex] &= static_cast<std::uint8_t>(~kPulled);
+  }
+  active.pulled.clear();
+  for (Special& s : active.specials) s.fallback = s.safe;
 }
 
 }  // namespace riffler::marching

@@ -1,8 +1,5 @@
 #include <bit>
-#include <limits>
-#include <stdexcept>
 
-#include "geom/parallel.hpp"
 #include "marching/neighbourhood.hpp"
 #include "marching/surface.hpp"
 
@@ -19,8 +16,11 @@ bool uniform(const Bricks& bricks, const Vec3i& b) {
   return true;
 }
 
-/// Counts a brick's edges and vertices, column by column; null if there are none.
-std::unique_ptr<ActiveBrick> counted(const Bricks& bricks, const Vec3i& at) {
+}  // namespace
+
+std::unique_ptr<ActiveBrick> counted(const Bricks& bricks, std::size_t n) {
+  const Vec3i at = bricks.place(n);
+  if (uniform(bricks, at)) return nullptr;
   constexpr std::uint64_t own = Neighbourhood::kOwn;
   const CaseTable& table = case_table();
   const Neighbourhood signs(bricks, at);
@@ -45,28 +45,6 @@ std::unique_ptr<ActiveBrick> counted(const Bricks& bricks, const Vec3i& at) {
   brick->plane_edge[kBrickSide] = edges, brick->plane_vertex[kBrickSide] = vertices;
   if (edges == 0 && vertices == 0) return nullptr;
   return brick;
-}
-
-}  // namespace
-
-void number_bricks(Bricks& bricks, const Progress& progress) {
-  parallel_for(
-      bricks.size(), 8,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-          const Vec3i at = bricks.place(n);
-          if (!uniform(bricks, at)) bricks.set_active(n, counted(bricks, at));
-        }
-      },
-      progress);
-  std::size_t edges = 0, vertices = 0;
-  for (std::size_t n = 0; n < bricks.size(); ++n)
-    if (ActiveBrick* const brick = bricks.active(n)) {
-      brick->first_edge = edges, brick->first_vertex = vertices;
-      edges += brick->edges(), vertices += brick->vertices();
-    }
-  if (edges > std::numeric_limits<std::int32_t>::max() / 2 || vertices > std::numeric_limits<std::int32_t>::max())
-    throw std::invalid_argument("the mesh of this volume would have more than 2^31 triangles; take a coarser pitch");
 }
 
 }  // namespace riffler::marching

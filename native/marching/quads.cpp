@@ -32,8 +32,7 @@ bool Surface::split(const QuadRef& ref, HitFinder& finder) {
 
 Special& Surface::special(const CellVertex& v) {
   std::vector<Special>& all = bricks.owner(v.cell).specials;
-  return *std::lower_bound(all.begin(), all.end(), v.vertex,
-                           [](const Special& s, std::int32_t vertex) { return s.vertex < vertex; });
+  return *std::lower_bound(all.begin(), all.end(), v, [](const Special& s, const CellVertex& w) { return s.at < w; });
 }
 
 namespace {

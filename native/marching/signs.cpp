@@ -52,12 +52,11 @@ void for_rays(const Grid& grid, const RayRange& us, const RayRange& vs, Visit&& 
 
 }  // namespace
 
-SignReader::SignReader(const Volume& volume, const Lattice& lattice)
-    : lattice_(lattice),
-      reference_(volume.reference()),
-      points_x_(lattice, 0),
-      points_y_(lattice, 1),
-      points_z_(lattice, 2) {
+SignReader::SignReader(const Lattice& lattice)
+    : lattice_(lattice), points_x_(lattice, 0), points_y_(lattice, 1), points_z_(lattice, 2) {}
+
+void SignReader::follow(const Volume& volume) {
+  reference_ = &volume.reference();
   if (volume.grids().size() != 3) return;
   x_ = volume.grid(Axis::X), y_ = volume.grid(Axis::Y);
   extents_.resize(y_->tile_count());
@@ -65,7 +64,8 @@ SignReader::SignReader(const Volume& volume, const Lattice& lattice)
     for (std::size_t t = begin; t < end; ++t) {
       const Tile& tile = y_->tile(t);
       TileExtent& e = extents_[t];
-      e = {lattice_.points(1), -1, 0, lattice_.points(1)};
+      if (e.revision == tile.revision) continue;
+      e = {lattice_.points(1), -1, 0, lattice_.points(1), tile.revision};
       for (const Span& s : tile.spans) {
         const PointRange range = points_y_(s);
         if (range.first > range.last) {
@@ -105,7 +105,7 @@ void SignReader::read(Bricks& bricks, int a, int b, int c0, int c1) const {
 void SignReader::read_reference(int a, int b, int c0, int c1, Rows& rows) const {
   for (SignRows& r : rows) r.fill(0);
   const RayRange is(a * kBrickSide, lattice_.rays(0)), js(b * kBrickSide, lattice_.rays(1));
-  for_rays(reference_, is, js, [&](int i, int j, std::span<const Span> spans) {
+  for_rays(*reference_, is, js, [&](int i, int j, std::span<const Span> spans) {
     const int row = ((i + 1) & 31) * kBrickSide + ((j + 1) & 31);
     for (const Span& s : spans) {
       const PointRange range = y_ ? points_z_(s) : points_z_.or_nearest(s);
@@ -164,8 +164,7 @@ bool SignReader::along_x(int i, int j, int k) const {
   return false;
 }
 
-void read_signs(const Volume& volume, const Lattice& lattice, Bricks& bricks, const Progress& progress) {
-  const SignReader reader(volume, lattice);
+void read_signs(const SignReader& reader, Bricks& bricks, const Progress& progress) {
   parallel_for(
       static_cast<std::size_t>(bricks.count(0)) * bricks.count(1), 1,
       [&](std::size_t begin, std::size_t end) {

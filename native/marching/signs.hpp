@@ -54,7 +54,9 @@ class PointsOfSpan {
 /// The three rays through a point of a tri-dexel volume decide by majority.
 class SignReader {
  public:
-  SignReader(const Volume& volume, const Lattice& lattice);
+  explicit SignReader(const Lattice& lattice);
+  /// Reads from this volume from now on; it must outlive the reading.
+  void follow(const Volume& volume);
 
   /// Reads the signs of the bricks (a, b, c0 … c1).
   void read(Bricks& bricks, int a, int b, int c0, int c1) const;
@@ -64,6 +66,7 @@ class SignReader {
   struct TileExtent {
     int hull_first, hull_last;  // no ray holds a point outside of these
     int core_first, core_last;  // every ray holds all of these
+    std::uint64_t revision = ~std::uint64_t{0};
   };
   using Rows = std::vector<SignRows>;
 
@@ -74,12 +77,12 @@ class SignReader {
   bool along_x(int i, int j, int k) const;
 
   const Lattice& lattice_;
-  const Grid &reference_, *x_ = nullptr, *y_ = nullptr;
+  const Grid *reference_ = nullptr, *x_ = nullptr, *y_ = nullptr;
   PointsOfSpan points_x_, points_y_, points_z_;
   std::vector<TileExtent> extents_;  // of the tiles of y
 };
 
 /// Signs of all bricks.
-void read_signs(const Volume& volume, const Lattice& lattice, Bricks& bricks, const Progress& progress);
+void read_signs(const SignReader& reader, Bricks& bricks, const Progress& progress);
 
 }  // namespace riffler::marching

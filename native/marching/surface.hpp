@@ -17,15 +17,8 @@ enum VertexMark : std::uint8_t {
   kSpecial = 1,    // its brick has a Special for it
   kCandidate = 2,  // has a candidate that is not decided yet
   kSharp = 4,      // its hits' normals differ: triangles round it may fold
-  kMoved = 8,      // moved from where the bricks put it, or in the last round of `unfold`
-};
-
-/// A vertex and the cell that it belongs to.
-struct CellVertex {
-  std::int32_t vertex;
-  Vec3i cell;
-  bool operator==(const CellVertex& o) const { return vertex == o.vertex; }
-  bool operator<(const CellVertex& o) const { return vertex < o.vertex; }
+  kMoved = 8,      // moved in the last round of `unfold`
+  kPulled = 16,    // its brick has a Pulled for it
 };
 
 struct Surface {
@@ -37,21 +30,21 @@ struct Surface {
   /// corners are counter-clockwise round the edge seen from outside.
   Mesh mesh;
   std::vector<std::uint8_t> marks;  // of each vertex
-  std::vector<QuadRef> moved;       // quads round the vertices that could choose their place
 
   Surface(const Volume& volume, const Lattice& on, Bricks& of)
-      : lattice(on), bricks(of), hits(volume, on), grid(on), mesh{}, marks{}, moved{} {}
+      : lattice(on), bricks(of), hits(volume, on), grid(on), mesh{}, marks{} {}
 
   std::array<std::int32_t, 4> corners(std::size_t quad) const {
     const Vec3i &a = mesh.triangles[2 * quad], &b = mesh.triangles[2 * quad + 1];
-    if (a.x == b.x) return {a.x, a.y, a.z, b.z};
+    if (diagonal(quad) == 0) return {a.x, a.y, a.z, b.z};
     return {a.x, a.y, b.y, a.z};
   }
   /// Which of a quad's triangles has the side from corner s to the next.
   std::uint32_t triangle_at(std::size_t quad, int s) const {
-    const bool first = mesh.triangles[2 * quad].x == mesh.triangles[2 * quad + 1].x ? s < 2 : s % 3 == 0;
+    const bool first = diagonal(quad) == 0 ? s < 2 : s % 3 == 0;
     return static_cast<std::uint32_t>(2 * quad + (first ? 0 : 1));
   }
+  int diagonal(std::size_t quad) const { return mesh.triangles[2 * quad].x == mesh.triangles[2 * quad + 1].x ? 0 : 1; }
   void write(std::size_t quad, const std::array<std::int32_t, 4>& c, int diagonal) {
     Vec3i &a = mesh.triangles[2 * quad], &b = mesh.triangles[2 * quad + 1];
     if (diagonal == 1)
@@ -72,20 +65,38 @@ Vec3i corner_cell(const LatticeEdge& edge, int n);
 /// Quads of the edges of these cells with a corner that has the mark; ascending.
 std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark);
 
-/// Finds the bricks that the surface runs through and numbers their quads and vertices. Throws std::invalid_argument if
-/// there are more triangles than 32-bit indices can tell apart.
-void number_bricks(Bricks& bricks, const Progress& progress);
+/// What a brick has of edges and vertices; null where no cell of it has both signs.
+std::unique_ptr<ActiveBrick> counted(const Bricks& bricks, std::size_t n);
 
-/// Places every vertex and gives every quad a diagonal whose triangles both face outward: their projections along the
-/// edge are positive. Of two such it takes the one nearer the hit, else the shorter. Marks are 0, kSharp, kSpecial or
-/// both kSpecial and kCandidate.
-void mesh_bricks(Surface& surface, const Progress& progress);
+/// Meshes bricks by themselves: places each vertex and gives every quad a diagonal whose triangles both face outward
+/// (their projections along the edge are positive); of two such the one nearer the hit, else the shorter. Specials with
+/// a candidate stand at their safe place. Bricks must have their places in the mesh.
+void mesh_bricks(Surface& surface, const std::vector<std::size_t>& bricks, const Progress& progress);
 
-/// Moves vertices from their safe places to their candidates, or part of the way, as long as all quads keep a valid
-/// diagonal.
-void choose_candidates(Surface& surface, const Progress& progress);
+/// Enters the numbers of the vertices in the layer of cells below some bricks into their quads again: the bricks there
+/// have other places in the mesh now.
+void link_bricks(Surface& surface, const std::vector<std::size_t>& bricks);
 
-/// Pulls vertices towards the middle of their cells where two triangles fold onto each other.
-void unfold(Surface& surface, const Progress& progress);
+/// The specials of some bricks that have a candidate.
+std::vector<Special*> undecided(Surface& surface, const std::vector<std::size_t>& bricks);
+
+/// Moves specials from their safe places to their candidates, or part of the way, as long as all quads keep a valid
+/// diagonal, and splits the quads round them again. Those of `known` move to the place they chose before, in turn.
+void choose_candidates(Surface& surface, const std::vector<Special*>& open, const std::vector<Special*>& known,
+                       const Progress& progress);
+
+/// Bricks that `unfold` may change, by number; all if it is empty.
+struct Region {
+  std::vector<bool> bricks;
+  std::vector<std::size_t> missing;  // those that it would have had to look at as they were before unfolding
+
+  bool has(std::size_t brick) const { return bricks.empty() || bricks[brick]; }
+};
+
+/// Pulls vertices towards the middle of their cells where triangles fold onto each other. `quads` are those to be
+/// looked at first. Stops, with something to be done again, where `region.missing` is not empty.
+void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region, const Progress& progress);
+/// Puts a brick's vertices back to where they were before `unfold`.
+void undo_unfold(Surface& surface, std::size_t brick);
 
 }  // namespace riffler::marching

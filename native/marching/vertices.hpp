@@ -24,7 +24,7 @@ struct Cycle {
 struct Placed {
   Vec3 place;
   std::uint8_t marks = 0;
-  Vec3 anchor, other;  // of a special: Special::anchor, Special::other
+  Vec3 anchor, other;  // of a special: its anchor and candidate
 };
 
 /// Sums over the hits of a cycle, in cell units. Floats do: what matters here are means of a few.

@@ -160,4 +160,46 @@ class Dice {
   std::mt19937 engine_;
 };
 
+/// Spans that know nothing of each other: ends anywhere, often on lattice planes or box faces, also outside the box.
+inline Cuts wild_cuts(Dice& dice, const Grid& grid, double fill, bool random_normals) {
+  const double h = grid.pitch(), low = grid.box().lower.z, high = grid.box().upper.z;
+  std::vector<double> ends;
+  for (int n = dice.chance(fill) ? dice.whole(1, 4) : 0; n > 0; --n)
+    for (int e = 0; e < 2; ++e) {
+      double at = dice.real(low - h, high + h);
+      if (dice.chance(0.3)) at = low + std::round((at - low) / (h / 2)) * (h / 2);
+      if (dice.chance(0.1)) at += dice.real(-2e-3, 2e-3) * h;
+      ends.push_back(at);
+    }
+  std::sort(ends.begin(), ends.end());
+  const Vec3 along = to_world(grid.axis(), Vec3(0, 0, 1));
+  Cuts cuts;
+  for (std::size_t n = 0; n + 1 < ends.size(); n += 2) {
+    if (!(ends[n] < ends[n + 1])) continue;
+    cuts.push_back(
+        {ends[n], ends[n + 1], random_normals ? dice.direction() : -along, random_normals ? dice.direction() : along});
+  }
+  return cuts;
+}
+
+/// Replaces the rays i0 … i1 × j0 … j1 of a grid.
+inline void change_rays(Grid& grid, int i0, int i1, int j0, int j1, const std::function<Cuts()>& cuts) {
+  for (int a = i0 / kTileSide; a <= i1 / kTileSide; ++a)
+    for (int b = j0 / kTileSide; b <= j1 / kTileSide; ++b) {
+      const Tile& old = grid.tile(grid.tile_index(a, b));
+      TileBuilder builder(grid.has_normals());
+      for (int r = 0; r < kTileRays; ++r) {
+        const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
+        if (i >= i0 && i <= i1 && j >= j0 && j <= j1)
+          for (const Cut& c : cuts())
+            builder.add({c.near, c.far}, {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)});
+        else
+          for (std::size_t n = 0; n < old.ray(r).size(); ++n)
+            builder.add(old.ray(r)[n], old.normals.empty() ? SpanNormals{} : old.ray_normals(r)[n]);
+        builder.next_ray();
+      }
+      grid.set_tile(grid.tile_index(a, b), builder.finish());
+    }
+}
+
 }  // namespace riffler::testing

@@ -22,28 +22,6 @@ void expect_clean(const Volume& volume, const std::string& what) {
   EXPECT_TRUE(result.clean()) << what << ": " << result;
 }
 
-/// Spans that know nothing of each other: ends anywhere, often on lattice planes or box faces, also outside the box.
-Cuts wild_cuts(Dice& dice, const Grid& grid, double fill, bool random_normals) {
-  const double h = grid.pitch(), low = grid.box().lower.z, high = grid.box().upper.z;
-  std::vector<double> ends;
-  for (int n = dice.chance(fill) ? dice.whole(1, 4) : 0; n > 0; --n)
-    for (int e = 0; e < 2; ++e) {
-      double at = dice.real(low - h, high + h);
-      if (dice.chance(0.3)) at = low + std::round((at - low) / (h / 2)) * (h / 2);
-      if (dice.chance(0.1)) at += dice.real(-2e-3, 2e-3) * h;
-      ends.push_back(at);
-    }
-  std::sort(ends.begin(), ends.end());
-  const Vec3 along = to_world(grid.axis(), Vec3(0, 0, 1));
-  Cuts cuts;
-  for (std::size_t n = 0; n + 1 < ends.size(); n += 2) {
-    if (!(ends[n] < ends[n + 1])) continue;
-    cuts.push_back(
-        {ends[n], ends[n + 1], random_normals ? dice.direction() : -along, random_normals ? dice.direction() : along});
-  }
-  return cuts;
-}
-
 constexpr double kOffsets[] = {0, 0, 17.3, -250, 5e3, -4.9e5, 5e5};
 
 TEST(ToMesh, IsCleanForGridsThatContradictEachOther) {

@@ -1,0 +1,23 @@
+// Which bricks of a mesh two states of a volume differ in.
+#pragma once
+
+#include <vector>
+
+#include "dexel/volume.hpp"
+#include "marching/bricks.hpp"
+
+namespace riffler::marching {
+
+struct Changes {
+  std::vector<bool> signs;   // bricks with a point between the changed ends of a ray
+  std::vector<bool> meshes;  // bricks whose vertices or quads may depend on such a point
+  std::vector<std::size_t> sign_bricks, mesh_bricks;
+
+  explicit Changes(std::size_t bricks) : signs(bricks), meshes(bricks) {}
+  bool empty() const { return mesh_bricks.empty(); }
+};
+
+/// Compares the rays of tiles that the two do not share. Volumes of one frame.
+Changes changes_between(const Volume& before, const Volume& after, const Lattice& lattice, const Bricks& bricks);
+
+}  // namespace riffler::marching

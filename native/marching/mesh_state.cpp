@@ -1,0 +1,272 @@
+#include "marching/mesh_state.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "geom/parallel.hpp"
+
+namespace riffler::marching {
+
+namespace {
+
+/// Share of the whole call, from the share of one stage.
+Progress stage(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [&progress, from, to](double share) { return progress(from + share * (to - from)); };
+}
+
+void each_once(std::vector<std::size_t>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+std::vector<std::size_t> without(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b) {
+  std::vector<std::size_t> out;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
+  return out;
+}
+
+}  // namespace
+
+MeshState::MeshState(const Volume& now, const Progress& progress)
+    : volume(now), lattice(volume), bricks(lattice), surface(volume, lattice, bricks), reader_(lattice) {
+  build(progress);
+}
+
+std::vector<std::size_t> MeshState::active_bricks() const {
+  std::vector<std::size_t> out;
+  for (std::size_t n = 0; n < bricks.size(); ++n)
+    if (bricks.active(n)) out.push_back(n);
+  return out;
+}
+
+void MeshState::build(const Progress& progress) {
+  reader_.follow(volume);
+  surface.hits = HitFinder(volume, lattice);
+  vertices_ = {}, quads_ = {};
+  read_signs(reader_, bricks, stage(progress, 0, 0.2));
+  parallel_for(
+      bricks.size(), 8,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) bricks.set_active(n, counted(bricks, n));
+      },
+      stage(progress, 0.2, 0.3));
+  const std::vector<std::size_t> all = active_bricks();
+  for (const std::size_t n : all) {
+    ActiveBrick& brick = *bricks.active(n);
+    brick.first_edge = quads_.take(brick.edges()), brick.first_vertex = vertices_.take(brick.vertices());
+  }
+  give_room();
+  mesh_bricks(surface, all, stage(progress, 0.3, 0.9));
+  choose_candidates(surface, undecided(surface, all), {}, stage(progress, 0.9, 0.94));
+  Region everywhere;
+  unfold(surface, quads_to_look_at(all), everywhere, stage(progress, 0.94, 1));
+  report(progress, 1);
+}
+
+/// Quads that may have folded, and those round vertices that could choose their place.
+std::vector<QuadRef> MeshState::quads_to_look_at(const std::vector<std::size_t>& list) {
+  std::vector<QuadRef> quads;
+  std::vector<Vec3i> cells;
+  for (const std::size_t n : list) {
+    const ActiveBrick& brick = *bricks.active(n);
+    quads.insert(quads.end(), brick.suspects.begin(), brick.suspects.end());
+  }
+  for (const Special* s : undecided(surface, list)) cells.push_back(s->at.cell);
+  const std::vector<QuadRef> chosen = quads_near(surface, cells, kCandidate);
+  quads.insert(quads.end(), chosen.begin(), chosen.end());
+  return quads;
+}
+
+void MeshState::give_room() {
+  if (quads_.end() > std::numeric_limits<std::int32_t>::max() / 2 ||
+      vertices_.end() > std::numeric_limits<std::int32_t>::max())
+    throw std::invalid_argument("the mesh of this volume would have more than 2^31 triangles; take a coarser pitch");
+  if (vertices_.end() > surface.mesh.vertices.size())
+    surface.mesh.vertices.resize(vertices_.end()), surface.marks.resize(vertices_.end());
+  if (2 * quads_.end() > surface.mesh.triangles.size()) surface.mesh.triangles.resize(2 * quads_.end());
+}
+
+Mesh MeshState::take() {
+  Mesh mesh = std::move(surface.mesh);
+  if (lattice.axis() == Axis::Z) return mesh;
+  parallel_for(mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) mesh.vertices[n] = to_world(lattice.axis(), mesh.vertices[n]);
+  });
+  return mesh;
+}
+
+Mesh MeshState::compact() const {
+  const std::vector<std::size_t> all = active_bricks();
+  std::vector<std::size_t> vertex(all.size() + 1, 0), quad(all.size() + 1, 0);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    vertex[n + 1] = vertex[n] + bricks.active(all[n])->vertices();
+    quad[n + 1] = quad[n] + bricks.active(all[n])->edges();
+  }
+  Mesh mesh;
+  mesh.vertices.resize(vertex.back()), mesh.triangles.resize(2 * quad.back());
+  BulkVector<std::int32_t> number(surface.mesh.vertices.size());
+  parallel_for(all.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const ActiveBrick& brick = *bricks.active(all[n]);
+      for (std::size_t v = 0; v < brick.vertices(); ++v) {
+        number[brick.first_vertex + v] = static_cast<std::int32_t>(vertex[n] + v);
+        mesh.vertices[vertex[n] + v] = to_world(lattice.axis(), surface.mesh.vertices[brick.first_vertex + v]);
+      }
+    }
+  });
+  parallel_for(all.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const ActiveBrick& brick = *bricks.active(all[n]);
+      for (std::size_t t = 0; t < 2 * brick.edges(); ++t) {
+        const Vec3i& from = surface.mesh.triangles[2 * brick.first_edge + t];
+        mesh.triangles[2 * quad[n] + t] = {number[from.x], number[from.y], number[from.z]};
+      }
+    }
+  });
+  return mesh;
+}
+
+// Following a volume
+
+std::vector<std::size_t> MeshState::update(const Volume& now) {
+  if (!(now.frame() == volume.frame()))
+    throw std::invalid_argument("a mesher follows volumes of one box, pitch and directions");
+  const std::vector<std::size_t> before = broken_ ? active_bricks() : std::vector<std::size_t>{};
+  if (broken_) {
+    follow(now);
+    build({});
+    broken_ = false;
+    std::vector<std::size_t> all = active_bricks();
+    all.insert(all.end(), before.begin(), before.end());
+    each_once(all);
+    return all;
+  }
+  const Changes changes = changes_between(volume, now, lattice, bricks);
+  broken_ = true;  // until all is well again
+  follow(now);
+  std::vector<std::size_t> changed;
+  if (!changes.empty()) {
+    read_signs_again(changes.sign_bricks);
+    std::vector<std::size_t> fresh;
+    for (const std::size_t n : changes.mesh_bricks) {
+      if (bricks.active(n)) changed.push_back(n);
+      place_again(n);
+      if (bricks.active(n)) changed.push_back(n), fresh.push_back(n);
+    }
+    give_room();
+    // Vertices near these that had a choice, or that were pulled, begin again as well.
+    std::vector<std::size_t> unsettled;
+    for (const std::size_t n : around(changes.mesh_bricks, -1, 1))
+      if (!changes.meshes[n] && !settled(n)) unsettled.push_back(n);
+    fresh.insert(fresh.end(), unsettled.begin(), unsettled.end());
+    each_once(fresh);
+    mesh_bricks(surface, fresh, {});
+    const std::vector<std::size_t> linked = without(around(changes.mesh_bricks, 0, 1), fresh);
+    link_bricks(surface, linked);
+    choose_again(fresh);
+    const std::vector<std::size_t> unfolded = unfold_again(fresh);
+    std::vector<std::size_t> others = around(unsettled, 0, 1);
+    changed.insert(changed.end(), others.begin(), others.end());
+    others = around(unfolded, 0, 1);
+    changed.insert(changed.end(), others.begin(), others.end());
+    each_once(changed);
+  }
+  broken_ = false;
+  return changed;
+}
+
+void MeshState::follow(const Volume& now) {
+  volume = now;
+  reader_.follow(volume);
+  surface.hits = HitFinder(volume, lattice);
+}
+
+void MeshState::read_signs_again(const std::vector<std::size_t>& changed) {
+  parallel_for(changed.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Vec3i at = bricks.place(changed[n]);
+      reader_.read(bricks, at.x, at.y, at.z, at.z);
+    }
+  });
+}
+
+/// Counts a brick again and gives it a place in the mesh.
+void MeshState::place_again(std::size_t n) {
+  if (const ActiveBrick* const old = bricks.active(n)) {
+    vertices_.give_back(old->first_vertex, old->vertices());
+    quads_.give_back(old->first_edge, old->edges());
+  }
+  bricks.set_active(n, counted(bricks, n));
+  if (ActiveBrick* const brick = bricks.active(n))
+    brick->first_edge = quads_.take(brick->edges()), brick->first_vertex = vertices_.take(brick->vertices());
+}
+
+/// Active bricks at these or at `from` … `to` of them along each axis; ascending.
+std::vector<std::size_t> MeshState::around(const std::vector<std::size_t>& list, int from, int to) const {
+  std::vector<std::size_t> out;
+  for (const std::size_t n : list) {
+    const Vec3i at = bricks.place(n);
+    for (int a = from; a <= to; ++a)
+      for (int b = from; b <= to; ++b)
+        for (int c = from; c <= to; ++c)
+          if (bricks.active(at.x + a, at.y + b, at.z + c)) out.push_back(bricks.index(at.x + a, at.y + b, at.z + c));
+  }
+  each_once(out);
+  return out;
+}
+
+bool MeshState::settled(std::size_t n) const {
+  const ActiveBrick& brick = *bricks.active(n);
+  return brick.pulled.empty() && std::none_of(brick.specials.begin(), brick.specials.end(), [&](const Special& s) {
+           return surface.marks[s.at.vertex] & kCandidate;
+         });
+}
+
+/// Candidates of fresh bricks. What those of the next bricks chose does not depend on the change: it is too far away
+/// (a choice reaches eight cells at most, one a group), but their turns come as they did.
+void MeshState::choose_again(const std::vector<std::size_t>& fresh) {
+  const std::vector<std::size_t> ring = without(around(fresh, -1, 1), fresh);
+  const std::vector<Special*> known = undecided(surface, ring);
+  std::vector<std::pair<std::int32_t, Vec3>> pulled;
+  std::vector<Vec3i> cells;
+  for (const std::size_t n : ring)
+    for (const Pulled& p : bricks.active(n)->pulled) {
+      pulled.emplace_back(p.at.vertex, surface.mesh.vertices[p.at.vertex]);
+      cells.push_back(p.at.cell);
+      surface.mesh.vertices[p.at.vertex] = p.before;
+    }
+  for (const Special* s : known) cells.push_back(s->at.cell);
+  choose_candidates(surface, undecided(surface, fresh), known, {});
+  for (const auto& [vertex, place] : pulled) surface.mesh.vertices[vertex] = place;
+  // Fresh quads took their corners for undecided ones.
+  HitFinder finder = surface.hits;
+  for (const QuadRef& ref : quads_near(surface, cells, kCandidate | kPulled)) surface.split(ref, finder);
+}
+
+/// Unfolds fresh bricks, and those whose folds are entangled with theirs, which it returns.
+std::vector<std::size_t> MeshState::unfold_again(const std::vector<std::size_t>& fresh) {
+  Region region;
+  region.bricks.assign(bricks.size(), false);
+  std::vector<std::size_t> bricks_in = fresh;
+  for (;;) {
+    for (const std::size_t n : bricks_in) region.bricks[n] = true;
+    std::vector<Vec3i> cells;
+    for (const std::size_t n : bricks_in) {
+      for (const Pulled& p : bricks.active(n)->pulled) cells.push_back(p.at.cell), surface.marks[p.at.vertex] |= kMoved;
+      undo_unfold(surface, n);
+    }
+    const std::vector<QuadRef> undone = quads_near(surface, cells, kMoved);
+    for (const QuadRef& ref : undone) surface.split(ref, surface.hits);
+    for (const QuadRef& ref : undone)
+      for (const std::int32_t v : surface.corners(ref.quad)) surface.marks[v] &= static_cast<std::uint8_t>(~kMoved);
+    region.missing.clear();
+    unfold(surface, quads_to_look_at(around(bricks_in, -1, 1)), region, {});
+    if (region.missing.empty()) return without(bricks_in, fresh);
+    bricks_in.insert(bricks_in.end(), region.missing.begin(), region.missing.end());
+    each_once(bricks_in);
+  }
+}
+
+}  // namespace riffler::marching

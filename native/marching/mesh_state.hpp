@@ -1,0 +1,44 @@
+// What a Mesher holds.
+#pragma once
+
+#include <vector>
+
+#include "marching/changes.hpp"
+#include "marching/signs.hpp"
+#include "marching/slots.hpp"
+#include "marching/surface.hpp"
+
+namespace riffler::marching {
+
+struct MeshState {
+  Volume volume;  // as it was meshed: shares its tiles
+  Lattice lattice;
+  Bricks bricks;
+  Surface surface;  // places of bricks without a surface hold nothing of meaning
+
+  MeshState(const Volume& volume, const Progress& progress);
+  std::vector<std::size_t> update(const Volume& now);
+  std::vector<std::size_t> active_bricks() const;
+  /// The mesh without the places between bricks, in the world frame.
+  Mesh compact() const;
+  /// The same of a state that was never updated, which then is used up.
+  Mesh take();
+
+ private:
+  void build(const Progress& progress);
+  void follow(const Volume& now);
+  void read_signs_again(const std::vector<std::size_t>& changed);
+  void place_again(std::size_t brick);
+  void give_room();
+  std::vector<std::size_t> around(const std::vector<std::size_t>& list, int from, int to) const;
+  bool settled(std::size_t brick) const;
+  void choose_again(const std::vector<std::size_t>& fresh);
+  std::vector<std::size_t> unfold_again(const std::vector<std::size_t>& fresh);
+  std::vector<QuadRef> quads_to_look_at(const std::vector<std::size_t>& list);
+
+  SignReader reader_;
+  Slots vertices_, quads_;
+  bool broken_ = false;  // an update threw: build all anew
+};
+
+}  // namespace riffler::marching

@@ -1,0 +1,186 @@
+#include "marching/mesher.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+
+#include "marching/audit.hpp"
+#include "marching/scenes.hpp"
+#include "marching/to_mesh.hpp"
+#include "sweep/carve.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler {
+namespace {
+
+using namespace testing;
+
+/// The mesher has what meshing the whole volume gives, and says so of each patch.
+void expect_same(const Mesher& mesher, const Volume& volume, const std::string& what) {
+  const Mesh whole = to_mesh(volume), followed = mesher.mesh();
+  ASSERT_EQ(followed.vertices.size(), whole.vertices.size()) << what;
+  ASSERT_EQ(followed.triangles.size(), whole.triangles.size()) << what;
+  std::size_t vertices = 0, triangles = 0;
+  for (std::size_t n = 0; n < whole.vertices.size(); ++n) vertices += followed.vertices[n] != whole.vertices[n];
+  for (std::size_t n = 0; n < whole.triangles.size(); ++n) triangles += followed.triangles[n] != whole.triangles[n];
+  EXPECT_EQ(vertices, 0U) << what << ", of " << whole.vertices.size();
+  EXPECT_EQ(triangles, 0U) << what << ", of " << whole.triangles.size();
+}
+
+/// Copies of patches, brought up to date by what `update` names, put together again by equal places.
+class Patches {
+ public:
+  explicit Patches(const Mesher& mesher) {
+    for (const std::size_t n : mesher.patches()) patches_[n] = mesher.patch(n);
+  }
+  void update(const Mesher& mesher, const std::vector<std::size_t>& changed) {
+    for (const std::size_t n : changed) patches_[n] = mesher.patch(n);
+  }
+  void expect_same(const Mesh& whole, const std::string& what) const {
+    std::map<std::array<float, 3>, int> numbers;
+    for (const Vec3& v : whole.vertices) {
+      const Vec3f f(v);
+      numbers.emplace(std::array{f.x, f.y, f.z}, static_cast<int>(numbers.size()));
+    }
+    std::vector<std::array<int, 3>> triangles, expected;
+    for (const auto& [brick, patch] : patches_)
+      for (const Vec3i& t : patch.triangles) {
+        std::array<int, 3> triangle;
+        for (int c = 0; c < 3; ++c) {
+          const Vec3f& v = patch.vertices[t[c]];
+          const auto found = numbers.find({v.x, v.y, v.z});
+          ASSERT_NE(found, numbers.end()) << what << ": brick " << brick << " has a vertex that the mesh has not";
+          triangle[c] = found->second;
+        }
+        triangles.push_back(triangle);
+      }
+    for (const Vec3i& t : whole.triangles) expected.push_back({t.x, t.y, t.z});
+    std::sort(triangles.begin(), triangles.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(triangles.size(), expected.size()) << what;
+    EXPECT_TRUE(triangles == expected) << what;
+  }
+
+ private:
+  std::map<std::size_t, MeshPatch> patches_;
+};
+
+TEST(Mesher, FollowsACarvedBlock) {
+  for (const char* directions : {"xyz", "z", "x"}) {
+    Volume volume = Volume::block({{{0, 0, 0}, {30, 24, 21}}, 0.25, directions});
+    Mesher mesher(volume);
+    Patches patches(mesher);
+    Dice dice(7);
+    for (int stroke = 0; stroke < 25; ++stroke) {
+      const Tool tools[] = {cutters::ball(3, 40), cutters::flat(2.5, 40), cutters::taper(0.4, 0.3, 4, 40)};
+      const auto pose = [&] {
+        Vec3 axis = dice.direction();
+        axis.z = std::abs(axis.z) + 0.3;
+        return Pose{{dice.real(0, 30), dice.real(0, 24), dice.real(12, 22)}, glm::normalize(axis)};
+      };
+      Pose from = pose(), to = from;
+      to.tip += 2.0 * dice.direction();
+      carve(volume, tools[stroke % 3], std::array{from, to});
+      const std::vector<std::size_t> changed = mesher.update(volume);
+      const std::string what = std::string(directions) + ", stroke " + std::to_string(stroke);
+      expect_same(mesher, volume, what);
+      patches.update(mesher, changed);
+      if (stroke % 5 == 4) patches.expect_same(to_mesh(volume), what);
+      EXPECT_LT(changed.size(), 40U) << what;  // of 64 with triangles
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+/// Sharp edges everywhere, in a bar of many bricks: candidates whose choices depend on each other's across borders.
+TEST(Mesher, FollowsABarFullOfEdges) {
+  for (unsigned seed = 0; seed < 2; ++seed) {
+    Dice dice(100 + seed);
+    Volume volume = Volume::block({{{0, 0, 0}, {60, 7, 7}}, 0.25, "xyz"});
+    const Tool tools[] = {cutters::flat(1.1, 12), cutters::flat(0.6, 12), cutters::cone_end(0.7, 0.6, 0.2, 2, 12)};
+    const auto nick = [&](double x) {
+      const Vec3 axis = dice.direction();
+      const Vec3 at = Vec3(x, 3.5, 3.5) + dice.real(2, 4.5) * axis;
+      carve(volume, tools[dice.whole(0, 2)], std::array{Pose{at, axis}, Pose{at + 0.4 * dice.direction(), axis}});
+    };
+    for (int n = 0; n < 600; ++n) nick(dice.real(0, 60));
+    Mesher mesher(volume);
+    EXPECT_TRUE(audit(mesher.mesh()).clean()) << audit(mesher.mesh());
+    for (int step = 0; step < 16; ++step) {
+      nick(8.0 * dice.whole(1, 7) + dice.real(-1, 1));  // near the borders of bricks
+      const std::vector<std::size_t> changed = mesher.update(volume);
+      expect_same(mesher, volume, "seed " + std::to_string(seed) + ", nick " + std::to_string(step));
+      EXPECT_LT(changed.size(), 10U);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+/// Rays that know nothing of each other, in blocks of the grids drawn at random, over several bricks: candidates,
+/// entangled folds and vertices that fall back, everywhere.
+TEST(Mesher, FollowsGridsThatContradictEachOther) {
+  for (unsigned seed = 0; seed < 9; ++seed) {
+    Dice dice(seed);
+    const double h = 0.25, offset = seed % 4 == 3 ? 4e5 : 0;
+    const Vec3 lower(offset, 0, -offset);
+    // Half of them are long: bricks that no change reaches lie on both sides of it.
+    const Vec3 size = seed % 2 ? Vec3(dice.real(6, 20), dice.real(6, 20), dice.real(6, 18))
+                               : Vec3(dice.real(40, 50), dice.real(4, 9), dice.real(4, 9));
+    Volume volume({{lower, lower + size}, h, seed % 3 ? "xyz" : "z"});
+    const double share = dice.chance(0.5) ? dice.real(0, 0.1) : dice.real(0, 1);
+    const Solid base = turned_box(lower + size / 2.0, size * 0.4, dice.turn());
+    fill(volume, [&](const Grid& grid, int i, int j) {
+      if (!dice.chance(share)) {
+        const Vec3 p = to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0));
+        return meet(base, box(lower, lower + size))(p, to_world(grid.axis(), Vec3(0, 0, 1)));
+      }
+      return wild_cuts(dice, grid, 0.8, true);
+    });
+    Mesher mesher(volume);
+    Patches patches(mesher);
+    const std::string what = "seed " + std::to_string(seed);
+    EXPECT_TRUE(audit(mesher.mesh()).clean()) << what << ": " << audit(mesher.mesh());
+    for (int step = 0; step < 8; ++step) {
+      const Volume before = volume;
+      // One grid's rays in a rectangle become wild, or what they were at first.
+      Grid& grid = volume.grids()[static_cast<std::size_t>(dice.whole(0, static_cast<int>(volume.grids().size()) - 1))];
+      const int i0 = dice.whole(0, grid.nu() - 1), j0 = dice.whole(0, grid.nv() - 1);
+      const int i1 = std::min(grid.nu() - 1, i0 + dice.whole(0, 12)),
+                j1 = std::min(grid.nv() - 1, j0 + dice.whole(0, 12));
+      change_rays(grid, i0, i1, j0, j1, [&] { return wild_cuts(dice, grid, 0.8, true); });
+      volume.touch();
+      patches.update(mesher, mesher.update(volume));
+      expect_same(mesher, volume, what + ", step " + std::to_string(step));
+      patches.expect_same(mesher.mesh(), what + ", step " + std::to_string(step));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(Mesher, DoesNothingForNothing) {
+  Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
+  Mesher mesher(volume);
+  EXPECT_TRUE(mesher.update(volume).empty());
+  volume.touch();
+  EXPECT_TRUE(mesher.update(volume).empty());
+  Volume same = Volume::block(volume.frame());  // other tiles, the same rays
+  EXPECT_TRUE(mesher.update(same).empty());
+  EXPECT_THROW(mesher.update(Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "z"})), std::invalid_argument);
+  EXPECT_TRUE(mesher.patch(0).triangles.size() > 0);
+  EXPECT_THROW(mesher.patch(100000), std::out_of_range);
+}
+
+TEST(Mesher, FollowsIntoEmptinessAndBack) {
+  const Volume block = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
+  Mesher mesher(block);
+  const Volume nothing(block.frame());
+  EXPECT_EQ(mesher.update(nothing), Mesher(block).patches());
+  EXPECT_TRUE(mesher.mesh().empty());
+  EXPECT_TRUE(mesher.patches().empty());
+  mesher.update(block);
+  expect_same(mesher, block, "back");
+}
+
+}  // namespace
+}  // namespace riffler
