@@ -29,8 +29,8 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& a, const std::v
 
 }  // namespace
 
-MeshState::MeshState(const Volume& now, const Progress& progress)
-    : volume(now), lattice(volume), bricks(lattice), surface(volume, lattice, bricks), reader_(lattice) {
+MeshState::MeshState(const Volume& now, bool room, const Progress& progress)
+    : volume(now), lattice(volume), bricks(lattice), surface(volume, lattice, bricks), reader_(lattice), room_(room) {
   build(progress);
 }
 
@@ -83,9 +83,14 @@ void MeshState::give_room() {
   if (quads_.end() > std::numeric_limits<std::int32_t>::max() / 2 ||
       vertices_.end() > std::numeric_limits<std::int32_t>::max())
     throw std::invalid_argument("the mesh of this volume would have more than 2^31 triangles; take a coarser pitch");
-  if (vertices_.end() > surface.mesh.vertices.size())
-    surface.mesh.vertices.resize(vertices_.end()), surface.marks.resize(vertices_.end());
-  if (2 * quads_.end() > surface.mesh.triangles.size()) surface.mesh.triangles.resize(2 * quads_.end());
+  // A growing vector is copied, which a stroke would feel.
+  const auto resize = [&](auto& vector, std::size_t size) {
+    if (size <= vector.size()) return;
+    if (room_ && size > vector.capacity()) vector.reserve(2 * size + (std::size_t{1} << 18));
+    vector.resize(size);
+  };
+  resize(surface.mesh.vertices, vertices_.end()), resize(surface.marks, vertices_.end());
+  resize(surface.mesh.triangles, 2 * quads_.end());
 }
 
 Mesh MeshState::take() {

@@ -16,7 +16,8 @@ struct MeshState {
   Bricks bricks;
   Surface surface;  // places of bricks without a surface hold nothing of meaning
 
-  MeshState(const Volume& volume, const Progress& progress);
+  /// `room`: for bricks that will grow; address space only, until it is used.
+  MeshState(const Volume& volume, bool room, const Progress& progress);
   std::vector<std::size_t> update(const Volume& now);
   std::vector<std::size_t> active_bricks() const;
   /// The mesh without the places between bricks, in the world frame.
@@ -38,6 +39,7 @@ struct MeshState {
 
   SignReader reader_;
   Slots vertices_, quads_;
+  bool room_;
   bool broken_ = false;  // an update threw: build all anew
 };
 

@@ -17,7 +17,8 @@ struct Mesher::State : MeshState {
   using MeshState::MeshState;
 };
 
-Mesher::Mesher(const Volume& volume, const Progress& progress) : state_(std::make_unique<State>(volume, progress)) {}
+Mesher::Mesher(const Volume& volume, const Progress& progress)
+    : state_(std::make_unique<State>(volume, true, progress)) {}
 Mesher::~Mesher() = default;
 Mesher::Mesher(Mesher&&) noexcept = default;
 Mesher& Mesher::operator=(Mesher&&) noexcept = default;
@@ -76,8 +77,7 @@ Mesh Mesher::mesh() const {
 }
 
 Mesh to_mesh(const Volume& volume, const Progress& progress) {
-  Mesher mesher(volume, progress);
-  return mesher.state_->take();
+  return MeshState(volume, false, progress).take();
 }
 
 }  // namespace riffler

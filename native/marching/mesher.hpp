@@ -44,7 +44,6 @@ class Mesher {
 
  private:
   struct State;
-  friend Mesh to_mesh(const Volume& volume, const Progress& progress);
   std::unique_ptr<State> state_;
 };
 
