@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace riffler {
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+/// Radii from the centre within which a piece's curvature is looked at place by place.
+constexpr double kBeside = 1.7;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const FieldSums& sums() {
@@ -28,18 +29,9 @@ Vec2 aside(double u, double v) {
   return u == 0 && v == 0 ? Vec2(kNone, 0) : Vec2(u, v);
 }
 
-/// A direction in stereographic coordinates up to a positive factor: (t : α) = (t : f α).
-struct Stereographic {
-  double t, f;
-  Stereographic(double z, double rr) {
-    const double length = std::sqrt(rr + z * z);
-    t = z < 0 ? rr : length + z, f = z < 0 ? length - z : 1.0;
-  }
-};
-
-/// The phase of K, whose edges' share is `edges` and whose multipoles' share times 4π is `value`.
-double phase(const EdgeSum& edges, double value) {
-  return wrap(std::atan2(edges.im, edges.re) / (2 * kPi) - 0.5 + value / (4 * kPi));
+/// The phase of K, whose near edges' share is `edges`.
+double phase(const EdgeSum& edges, double far) {
+  return wrap(std::atan2(edges.im, edges.re) / (2 * kPi) - 0.5 + far);
 }
 
 }  // namespace
@@ -58,32 +50,62 @@ double edge_curvature(double length, double d) {
   return std::min(0.5 * length * inverse, 1.0) * inverse * inverse / kPi;
 }
 
-void Field::clear() {
-  for (std::vector<double>* v : {&x_, &y_, &z_, &joined_}) v->clear();
-  far_.clear(), near_.clear();
-  far_curvature_ = 0;
-  last_ = -1;
+void Field::add_point(const Vec3& p, bool joined, bool finite) {
+  x_.push_back(p.x), y_.push_back(p.y), z_.push_back(p.z), joined_.push_back(joined), finite_.push_back(finite);
 }
 
-void Field::add_point(const Vec3& p, bool begins) {
-  x_.push_back(p.x), y_.push_back(p.y), z_.push_back(p.z), joined_.push_back(begins ? 0 : 1);
-}
-
-void Field::add_edge(const std::vector<Vec3>& points, int a, int b) {
-  if (last_ != a) add_point(points[a], true);
-  add_point(points[b], false);
-  last_ = b;
-}
-
-void Field::set_column(double u, double v) {
-  u_ = u, v_ = v;
+void Field::fill(const BoundaryPieces& pieces, const Surroundings& around) {
+  pieces_ = &pieces, around_ = &around, rays_ = 0;
+  for (std::vector<double>* v : {&x_, &y_, &z_, &joined_, &finite_}) v->clear();
+  for_each_chain(pieces, around.near, [&](const Chain& chain) {
+    const Vec3& front = pieces.edges(pieces[around.near[chain.begin]]).front().a;
+    const Vec3& back = pieces.edges(pieces[around.near[chain.end - 1]]).back().b;
+    if (chain.open_front) add_point(glm::normalize(front - around.centre), false, false);
+    add_point(front, chain.open_front);
+    for (std::size_t k = chain.begin; k < chain.end; ++k)
+      for (const BoundaryPieces::Edge& e : pieces.edges(pieces[around.near[k]])) add_point(e.b, true);
+    if (chain.open_back) add_point(glm::normalize(back - around.centre), true, false);
+    rays_ += (chain.open_front + chain.open_back) * edge_curvature(kInfinity, (Surroundings::kFar - 1) * around.radius);
+  });
   // One point in front of the first group of lanes, and points that no edge leads to behind the last.
-  while (z_.size() % kLanes != 1) add_point(Vec3(u + 1, v, 0), true);
+  while (z_.size() % kLanes != 1) add_point(Vec3(1, 0, 0), false, false);
+  for (std::vector<double>* w : {&ax_, &ay_, &rr_, &dot_, &cross_}) w->resize(z_.size());
+  scratch_.resize(4 * z_.size());
+}
+
+Field::Tangent Field::tangent(const Vec3& centre, const Vec3& half, double curved) {
+  const double radius = glm::length(half);
+  double curvature = rays_;
+  for (const int k : around_->near) {
+    const BoundaryPieces::Piece& piece = (*pieces_)[k];
+    const double d = pieces_->distance(piece, centre, 2 * radius) - radius;
+    if (!(d > 0)) return {0, kInfinity, Vec3(0)};
+    curvature += BoundaryPieces::curvature(piece, d);
+  }
+  Tangent out;
+  out.remainder = 0.5 * curvature * glm::dot(half, half) + curved;
+  if (out.remainder > 1) return {0, kInfinity, Vec3(0)};
+  out.phase = at(centre, out.gradient);
+  return out;
+}
+
+void Field::enclose(const Vec3& half) {
+  close_.clear();
+  curvature_ = rays_ + around_->far.curvature_along(half);
+  for (const int k : around_->near) {
+    const BoundaryPieces::Piece& piece = (*pieces_)[k];
+    const double d = pieces_->distance(piece, around_->centre, kBeside * around_->radius) - around_->radius;
+    if (d > (kBeside - 1) * around_->radius)
+      curvature_ += BoundaryPieces::curvature(piece, d);
+    else
+      close_.push_back(k);
+  }
+}
+
+void Field::set_edges(double u, double v) {
   const std::size_t n = z_.size();
-  for (std::vector<double>* w : {&ax_, &ay_, &rr_, &dot_, &cross_}) w->resize(n);
-  scratch_.resize(4 * n);
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec2 a = aside(x_[k] - u, y_[k] - v);
+    const Vec2 a = aside(x_[k] - finite_[k] * u, y_[k] - finite_[k] * v);
     ax_[k] = a.x, ay_[k] = a.y, rr_[k] = a.x * a.x + a.y * a.y;
   }
   // Without an edge conj(α) β counts as 0, which leaves the product a positive factor.
@@ -91,63 +113,47 @@ void Field::set_column(double u, double v) {
     dot_[k] = joined_[k] * (ax_[k - 1] * ax_[k] + ay_[k - 1] * ay_[k]);
     cross_[k] = joined_[k] * (ax_[k - 1] * ay_[k] - ay_[k - 1] * ax_[k]);
   }
-  set_poles();
 }
 
-void Field::set_poles() {
-  const std::size_t n = (far_.size() + kLanes - 1) / kLanes * kLanes;
-  poles_.assign(8 * n, 0);
-  double* array = poles_.data();
-  const auto next = [&] { return std::exchange(array, array + n); };
-  double *z = next(), *rr = next(), *dz = next(), *across = next(), *flat = next(), *skew = next(), *qzz = next(),
-         *trace = next();
-  for (std::size_t k = far_.size(); k < n; ++k) rr[k] = 1;
-  for (std::size_t k = 0; k < far_.size(); ++k) {
-    const Multipole& m = far_[k];
-    const double x = m.centre.x - u_, y = m.centre.y - v_;
-    z[k] = m.centre.z, rr[k] = x * x + y * y, dz[k] = m.dipole.z, across[k] = m.dipole.x * x + m.dipole.y * y;
-    flat[k] = m.quadrupole[0][0] * x * x + 2 * m.quadrupole[0][1] * x * y + m.quadrupole[1][1] * y * y;
-    skew[k] = m.quadrupole[0][2] * x + m.quadrupole[1][2] * y;
-    qzz[k] = m.quadrupole[2][2], trace[k] = m.trace;
-  }
+void Field::set_column(double u, double v) {
+  u_ = u, v_ = v;
+  if (!around_->near.empty()) set_edges(u, v);
+  far_ = around_->far.column(u - around_->centre.x, v - around_->centre.y);
 }
 
 Field::Value Field::at(double z) const {
+  const double r = z - around_->centre.z;
+  double far = 0, slope = 0;
+  for (int k = LocalExpansion::kDegree; k >= 0; --k) slope = slope * r + far, far = far * r + far_[k];
+  if (around_->near.empty()) return {wrap(far - 0.5), slope};
   const EdgeSum edges = sums().edges(edge_arrays(), z, false);
-  const std::size_t n = poles_.size() / 8;
-  const double* p = poles_.data();
-  const PoleSum poles =
-      sums().poles({p, p + n, p + 2 * n, p + 3 * n, p + 4 * n, p + 5 * n, p + 6 * n, p + 7 * n, n}, z);
-  return {phase(edges, poles.value), (edges.gz + poles.slope) / (4 * kPi)};
+  return {phase(edges, far), edges.gz / (4 * kPi) + slope};
 }
 
 double Field::at(const Vec3& p, Vec3& gradient) {
-  set_column(p.x, p.y);
+  const double far = around_->far.at(p - around_->centre, gradient);
+  if (around_->near.empty()) return wrap(far - 0.5);
+  set_edges(p.x, p.y);
   const EdgeSum edges = sums().edges(edge_arrays(), p.z, true);
-  Vec3 sum(edges.gx, edges.gy, edges.gz);
-  double value = 0;
-  for (const Multipole& m : far_) {
-    const Vec3 r = m.centre - p;
-    const double inverse = 1 / glm::dot(r, r), cube = inverse * std::sqrt(inverse);
-    const Vec3 q = m.quadrupole * r;
-    const double dipole = glm::dot(m.dipole, r) + m.trace, quadrupole = glm::dot(r, q);
-    value += (dipole - 3 * quadrupole * inverse) * cube;
-    sum -= (m.dipole - 3 * inverse * (dipole * r + 2.0 * q) + 15 * quadrupole * inverse * inverse * r) * cube;
-  }
-  gradient = sum / (4 * kPi);
-  return phase(edges, value);
+  gradient += Vec3(edges.gx, edges.gy, edges.gz) / (4 * kPi);
+  return phase(edges, far);
 }
 
 double Field::curvature(double z, double half) const {
-  double sum = far_curvature_;
+  double sum = curvature_;
   const Vec3 p(u_, v_, z);
-  for (const auto& [a, b] : near_) sum += edge_curvature(glm::length(b - a), segment_distance(p, a, b) - half);
+  for (const int k : close_) {
+    const BoundaryPieces::Piece& piece = (*pieces_)[k];
+    sum += BoundaryPieces::curvature(piece, pieces_->distance(piece, p, 2 * half) - half);
+  }
   return sum;
 }
 
 double Field::variation(double z, double half, double slope) const {
-  double up[2] = {0, 0}, down[2] = {0, 0};  // of the near edges, above and below z
-  for (const auto& [from, to] : near_) {
+  double up[2] = {0, 0}, down[2] = {0, 0};  // of the close edges, above and below z
+  for (const int k : close_)
+   for (const BoundaryPieces::Edge& e : pieces_->edges((*pieces_)[k])) {
+    const Vec3 &from = e.a, &to = e.b;
     for (const Vec3& end : {from, to})
       if (end.x == u_ && end.y == v_ && std::abs(end.z - z) <= half) return kInfinity;
     const Vec2 a = aside(from.x - u_, from.y - v_), b = aside(to.x - u_, to.y - v_);
@@ -168,7 +174,7 @@ double Field::variation(double z, double half, double slope) const {
       if (change < 0 || cross == 0) down[side] += std::abs(change);
     }
   }
-  return std::max({up[0], up[1], down[0], down[1]}) + std::abs(slope) * half + 0.5 * far_curvature_ * half * half;
+  return std::max({up[0], up[1], down[0], down[1]}) + std::abs(slope) * half + 0.5 * curvature_ * half * half;
 }
 
 }  // namespace riffler

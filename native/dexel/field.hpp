@@ -11,16 +11,16 @@
 // K is harmonic away from ∂S; its gradient is the Biot–Savart field of a current along ∂S.
 #pragma once
 
-#include <utility>
+#include <cmath>
 #include <vector>
 
+#include "dexel/boundary_field.hpp"
 #include "dexel/field_sum.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {
 
-/// K near one place: the boundary edges and, for parts of the boundary that are far away, chords with the multipoles
-/// of the surface between chord and boundary. Lengths in cells, z along the column.
+/// K near one place. Lengths in cells, z along the column.
 class Field {
  public:
   /// K modulo 1 as a phase in (−½, ½] that is 0 where K = ½, and dK/dz.
@@ -28,13 +28,28 @@ class Field {
     double phase, slope;
   };
 
+  /// K in the ball of `around`; refers to both.
+  void fill(const BoundaryPieces& pieces, const Surroundings& around);
+
+  /// K at the centre of a box within the ball as a phase, with its gradient there, and a bound of how far K in the box
+  /// may be from that tangent plane: infinity where an edge may pass through.
+  struct Tangent {
+    double phase, remainder;
+    Vec3 gradient;
+  };
+  /// `curved` is that of the polynomial for the box.
+  Tangent tangent(const Vec3& centre, const Vec3& half, double curved);
+
+  /// Prepares `curvature` and `variation` for the box about the centre that the ball encloses.
+  void enclose(const Vec3& half);
+
   /// Prepares `at` for the column through (u, v).
   void set_column(double u, double v);
   Value at(double z) const;
   /// Phase and gradient; sets the column through p.
   double at(const Vec3& p, Vec3& gradient);
 
-  /// Upper bound of the norm of K's second derivatives within `half` of z on the column set; infinity on an edge.
+  /// Upper bound of K's second derivative by z within `half` of z on the column set; infinity on an edge.
   double curvature(double z, double half) const;
   /// How far K within `half` of z on the column set may be from K(z), given dK/dz there. Unlike `curvature` it stays
   /// useful beside edges: one edge's share of K never turns back along a column, for the sign of
@@ -42,35 +57,35 @@ class Field {
   double variation(double z, double half, double slope) const;
 
  private:
-  friend class BoundaryTree;
-  /// Dipole and quadrupole of a surface about a centre.
-  struct Multipole {
-    Vec3 centre, dipole;
-    Mat3 quadrupole;  // symmetric
-    double trace;
-  };
-
-  void set_poles();
   EdgeArrays edge_arrays() const {
-    return {ax_.data(),    ay_.data(),     z_.data(),       rr_.data(),   dot_.data(),
-            cross_.data(), joined_.data(), scratch_.data(), z_.size() - 1};
+    return {ax_.data(),    ay_.data(),     z_.data(),      rr_.data(),      dot_.data(),
+            cross_.data(), joined_.data(), finite_.data(), scratch_.data(), z_.size() - 1};
   }
-  void clear();
-  void add_edge(const std::vector<Vec3>& points, int a, int b);
-  void add_point(const Vec3& p, bool begins);
+  void add_point(const Vec3& p, bool joined, bool finite = true);
+  void set_edges(double u, double v);
 
-  // The points of polylines, one after the other, padded to a multiple of kLanes when a column is set.
-  std::vector<double> x_, y_, z_, joined_;  // joined: 1 where an edge leads to the point from the one before, else 0
-  std::vector<Multipole> far_;
-  std::vector<std::pair<Vec3, Vec3>> near_;  // edges whose curvature depends on the place
-  double far_curvature_ = 0;
-  int last_ = -1;  // index of the last point added
+  const BoundaryPieces* pieces_ = nullptr;
+  const Surroundings* around_ = nullptr;
+  double rays_ = 0;  // curvature of the ways to infinity
+  // The points of polylines, one after the other, padded to a multiple of kLanes. See EdgeArrays.
+  std::vector<double> x_, y_, z_, joined_, finite_;
+  std::vector<int> close_;  // pieces whose curvature depends on the place
+  double curvature_ = 0;    // of all others, along z
 
   double u_ = 0, v_ = 0;
   // Of each point relative to the column, and of the edge that leads to it: Re and Im of conj(α) β.
   std::vector<double> ax_, ay_, rr_, dot_, cross_;
-  std::vector<double> poles_;  // the arrays of PoleArrays, one after the other
+  LocalExpansion::Column far_{};  // in z − centre
   mutable std::vector<double> scratch_;
+};
+
+/// A direction in stereographic coordinates up to a positive factor: (t : α) = (t : f α), rr = |α|².
+struct Stereographic {
+  double t, f;
+  Stereographic(double z, double rr) {
+    const double length = std::sqrt(rr + z * z);
+    t = z < 0 ? rr : length + z, f = z < 0 ? length - z : 1.0;
+  }
 };
 
 /// Distance of p from the segment ab.

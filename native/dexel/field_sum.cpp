@@ -10,7 +10,8 @@
 namespace riffler {
 
 namespace {
-constexpr double kTiny = 1e-300;
+constexpr double kTiny = 1e-300, kPi = 3.14159265358979323846;
+constexpr double kGauss = 0.28867513459481287;  // 1 / (2 √3)
 }  // namespace
 
 // Nothing is reordered: every lane does the same arithmetic whatever the width of the registers.
@@ -18,13 +19,13 @@ constexpr double kTiny = 1e-300;
 /// The loops over lanes, compiled once for each set of instructions.
 struct FieldLanes {
   using EdgeLanes = FieldSums::EdgeLanes;
-  using PoleLanes = FieldSums::PoleLanes;
+  using SourceLanes = FieldSums::SourceLanes;
 
   /// The direction to each point in stereographic coordinates up to a positive factor, (t : α) = (t : f α).
   static RIFFLER_INLINE void project(const EdgeArrays& in, double z, double* __restrict dz, double* __restrict length,
                                      double* __restrict t, double* __restrict f) {
     for (std::size_t k = 0; k <= in.n; ++k) {
-      const double d = in.z[k] - z, l = __builtin_sqrt(in.rr[k] + d * d);
+      const double d = in.z[k] - in.finite[k] * z, l = __builtin_sqrt(in.rr[k] + d * d);
       dz[k] = d, length[k] = l;
       t[k] = d < 0 ? in.rr[k] : l + d;
       f[k] = d < 0 ? l - d : 1.0;
@@ -51,7 +52,8 @@ struct FieldLanes {
         re[q] = turned;
 
         const double below = product * (product + in.dot[b] + dz[a] * dz[b]);
-        const double weight = (below > 0 ? length[a] + length[b] : 0.0) / (below > 0 ? below : 1.0);
+        const double around = in.finite[b] * length[a] + in.finite[a] * length[b];
+        const double weight = (below > 0 ? around : 0.0) / (below > 0 ? below : 1.0);
         gz[q] += in.cross[b] * weight;
         if constexpr (kFull) {
           gx[q] += in.joined[b] * (in.y[a] * dz[b] - dz[a] * in.y[b]) * weight;
@@ -79,58 +81,133 @@ struct FieldLanes {
       edges<false>(in, z, out);
   }
 
-  static RIFFLER_INLINE void poles(const PoleArrays& in, double z, PoleLanes& out) {
-    double value[kLanes], slope[kLanes];
-    for (std::size_t q = 0; q < kLanes; ++q) value[q] = slope[q] = 0;
-    for (std::size_t begin = 0; begin < in.n; begin += kLanes)
+  /// b[i][j]: terms of 1 / |y − p| in the powers x^i y^j of p, and those with one z. |α| |y|² b_α = (2 |α| − 1) Σ y_i
+  /// b_{α − e_i} − (|α| − 1) Σ b_{α − 2 e_i}, since Σ b_α is a generating function of Legendre polynomials.
+  struct Inverse {
+    static constexpr int kSide = kExpansionDegree + 2;
+    double flat[kSide][kSide][kLanes], once[kSide][kSide][kLanes];
+  };
+
+  static RIFFLER_INLINE void inverse(const double* x, const double* y, const double* z, Inverse& out) {
+    double over[kLanes];
+    for (std::size_t q = 0; q < kLanes; ++q) {
+      over[q] = 1 / (x[q] * x[q] + y[q] * y[q] + z[q] * z[q]);
+      out.flat[0][0][q] = __builtin_sqrt(over[q]);
+    }
+    for (int i = 0; i < Inverse::kSide; ++i)
+      for (int j = 0; i + j < Inverse::kSide; ++j) {
+        const int n = i + j;
+        double* __restrict b = out.flat[i][j];
+        if (n > 0) {
+          const double first = (2.0 * n - 1) / n, second = (n - 1.0) / n;
+          double sum[kLanes];
+          for (std::size_t q = 0; q < kLanes; ++q) sum[q] = 0;
+          if (i > 0)
+            for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * x[q] * out.flat[i - 1][j][q];
+          if (j > 0)
+            for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * y[q] * out.flat[i][j - 1][q];
+          if (i > 1)
+            for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.flat[i - 2][j][q];
+          if (j > 1)
+            for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.flat[i][j - 2][q];
+          for (std::size_t q = 0; q < kLanes; ++q) b[q] = sum[q] * over[q];
+        }
+        if (n + 1 >= Inverse::kSide) continue;
+        const double first = (2.0 * n + 1) / (n + 1), second = static_cast<double>(n) / (n + 1);
+        double sum[kLanes];
+        for (std::size_t q = 0; q < kLanes; ++q) sum[q] = first * z[q] * b[q];
+        if (i > 0)
+          for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * x[q] * out.once[i - 1][j][q];
+        if (j > 0)
+          for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * y[q] * out.once[i][j - 1][q];
+        if (i > 1)
+          for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.once[i - 2][j][q];
+        if (j > 1)
+          for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.once[i][j - 2][q];
+        for (std::size_t q = 0; q < kLanes; ++q) out.once[i][j][q] = sum[q] * over[q];
+      }
+  }
+
+  /// Adds (w · ∇) of the terms, by which a term of degree n in K is made of those of degree n + 1, times g^n.
+  static RIFFLER_INLINE void derive(const Inverse& b, const double* wx, const double* wy, const double* wz,
+                                    const double* g, const double* dipole, SourceLanes& out) {
+    double power[kExpansionDegree + 1][kLanes];  // g^n / n, of dipoles 1
+    for (std::size_t q = 0; q < kLanes; ++q) {
+      double p = 1;
+      for (int n = 1; n <= kExpansionDegree; ++n) p *= g[q], power[n][q] = p * (1.0 / n + dipole[q] * (1 - 1.0 / n));
+    }
+    for (int i = 0; i <= kExpansionDegree; ++i)
+      for (int j = 0; i + j <= kExpansionDegree; ++j) {
+        if (i + j > 0)
+          for (std::size_t q = 0; q < kLanes; ++q)
+            out.terms[0][i][j][q] += power[i + j][q] * (wx[q] * ((i + 1) * b.flat[i + 1][j][q]) +
+                                                        wy[q] * ((j + 1) * b.flat[i][j + 1][q]) + wz[q] * b.once[i][j][q]);
+        if (i + j == kExpansionDegree) continue;
+        for (std::size_t q = 0; q < kLanes; ++q)
+          out.terms[1][i][j][q] +=
+              power[i + j + 1][q] *
+              (wx[q] * ((i + 1) * b.once[i + 1][j][q]) + wy[q] * ((j + 1) * b.once[i][j + 1][q]) -
+               wz[q] * ((i + 2) * (i + 1) * b.flat[i + 2][j][q] + (j + 2) * (j + 1) * b.flat[i][j + 2][q]));
+      }
+  }
+
+  static RIFFLER_INLINE void sources(const SourceArrays& in, SourceLanes& out) {
+    out = {};
+    Inverse b;
+    for (std::size_t begin = 0; begin < in.n; begin += kLanes) {
+      double wx[kLanes], wy[kLanes], wz[kLanes], x[kLanes], y[kLanes], z[kLanes], g[kLanes];
       for (std::size_t q = 0; q < kLanes; ++q) {
         const std::size_t k = begin + q;
-        const double rz = in.z[k] - z, inverse = 1 / (in.rr[k] + rz * rz), cube = inverse * __builtin_sqrt(inverse);
-        const double along = in.qzz[k] * rz, dipole = in.across[k] + in.dz[k] * rz + in.trace[k];
-        const double quadrupole = in.flat[k] + (2 * in.skew[k] + along) * rz;
-        value[q] += (dipole - 3 * quadrupole * inverse) * cube;
-        slope[q] -= (in.dz[k] - 3 * inverse * (dipole * rz + 2 * (in.skew[k] + along)) +
-                     15 * quadrupole * rz * inverse * inverse) *
-                    cube;
+        constexpr double kWeight = -0.5 / (4 * kPi);
+        wx[q] = kWeight * in.wx[k], wy[q] = kWeight * in.wy[k], wz[q] = kWeight * in.wz[k];
       }
-    for (std::size_t q = 0; q < kLanes; ++q) out.value[q] = value[q], out.slope[q] = slope[q];
+      for (const double s : {0.5 - kGauss, 0.5 + kGauss}) {
+        for (std::size_t q = 0; q < kLanes; ++q) {
+          const std::size_t k = begin + q;
+          x[q] = in.ax[k] + s * in.ex[k], y[q] = in.ay[k] + s * in.ey[k], z[q] = in.az[k] + s * in.ez[k];
+          g[q] = 1 - in.endless[k] * s;
+        }
+        inverse(x, y, z, b);
+        derive(b, wx, wy, wz, g, in.dipole + begin, out);
+      }
+    }
   }
 
   static void edges_baseline(const EdgeArrays& in, double z, bool full, EdgeLanes& out) { edges(in, z, full, out); }
-  static void poles_baseline(const PoleArrays& in, double z, PoleLanes& out) { poles(in, z, out); }
+  static void sources_baseline(const SourceArrays& in, SourceLanes& out) { sources(in, out); }
 
 #ifdef RIFFLER_VECTOR_TARGETS
   // Neither target may bring fused multiply-adds in: results would differ.
   __attribute__((target("avx2"))) static void edges_avx2(const EdgeArrays& in, double z, bool full, EdgeLanes& out) {
     edges(in, z, full, out);
   }
-  __attribute__((target("avx2"))) static void poles_avx2(const PoleArrays& in, double z, PoleLanes& out) {
-    poles(in, z, out);
+  __attribute__((target("avx2"))) static void sources_avx2(const SourceArrays& in, SourceLanes& out) {
+    sources(in, out);
   }
   __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) static void edges_avx512(
       const EdgeArrays& in, double z, bool full, EdgeLanes& out) {
     edges(in, z, full, out);
   }
-  __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) static void poles_avx512(
-      const PoleArrays& in, double z, PoleLanes& out) {
-    poles(in, z, out);
+  __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) static void sources_avx512(
+      const SourceArrays& in, SourceLanes& out) {
+    sources(in, out);
   }
 #endif
 
   static std::vector<FieldSums> available() {
     std::vector<FieldSums> sums;
-    const auto add = [&](auto edges, auto poles) {
+    const auto add = [&](auto edges, auto sources) {
       FieldSums s;
-      s.edges_ = edges, s.poles_ = poles;
+      s.edges_ = edges, s.sources_ = sources;
       sums.push_back(s);
     };
 #ifdef RIFFLER_VECTOR_TARGETS
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-      add(edges_avx512, poles_avx512);
-    if (__builtin_cpu_supports("avx2")) add(edges_avx2, poles_avx2);
+      add(edges_avx512, sources_avx512);
+    if (__builtin_cpu_supports("avx2")) add(edges_avx2, sources_avx2);
 #endif
-    add(edges_baseline, poles_baseline);
+    add(edges_baseline, sources_baseline);
     return sums;
   }
 };
@@ -155,11 +232,14 @@ EdgeSum FieldSums::edges(const EdgeArrays& in, double z, bool full) const {
   return out;
 }
 
-PoleSum FieldSums::poles(const PoleArrays& in, double z) const {
-  PoleLanes lanes;
-  poles_(in, z, lanes);
-  PoleSum out{0, 0};
-  for (std::size_t q = 0; q < kLanes; ++q) out.value += lanes.value[q], out.slope += lanes.slope[q];
+SourceSum FieldSums::sources(const SourceArrays& in) const {
+  SourceLanes lanes;
+  sources_(in, lanes);
+  SourceSum out{};
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i + k <= kExpansionDegree; ++i)
+      for (int j = 0; i + j + k <= kExpansionDegree; ++j)
+        for (std::size_t q = 0; q < kLanes; ++q) out.terms[k][i][j] += lanes.terms[k][i][j][q];
   return out;
 }
 

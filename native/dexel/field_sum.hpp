@@ -9,9 +9,10 @@ namespace riffler {
 inline constexpr std::size_t kLanes = 8;
 
 /// Polylines about one column: arrays of n + 1 points, n a multiple of kLanes. An edge leads to each point but the
-/// first from the one before it, unless `joined` is 0 there. See Field for what they are.
+/// first from the one before it, unless `joined` is 0 there. `finite` is 0 where a point lies at infinity, in the
+/// direction (x, y, z) of length 1. See Field for what they are.
 struct EdgeArrays {
-  const double *x, *y, *z, *rr, *dot, *cross, *joined;
+  const double *x, *y, *z, *rr, *dot, *cross, *joined, *finite;
   double* scratch;  // 4 (n + 1)
   std::size_t n;
 };
@@ -21,23 +22,28 @@ struct EdgeSum {
   double gx, gy, gz;  // Σ (a × b) (|a| + |b|) / (|a| |b| (|a| |b| + a·b))
 };
 
-/// Dipoles and quadrupoles about one column: arrays of n, a multiple of kLanes. With r = (x, y, z − height), the dipole
-/// D and the symmetric quadrupole Q with its trace: D·r = across + dz rz, r·Qr = flat + 2 skew rz + qzz rz².
-struct PoleArrays {
-  const double *z, *rr, *dz, *across, *flat, *skew, *qzz, *trace;
+/// What is far from the origin, n a multiple of kLanes:
+/// - edges from a to a + e, w = a × e;
+/// - where `endless` is 1, edges from a to infinity in the direction of a + e, w = a × e;
+/// - where `dipole` is 1, small surfaces at a, −w their area vector, e = 0.
+struct SourceArrays {
+  const double *ax, *ay, *az, *ex, *ey, *ez, *wx, *wy, *wz, *endless, *dipole;
   std::size_t n;
 };
 
-struct PoleSum {
-  double value, slope;  // Σ D·r / r³ + trace / r³ − 3 r·Qr / r⁵, and its derivative by the height
+inline constexpr int kExpansionDegree = 5;
+
+/// The terms of K's Taylor polynomial about the origin with the powers x^i y^j z^k, k < 2, 1 ≤ i + j + k ≤ degree.
+struct SourceSum {
+  double terms[2][kExpansionDegree + 1][kExpansionDegree + 1];
 };
 
-/// Both sums for one set of instructions.
+/// The sums for one set of instructions.
 class FieldSums {
  public:
   /// The product, gz, and (with `full`) gx and gy at the height z.
   EdgeSum edges(const EdgeArrays& in, double z, bool full) const;
-  PoleSum poles(const PoleArrays& in, double z) const;
+  SourceSum sources(const SourceArrays& in) const;
 
   /// All that this processor can run, the fastest first. They give the same bits.
   static const std::vector<FieldSums>& available();
@@ -46,13 +52,13 @@ class FieldSums {
   struct EdgeLanes {
     double re[kLanes], im[kLanes], gx[kLanes], gy[kLanes], gz[kLanes];
   };
-  struct PoleLanes {
-    double value[kLanes], slope[kLanes];
+  struct SourceLanes {
+    double terms[2][kExpansionDegree + 1][kExpansionDegree + 1][kLanes];
   };
   friend struct FieldLanes;
 
   void (*edges_)(const EdgeArrays&, double, bool, EdgeLanes&);
-  void (*poles_)(const PoleArrays&, double, PoleLanes&);
+  void (*sources_)(const SourceArrays&, SourceLanes&);
 };
 
 }  // namespace riffler

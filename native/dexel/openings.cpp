@@ -1,12 +1,17 @@
 #include "dexel/openings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <tuple>
 
-#include "dexel/boundary_tree.hpp"
+#include "dexel/boundary_field.hpp"
+#include "dexel/field.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
@@ -14,8 +19,9 @@ namespace riffler {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kLeaf = 8;                             // columns and cells of a leaf's sides
-constexpr int kTask = 32;                            // of a task's
+constexpr int kLeaf = 4;                             // columns and cells of a leaf's sides
+constexpr int kSmoothLeaf = 16;                      // of one that is far from the boundary
+constexpr std::size_t kTasks = 512;                  // blocks into which the grid is cut before each is searched alone
 constexpr double kShortest = 1.0 / (1 << 20);        // cells: a piece of a column at an edge is not halved further
 constexpr double kRoot = 1e-9;                       // cells: where the search along a column ends
 constexpr double kLevel = 1e-6, kLevelBound = 2e-3;  // of K: measured and proven deviation from ½ that counts as none
@@ -51,42 +57,51 @@ class Search {
  public:
   using Rounded = std::function<int(int row, int column, double z)>;
 
-  Search(const BoundaryTree& tree, const Rounded& rounded, bool with_gradients, std::vector<Passage>& out)
-      : tree_(tree), rounded_(rounded), with_gradients_(with_gradients), out_(out) {}
+  Search(const BoundaryPieces& pieces, const Rounded& rounded, bool with_gradients, std::vector<Passage>& out)
+      : pieces_(pieces), descent_(pieces), rounded_(rounded), with_gradients_(with_gradients), out_(out) {}
 
-  /// Whether K may pass ½ in the block: second-order bound about its centre.
-  bool may_pass(const Block& block) {
-    const Vec3 half = block.half();
-    const double curvature = tree_.gather(block.centre(), half, field_, true);
-    if (curvature == std::numeric_limits<double>::infinity()) return true;
-    phase_ = field_.at(block.centre(), gradient_);
-    remainder_ = 0.5 * curvature * glm::dot(half, half);
-    return std::abs(phase_) <= glm::dot(glm::abs(gradient_), half) + remainder_ + kSlack;
+  /// Calls body for the parts of a block, whose surroundings are `around`, in which K may pass ½.
+  template <class Body>
+  void parts(const Block& block, const Surroundings& around, const Body& body) {
+    field_.fill(pieces_, around);
+    const double curved = around.far.curved(block.half());
+    std::array<std::pair<Block, Field::Tangent>, 8> found;
+    std::size_t count = 0;
+    halves(block, kLeaf, [&](const Block& part) {
+      const Vec3 half = part.half();
+      // The bound is for parts of half the size along every axis.
+      const bool halved = glm::all(glm::lessThanEqual(half, 0.5 * block.half()));
+      const Field::Tangent t = field_.tangent(part.centre(), half, halved ? curved : 4 * curved);
+      if (std::abs(t.phase) <= glm::dot(glm::abs(t.gradient), half) + t.remainder + kSlack) found[count++] = {part, t};
+    });
+    for (std::size_t k = 0; k < count; ++k) body(found[k].first, found[k].second);
   }
 
-  void block(const Block& block) {
-    if (block.within(kLeaf)) return leaf(block);
-    if (!may_pass(block)) return;
-    halves(block, kLeaf, [&](const Block& part) { this->block(part); });
+  void enter(const Block& block, const Surroundings& within, Surroundings& around) {
+    descent_.enter(within, block.centre(), glm::length(block.half()), around);
+  }
+
+  void block(const Block& block, const Field::Tangent& tangent, const Surroundings& within, std::size_t depth = 0) {
+    if (depth == levels_.size()) levels_.emplace_back();
+    Surroundings& around = levels_[depth];
+    enter(block, within, around);
+    if (block.within(around.near.empty() ? kSmoothLeaf : kLeaf)) return leaf(block, tangent, around);
+    parts(block, around,
+          [&](const Block& part, const Field::Tangent& t) { this->block(part, t, around, depth + 1); });
   }
 
  private:
-  /// Phases are that much in error (multipoles), with room to spare.
+  /// Phases are that much in error (polynomials), with room to spare.
   static constexpr double kSlack = 1e-4;
 
-  void leaf(const Block& block) {
+  void leaf(const Block& block, const Field::Tangent& t, const Surroundings& around) {
     const Vec3 centre = block.centre(), half = block.half();
-    const double curvature = tree_.gather(centre, half, field_);
-    if (curvature < std::numeric_limits<double>::infinity()) {
-      phase_ = field_.at(centre, gradient_);
-      remainder_ = 0.5 * curvature * glm::dot(half, half);
-    } else {
-      phase_ = 0, gradient_ = Vec3(0), remainder_ = 1;
-    }
-    const double along = std::abs(gradient_.z) * half.z + remainder_ + kSlack;
+    field_.fill(pieces_, around);
+    field_.enclose(half);
+    const double along = std::abs(t.gradient.z) * half.z + t.remainder + kSlack;
     for (int i = block.i0; i < block.i1; ++i)
       for (int j = block.j0; j < block.j1; ++j) {
-        if (std::abs(phase_ + gradient_.x * (i - centre.x) + gradient_.y * (j - centre.y)) > along) continue;
+        if (std::abs(t.phase + t.gradient.x * (i - centre.x) + t.gradient.y * (j - centre.y)) > along) continue;
         row_ = i, column_ = j;
         field_.set_column(i, j);
         segment(block.z0, block.z1);
@@ -134,13 +149,13 @@ class Search {
     out_.push_back(passage);
   }
 
-  const BoundaryTree& tree_;
+  const BoundaryPieces& pieces_;
+  Descent descent_;
   const Rounded& rounded_;  // K rounded to an integer, by boundary_winding
   bool with_gradients_;
   std::vector<Passage>& out_;
+  std::deque<Surroundings> levels_;  // of the blocks that enclose the present one
   Field field_;
-  double phase_ = 0, remainder_ = 0;
-  Vec3 gradient_{0};
   int row_ = 0, column_ = 0;
 };
 
@@ -151,15 +166,28 @@ double margin(const Mesh& mesh, double pitch, double boundary) {
   return 1.01 * std::min(std::sqrt(area_cells / (2 * kPi)), boundary / (2 * kPi)) + 1;
 }
 
-/// Sorted; a passage that two blocks found at their common face stands once.
-void tidy(std::vector<Passage>& passages) {
-  std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
-    return std::tie(a.row, a.column, a.z) < std::tie(b.row, b.column, b.z);
+/// All passages sorted; one that two blocks found at their common face stands once.
+std::vector<Passage> sorted(const std::vector<std::vector<Passage>>& found, int rows) {
+  std::vector<std::size_t> begin(static_cast<std::size_t>(rows) + 1, 0);
+  for (const std::vector<Passage>& part : found)
+    for (const Passage& p : part) ++begin[p.row + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Passage> all(begin.back());
+  std::vector<std::size_t> end = begin;
+  for (const std::vector<Passage>& part : found)
+    for (const Passage& p : part) all[end[p.row]++] = p;
+  parallel_for(static_cast<std::size_t>(rows), 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row)
+      std::sort(all.begin() + begin[row], all.begin() + end[row], [](const Passage& a, const Passage& b) {
+        return std::tie(a.column, a.z, a.sign) < std::tie(b.column, b.z, b.sign);
+      });
   });
-  const auto end = std::unique(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
-    return a.row == b.row && a.column == b.column && a.sign == b.sign && b.z - a.z < 1e-2;
-  });
-  passages.erase(end, passages.end());
+  all.erase(std::unique(all.begin(), all.end(),
+                        [](const Passage& a, const Passage& b) {
+                          return a.row == b.row && a.column == b.column && a.sign == b.sign && b.z - a.z < 1e-2;
+                        }),
+            all.end());
+  return all;
 }
 
 }  // namespace
@@ -175,36 +203,59 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
       points.back().emplace_back(p.u, p.v, (p.z - base) / pitch);
     }
   }
-  const BoundaryTree tree(points);
+  const BoundaryPieces pieces(points);
   const Box3 box = to_local(grid.axis(), bounds(mesh));
-  const double more = margin(mesh, pitch, tree.length());
+  const double more = margin(mesh, pitch, pieces.length());
   const double bottom = std::floor((box.lower.z - base) / pitch - more), top = (box.upper.z - base) / pitch + more;
 
-  // Down to tasks on one thread, then task by task on all.
-  std::vector<Block> tasks, pending{{0, grid.nu(), 0, grid.nv(), bottom, top}};
-  std::vector<Passage> passages;
   const Search::Rounded rounded = [&](int row, int column, double z) {
     return static_cast<int>(std::lround(boundary_winding(loops, projection, pitch, row, column, base + z * pitch)));
   };
-  Search top_level(tree, rounded, grid.has_normals(), passages);
-  while (!pending.empty()) {
-    const Block block = pending.back();
-    pending.pop_back();
-    if (!top_level.may_pass(block)) continue;
-    if (block.within(kTask))
-      tasks.push_back(block);
-    else
-      halves(block, kTask, [&](const Block& part) { pending.push_back(part); });
+  // Level by level down to blocks enough for all threads, then each block alone.
+  struct Task {
+    Block block;
+    Field::Tangent tangent;
+    std::shared_ptr<const Surroundings> within;
+    std::vector<Passage> found;
+    std::vector<Task> parts;
+  };
+  const Block whole{0, grid.nu(), 0, grid.nv(), bottom, top};
+  const double radius = glm::length(whole.half());
+  std::vector<Task> tasks(1);
+  tasks[0] = {whole, {}, std::make_shared<Surroundings>(Descent(pieces).root(whole.centre(), radius)), {}, {}};
+  bool divisible = true;
+  for (double begin = 0; divisible && tasks.size() < kTasks && !tasks.empty(); begin += 0.02) {
+    divisible = false;
+    parallel_for(
+        tasks.size(), 1,
+        [&](std::size_t k, std::size_t) {
+          Task& task = tasks[k];
+          Search search(pieces, rounded, false, task.found);
+          auto around = std::make_shared<Surroundings>();
+          search.enter(task.block, *task.within, *around);
+          search.parts(task.block, *around, [&](const Block& b, const Field::Tangent& t) {
+            task.parts.push_back({b, t, around, {}, {}});
+          });
+        },
+        part(progress, begin, begin + 0.02));
+    std::vector<Task> next;
+    for (Task& task : tasks)
+      for (Task& inner : task.parts) {
+        divisible |= !inner.block.within(kLeaf);
+        next.push_back(std::move(inner));
+      }
+    tasks = std::move(next);
   }
-  std::vector<std::vector<Passage>> found(tasks.size());
   parallel_for(
       tasks.size(), 1,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) Search(tree, rounded, grid.has_normals(), found[k]).block(tasks[k]);
+      [&](std::size_t k, std::size_t) {
+        Search(pieces, rounded, grid.has_normals(), tasks[k].found)
+            .block(tasks[k].block, tasks[k].tangent, *tasks[k].within);
       },
-      progress);
-  for (const std::vector<Passage>& part : found) passages.insert(passages.end(), part.begin(), part.end());
-  tidy(passages);
+      part(progress, 0.3, 1));
+  std::vector<std::vector<Passage>> found;
+  for (Task& task : tasks) found.push_back(std::move(task.found));
+  std::vector<Passage> passages = sorted(found, grid.nu());
   for (Passage& p : passages) p.z = base + p.z * pitch;
   return passages;
 }

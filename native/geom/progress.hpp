@@ -16,4 +16,10 @@ inline void report(const Progress& progress, double share) {
   if (progress && !progress(share)) throw Cancelled();
 }
 
+/// Progress of one part of a longer call. Refers to `progress`.
+inline Progress part(const Progress& progress, double begin, double end) {
+  if (!progress) return {};
+  return [&progress, begin, end](double share) { return progress(begin + share * (end - begin)); };
+}
+
 }  // namespace riffler
