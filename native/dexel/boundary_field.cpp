@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 /// Length of an edge in its distances up to which two points of Gauss are enough.
-constexpr double kShort = 1.0 / 6;
+constexpr double kShort = 1.0 / 4;
 /// Loops of so many edges are pieces as a whole.
 constexpr int kWhole = 8;
 /// What a dipole may leave out of K.
@@ -30,47 +30,70 @@ BoundaryPieces::BoundaryPieces(const std::vector<std::vector<Vec3>>& loops) {
       length_ += glm::length(edges_.back().b - edges_.back().a);
     }
     if (n <= kWhole) {
-      add_loop(first, first + n);
+      pieces_.push_back({first, first + n, -1, -1, 0, span(first, first + n)});
+      for (int k = 0; k < n; ++k) pieces_.back().length += glm::length(edges_[first + k].b - edges_[first + k].a);
       continue;
     }
     for (int k = 0; k < n; ++k) {
       const Edge& e = edges_[first + k];
-      const double length = glm::length(e.b - e.a);
-      pieces_.push_back({first + k, first + k + 1, start + (k + n - 1) % n, start + (k + 1) % n, 0.5 * (e.a + e.b),
-                         0.5 * length, length});
+      const double edge = glm::length(e.b - e.a);
+      pieces_.push_back({first + k,
+                         first + k + 1,
+                         start + (k + n - 1) % n,
+                         start + (k + 1) % n,
+                         edge,
+                         {0.5 * (e.a + e.b), 0.5 * edge, 0, 0, Vec3(0)}});
     }
+    add_chains(start, size());
   }
 }
 
-void BoundaryPieces::add_loop(int first, int last) {
-  Piece piece{first, last, -1, -1, Vec3(0), 0, 0};
+/// Of the edges and the chord that closes them.
+BoundaryPieces::Surface BoundaryPieces::span(int first, int last) const {
+  Surface out{Vec3(0), 0, 0, 0, Vec3(0)};
   Box3 box;
-  for (int k = first; k < last; ++k) box.add(edges_[k].a);
-  piece.centre = 0.5 * (box.lower + box.upper);
+  for (int k = first; k < last; ++k) box.add(edges_[k].a), box.add(edges_[k].b);
+  out.centre = 0.5 * (box.lower + box.upper);
   Mat3 moment(0);
-  for (int k = first; k < last; ++k) {
-    const Vec3 a = edges_[k].a - piece.centre, b = edges_[k].b - piece.centre, vector = 0.5 * glm::cross(a, b);
-    piece.radius = std::max(piece.radius, glm::length(a));
-    piece.length += glm::length(b - a), piece.area += glm::length(vector), piece.dipole += vector;
+  const auto add = [&](const Vec3& from, const Vec3& to) {
+    const Vec3 a = from - out.centre, b = to - out.centre, vector = 0.5 * glm::cross(a, b);
+    out.radius = std::max(out.radius, glm::length(a));
+    out.area += glm::length(vector), out.vector += vector;
     moment += glm::outerProduct(vector, (a + b) / 3.0);
-  }
-  // The centre from which the area's vector is seen to turn least.
-  const double square = glm::dot(piece.dipole, piece.dipole);
-  if (square > 1e-6 * piece.area * piece.area) {
-    const Vec3 shift = glm::transpose(moment) * piece.dipole / square;
-    piece.centre += shift, piece.radius += glm::length(shift);
-    moment -= glm::outerProduct(piece.dipole, shift);
+  };
+  for (int k = first; k < last; ++k) add(edges_[k].a, edges_[k].b);
+  add(edges_[last - 1].b, edges_[first].a);
+  // The centre from which the vector is seen to turn least.
+  const double square = glm::dot(out.vector, out.vector);
+  if (square > 1e-6 * out.area * out.area) {
+    const Vec3 shift = glm::transpose(moment) * out.vector / square;
+    if (glm::length(shift) < out.radius) {
+      out.centre += shift, out.radius += glm::length(shift);
+      moment -= glm::outerProduct(out.vector, shift);
+    }
   }
   double norm = 0;
   for (int k = 0; k < 3; ++k) norm += glm::dot(moment[k], moment[k]);
   // What is left out: quadrupole and the second moments, by the third and fourth power of the distance.
-  piece.far_enough = std::max({2 * piece.radius, std::cbrt(3 * std::sqrt(norm) / (4 * kPi * kLeftOut)),
-                               std::sqrt(std::sqrt(3 * piece.area * piece.radius * piece.radius / (4 * kPi * kLeftOut)))});
-  pieces_.push_back(piece);
+  out.far_enough = std::max({2 * out.radius, std::cbrt(3 * std::sqrt(norm) / (4 * kPi * kLeftOut)),
+                             std::sqrt(std::sqrt(3 * out.area * out.radius * out.radius / (4 * kPi * kLeftOut)))});
+  return out;
+}
+
+void BoundaryPieces::add_chains(int first, int last) {
+  surfaces_.resize(pieces_.size());
+  for (int level = 1; 1 << level <= last - first; ++level)
+    for (int k = first; k + (1 << level) <= last; k += 1 << level)
+      surfaces_[k].push_back(span(pieces_[k].first, pieces_[k + (1 << level) - 1].last));
+}
+
+const BoundaryPieces::Surface* BoundaryPieces::surface(int k, int level) const {
+  const auto& levels = surfaces_[k];
+  return level <= static_cast<int>(levels.size()) ? &levels[level - 1] : nullptr;
 }
 
 double BoundaryPieces::distance(const Piece& piece, const Vec3& p, double near) const {
-  const double d = glm::length(piece.centre - p) - piece.radius;
+  const double d = glm::length(piece.surface.centre - p) - piece.surface.radius;
   if (d >= near) return d;
   double least = std::numeric_limits<double>::infinity();
   for (const Edge& e : edges(piece)) least = std::min(least, segment_distance(p, e.a, e.b));
@@ -81,7 +104,7 @@ double BoundaryPieces::distance(const Piece& piece, const Vec3& p, double near) 
 double BoundaryPieces::curvature(const Piece& piece, double d) {
   const double edges = edge_curvature(piece.length, d);
   if (!piece.is_loop() || !(d > 0)) return edges;
-  return std::min(edges, 6 * piece.area / (4 * kPi * d * d * d * d));
+  return std::min(edges, 6 * piece.surface.area / (4 * kPi * d * d * d * d));
 }
 
 Surroundings Descent::root(const Vec3& centre, double radius) const {
@@ -93,7 +116,7 @@ Surroundings Descent::root(const Vec3& centre, double radius) const {
 }
 
 void Descent::enter(const Surroundings& parent, const Vec3& centre, double radius, Surroundings& out) {
-  for (std::vector<double>& array : arrays_) array.clear();
+  pushed_ = 0, centre_ = centre, far_ = &out.far;
   re_ = 1, im_ = 0, dipoles_ = 0;
   out.centre = centre, out.radius = radius;
   out.far = parent.far;
@@ -107,42 +130,74 @@ void Descent::enter(const Surroundings& parent, const Vec3& centre, double radiu
   });
   out.near.clear();
   const double reach = Surroundings::kFar * radius;
+  int begin = 0, end = 0;  // a chain of far edges
   for (const int k : parent.near) {
     const BoundaryPieces::Piece& piece = pieces_[k];
-    if (const double d = pieces_.distance(piece, centre, reach); d < reach) {
+    if (pieces_.distance(piece, centre, reach) < reach) {
       out.near.push_back(k);
-    } else if (piece.is_loop() && d >= piece.far_enough) {
-      add_dipole(piece.centre - centre, piece.dipole);
+    } else if (piece.is_loop()) {
+      add_loop(piece);
     } else {
-      for (const BoundaryPieces::Edge& e : pieces_.edges(piece)) {
-        turn(e.a - centre, e.b - centre, 1);
-        add_source(e.a - centre, e.b - centre, 1);
-      }
+      if (k != end || (k > 0 && pieces_[k].previous != k - 1)) add_chain(begin, end), begin = k;
+      end = k + 1;
     }
   }
-  while (arrays_[0].size() % kLanes != 0) push(Vec3(1, 0, 0), Vec3(0), Vec3(0), 0, 0);
-  if (!arrays_[0].empty())
-    out.far.add({arrays_[0].data(), arrays_[1].data(), arrays_[2].data(), arrays_[3].data(), arrays_[4].data(),
-                 arrays_[5].data(), arrays_[6].data(), arrays_[7].data(), arrays_[8].data(), arrays_[9].data(),
-                 arrays_[10].data(), arrays_[0].size()});
+  add_chain(begin, end);
+  flush();
   const double k = out.far.constant() + dipoles_ + std::atan2(im_, re_) / (2 * kPi);
   out.far.set_constant(k - std::round(k));
 }
 
-void Descent::add_dipole(const Vec3& centre, const Vec3& dipole) {
-  const double d = glm::length(centre);
-  dipoles_ += glm::dot(dipole, centre) / (4 * kPi * d * d * d);
-  push(centre, Vec3(0), -dipole, 0, 1);
+void Descent::add_loop(const BoundaryPieces::Piece& loop) {
+  const BoundaryPieces::Surface& s = loop.surface;
+  if (glm::length(s.centre - centre_) - s.radius >= s.far_enough) return add_dipole(s);
+  for (const BoundaryPieces::Edge& e : pieces_.edges(loop)) add_edge(e.a, e.b, segment_distance(centre_, e.a, e.b));
 }
 
-void Descent::add_source(const Vec3& a, const Vec3& b, double sign) {
-  const double length = glm::length(b - a);
-  if (length > kShort * segment_distance(Vec3(0), a, b)) {
-    const Vec3 middle = 0.5 * (a + b);
-    add_source(a, middle, sign), add_source(middle, b, sign);
-    return;
+/// As few chords as are good enough, and what lies between them and the chain.
+void Descent::add_chain(int first, int last) {
+  for (int k = first, level = 0; k < last; k += 1 << level) {
+    for (++level;; --level) {
+      if (level == 0) {
+        const BoundaryPieces::Edge& e = pieces_.edges(pieces_[k]).front();
+        add_edge(e.a, e.b, pieces_.distance(pieces_[k], centre_, 0));
+        break;
+      }
+      const BoundaryPieces::Surface* s = k + (1 << level) <= last ? pieces_.surface(k, level) : nullptr;
+      if (!s) continue;
+      const double d = glm::length(s->centre - centre_) - s->radius;
+      const Vec3 &a = pieces_.edges(pieces_[k]).front().a, &b = pieces_.edges(pieces_[k + (1 << level) - 1]).front().b;
+      if (d < s->far_enough || glm::length(b - a) > kShort * d) continue;
+      add_edge(a, b, d);
+      if (s->area > 0) add_dipole(*s);
+      break;
+    }
   }
-  push(a, b - a, sign * glm::cross(a, b), 0, 0);
+}
+
+void Descent::add_dipole(const BoundaryPieces::Surface& surface) {
+  const Vec3 r = surface.centre - centre_;
+  const double d = glm::length(r);
+  dipoles_ += glm::dot(surface.vector, r) / (4 * kPi * d * d * d);
+  push(r, Vec3(0), -surface.vector, 0, 1);
+}
+
+/// An edge at the distance or more.
+void Descent::add_edge(const Vec3& a, const Vec3& b, double distance) {
+  turn(a - centre_, b - centre_, 1);
+  add_source(a - centre_, b - centre_, distance);
+}
+
+void Descent::add_source(const Vec3& a, const Vec3& b, double distance) {
+  if (glm::length(b - a) > kShort * distance) {
+    distance = segment_distance(Vec3(0), a, b);
+    if (glm::length(b - a) > kShort * distance) {
+      const Vec3 middle = 0.5 * (a + b);
+      add_source(a, middle, distance), add_source(middle, b, distance);
+      return;
+    }
+  }
+  push(a, b - a, glm::cross(a, b), 0, 0);
 }
 
 /// From a to infinity, away from `from`.
@@ -155,8 +210,18 @@ void Descent::add_wedge(const Vec3& a, const Vec3& from, double sign) {
 }
 
 void Descent::push(const Vec3& a, const Vec3& e, const Vec3& w, double endless, double dipole) {
+  if (pushed_ == kBatch) flush();
   const double values[] = {a.x, a.y, a.z, e.x, e.y, e.z, w.x, w.y, w.z, endless, dipole};
-  for (int k = 0; k < 11; ++k) arrays_[k].push_back(values[k]);
+  for (int k = 0; k < 11; ++k) arrays_[k][pushed_] = values[k];
+  ++pushed_;
+}
+
+void Descent::flush() {
+  if (pushed_ == 0) return;
+  while (pushed_ % kLanes != 0) push(Vec3(1, 0, 0), Vec3(0), Vec3(0), 0, 0);
+  far_->add({arrays_[0], arrays_[1], arrays_[2], arrays_[3], arrays_[4], arrays_[5], arrays_[6], arrays_[7], arrays_[8],
+             arrays_[9], arrays_[10], pushed_});
+  pushed_ = 0;
 }
 
 /// The factor of an edge at the centre, whose argument is half the solid angle.

@@ -17,15 +17,18 @@ class BoundaryPieces {
   struct Edge {
     Vec3 a, b;
   };
+  /// The surface between a chain of edges and its chord, or that a loop spans: from `far_enough` on, its vector says it
+  /// all.
+  struct Surface {
+    Vec3 centre;  // of a ball around it
+    double radius, area, far_enough;
+    Vec3 vector;
+  };
   struct Piece {
     int first, last;     // its edges
     int previous, next;  // pieces before and after; −1 for a loop
-    Vec3 centre;         // of a ball around it
-    double radius, length;
-    // Of a loop: the least area that spans it at most, its vector, and how far away that says it all.
-    double area = 0;
-    Vec3 dipole{0};
-    double far_enough = 0;
+    double length;
+    Surface surface;  // of an edge only the ball
 
     bool is_loop() const { return next < 0; }
   };
@@ -37,6 +40,9 @@ class BoundaryPieces {
   const Piece& operator[](int k) const { return pieces_[k]; }
   std::span<const Edge> edges(const Piece& p) const { return {edges_.data() + p.first, edges_.data() + p.last}; }
   double length() const { return length_; }
+  /// Of the 2^level pieces from k on, all of one loop, where 2^level divides their place in it; null where there are
+  /// less.
+  const Surface* surface(int k, int level) const;
 
   /// A lower bound of the distance of a piece from p: exact for an edge near by.
   double distance(const Piece& piece, const Vec3& p, double near) const;
@@ -44,19 +50,21 @@ class BoundaryPieces {
   static double curvature(const Piece& piece, double d);
 
  private:
-  void add_loop(int first, int last);
+  Surface span(int first, int last) const;
+  void add_chains(int first, int last);
 
   std::vector<Edge> edges_;
   std::vector<Piece> pieces_;
+  std::vector<std::vector<Surface>> surfaces_;  // of chains that begin at a piece, by level
   double length_ = 0;
 };
 
 /// The boundary as it appears from a ball about `centre`: pieces that come near it, and a polynomial for all others.
 ///
 /// An edge ab that does not come near is a closed curve if it goes on to infinity from a and from b, straight away from
-/// the centre. K of such curves is harmonic in the ball. Where a chain of near edges ends, it is closed in the same way,
-/// so that the curves add up to the boundary. In going from a ball to one within it, the directions of those ways to
-/// infinity change; the wedge between old and new is one more such curve.
+/// the centre. K of such curves is harmonic in the ball. Where a chain of near edges ends, it is closed in the same
+/// way, so that the curves add up to the boundary. In going from a ball to one within it, the directions of those ways
+/// to infinity change; the wedge between old and new is one more such curve.
 struct Surroundings {
   /// Distances from the centre beyond which edges are far, in radii. The polynomial is in error by about the 8th power
   /// of the inverse.
@@ -101,16 +109,24 @@ class Descent {
   void enter(const Surroundings& parent, const Vec3& centre, double radius, Surroundings& out);
 
  private:
-  void add_dipole(const Vec3& centre, const Vec3& dipole);
-  void add_source(const Vec3& a, const Vec3& b, double sign);
+  void add_loop(const BoundaryPieces::Piece& loop);
+  void add_chain(int first, int last);
+  void add_dipole(const BoundaryPieces::Surface& surface);
+  void add_edge(const Vec3& a, const Vec3& b, double distance);
+  void add_source(const Vec3& a, const Vec3& b, double distance);
   void add_wedge(const Vec3& a, const Vec3& from, double sign);
   void push(const Vec3& a, const Vec3& e, const Vec3& w, double endless, double dipole);
+  void flush();
   void turn(const Vec3& a, const Vec3& b, double sign);
 
   const BoundaryPieces& pieces_;
-  std::vector<double> arrays_[11];  // SourceArrays
-  double re_ = 1, im_ = 0;          // product of the curves' factors at the centre
-  double dipoles_ = 0;              // sum of the dipoles' K at the centre
+  static constexpr std::size_t kBatch = 64;
+  double arrays_[11][kBatch];  // SourceArrays
+  std::size_t pushed_ = 0;
+  Vec3 centre_{0};
+  LocalExpansion* far_ = nullptr;
+  double re_ = 1, im_ = 0;  // product of the curves' factors at the centre
+  double dipoles_ = 0;      // sum of the dipoles' K at the centre
 };
 
 }  // namespace riffler

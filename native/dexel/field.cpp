@@ -152,28 +152,28 @@ double Field::curvature(double z, double half) const {
 double Field::variation(double z, double half, double slope) const {
   double up[2] = {0, 0}, down[2] = {0, 0};  // of the close edges, above and below z
   for (const int k : close_)
-   for (const BoundaryPieces::Edge& e : pieces_->edges((*pieces_)[k])) {
-    const Vec3 &from = e.a, &to = e.b;
-    for (const Vec3& end : {from, to})
-      if (end.x == u_ && end.y == v_ && std::abs(end.z - z) <= half) return kInfinity;
-    const Vec2 a = aside(from.x - u_, from.y - v_), b = aside(to.x - u_, to.y - v_);
-    const double aa = glm::dot(a, a), bb = glm::dot(b, b), dot = glm::dot(a, b), cross = a.x * b.y - a.y * b.x;
-    const auto share = [&](double height) {
-      const double za = from.z - height, zb = to.z - height;
-      const Stereographic s(za, aa), t(zb, bb);
-      return std::atan2(s.f * t.f * cross, s.t * t.t + s.f * t.f * dot) / (2 * kPi);
-    };
-    const double za = from.z - z, zb = to.z - z, la = std::sqrt(aa + za * za), lb = std::sqrt(bb + zb * zb);
-    const double below = la * lb * (la * lb + dot + za * zb);
-    if (below > 0) slope -= cross * (la + lb) / below / (4 * kPi);
-    const double middle = share(z);
-    for (const int side : {0, 1}) {
-      const double change = share(side == 0 ? z + half : z - half) - middle;
-      // On a column through the edge K may turn either way: that is not for rounding to decide.
-      if (change > 0 || cross == 0) up[side] += std::abs(change);
-      if (change < 0 || cross == 0) down[side] += std::abs(change);
+    for (const BoundaryPieces::Edge& e : pieces_->edges((*pieces_)[k])) {
+      const Vec3 &from = e.a, &to = e.b;
+      for (const Vec3& end : {from, to})
+        if (end.x == u_ && end.y == v_ && std::abs(end.z - z) <= half) return kInfinity;
+      const Vec2 a = aside(from.x - u_, from.y - v_), b = aside(to.x - u_, to.y - v_);
+      const double aa = glm::dot(a, a), bb = glm::dot(b, b), dot = glm::dot(a, b), cross = a.x * b.y - a.y * b.x;
+      const auto share = [&](double height) {
+        const double za = from.z - height, zb = to.z - height;
+        const Stereographic s(za, aa), t(zb, bb);
+        return std::atan2(s.f * t.f * cross, s.t * t.t + s.f * t.f * dot) / (2 * kPi);
+      };
+      const double za = from.z - z, zb = to.z - z, la = std::sqrt(aa + za * za), lb = std::sqrt(bb + zb * zb);
+      const double below = la * lb * (la * lb + dot + za * zb);
+      if (below > 0) slope -= cross * (la + lb) / below / (4 * kPi);
+      const double middle = share(z);
+      for (const int side : {0, 1}) {
+        const double change = share(side == 0 ? z + half : z - half) - middle;
+        // On a column through the edge K may turn either way: that is not for rounding to decide.
+        if (change > 0 || cross == 0) up[side] += std::abs(change);
+        if (change < 0 || cross == 0) down[side] += std::abs(change);
+      }
     }
-  }
   return std::max({up[0], up[1], down[0], down[1]}) + std::abs(slope) * half + 0.5 * curvature_ * half * half;
 }
 

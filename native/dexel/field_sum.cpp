@@ -140,8 +140,9 @@ struct FieldLanes {
       for (int j = 0; i + j <= kExpansionDegree; ++j) {
         if (i + j > 0)
           for (std::size_t q = 0; q < kLanes; ++q)
-            out.terms[0][i][j][q] += power[i + j][q] * (wx[q] * ((i + 1) * b.flat[i + 1][j][q]) +
-                                                        wy[q] * ((j + 1) * b.flat[i][j + 1][q]) + wz[q] * b.once[i][j][q]);
+            out.terms[0][i][j][q] +=
+                power[i + j][q] * (wx[q] * ((i + 1) * b.flat[i + 1][j][q]) + wy[q] * ((j + 1) * b.flat[i][j + 1][q]) +
+                                   wz[q] * b.once[i][j][q]);
         if (i + j == kExpansionDegree) continue;
         for (std::size_t q = 0; q < kLanes; ++q)
           out.terms[1][i][j][q] +=

@@ -296,8 +296,7 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress)
   const Mesh* used = &mesh;
   if (!loops.empty()) {
     joined = join_cracks(mesh, loops, std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
-    used = &joined;
-    loops = boundary_loops(joined);
+    if (joined.vertices != mesh.vertices) used = &joined, loops = boundary_loops(joined);
   }
   fill(result, *used, loops, progress);
   if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(*used, loops, box))

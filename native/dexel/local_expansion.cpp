@@ -41,7 +41,8 @@ void LocalExpansion::add(const SourceArrays& sources) {
     for (int j = 0; j < kSide; ++j) rows_[r][j] += more.rows_[r][j];
 }
 
-// By Taylor's formula with the second derivatives' bounds within ± half: of a term of degree n they sum up to n (n − 1).
+// By Taylor's formula with the second derivatives' bounds within ± half: of a term of degree n they sum up to n (n −
+// 1).
 double LocalExpansion::curved(const Vec3& half) const {
   constexpr double kSecond[] = {0, 0, 2. / 8, 6. / 8, 12. / 8, 20. / 8};
   static_assert(std::size(kSecond) == kSide);

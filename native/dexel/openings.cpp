@@ -86,8 +86,7 @@ class Search {
     Surroundings& around = levels_[depth];
     enter(block, within, around);
     if (block.within(around.near.empty() ? kSmoothLeaf : kLeaf)) return leaf(block, tangent, around);
-    parts(block, around,
-          [&](const Block& part, const Field::Tangent& t) { this->block(part, t, around, depth + 1); });
+    parts(block, around, [&](const Block& part, const Field::Tangent& t) { this->block(part, t, around, depth + 1); });
   }
 
  private:
@@ -233,9 +232,8 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
           Search search(pieces, rounded, false, task.found);
           auto around = std::make_shared<Surroundings>();
           search.enter(task.block, *task.within, *around);
-          search.parts(task.block, *around, [&](const Block& b, const Field::Tangent& t) {
-            task.parts.push_back({b, t, around, {}, {}});
-          });
+          search.parts(task.block, *around,
+                       [&](const Block& b, const Field::Tangent& t) { task.parts.push_back({b, t, around, {}, {}}); });
         },
         part(progress, begin, begin + 0.02));
     std::vector<Task> next;
