@@ -1,4 +1,6 @@
 // riffler.Volume
+#include <optional>
+
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
 #include "dexel/boolean.hpp"
@@ -40,13 +42,28 @@ Box3 box_around(const Mesh& mesh, const py::object& lower, const py::object& upp
   return box;
 }
 
+void fill(py::dict& d, const MeshReport& r) {
+  d["triangles"] = r.triangles, d["degenerate"] = r.degenerate, d["duplicates"] = r.duplicates;
+  d["open_edges"] = r.open_edges, d["nonmanifold_edges"] = r.nonmanifold_edges;
+  d["inconsistent_edges"] = r.inconsistent_edges, d["openings"] = r.openings;
+  d["flipped_shells"] = r.flipped_shells, d["inside_out"] = r.inside_out, d["overlap"] = r.overlap;
+  d["doubtful_rays"] = r.doubtful_rays;
+}
+
 std::shared_ptr<SharedVolume> volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch,
                                                const std::string& directions, const py::object& lower,
-                                               const py::object& upper, const py::object& progress) {
+                                               const py::object& upper, const py::object& progress,
+                                               std::optional<py::dict> report) {
   const Frame frame{box_around(*mesh, lower, upper), pitch, directions};
   const Progress listener = to_progress(progress);
-  const py::gil_scoped_release release;
-  return share(from_mesh(*mesh, frame, listener));
+  MeshReport found;
+  std::shared_ptr<SharedVolume> volume;
+  {
+    const py::gil_scoped_release release;
+    volume = share(from_mesh(*mesh, frame, listener, report ? &found : nullptr));
+  }
+  if (report) fill(*report, found);
+  return volume;
 }
 
 std::shared_ptr<Mesh> volume_to_mesh(SharedVolume& self, const py::object& progress) {
@@ -215,10 +232,18 @@ normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h
                   "A box full of material. ValueError, before anything is allocated, if it does not fit in memory.")
       .def_static("from_mesh", &volume_from_mesh, py::arg("mesh"), py::arg("pitch"), py::arg("directions") = "z",
                   py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("progress") = py::none(),
+                  py::arg("report") = py::none(),
                   R"(The points whose absolute generalized winding number in ``mesh`` exceeds 1/2.
 
 Covers the mesh's box, or ``lower`` to ``upper`` (clipping what lies outside). Inside-out, overlapping, touching and open
-parts are fine; a mesh without volume is a ValueError.)")
+parts are fine; a mesh without volume is a ValueError.
+
+``report``: a dict that is filled with what was wrong with the mesh, all 0 but ``triangles`` for one that is closed and
+well oriented: ``degenerate`` and ``duplicates``, triangles; ``open_edges`` of one triangle, ``nonmanifold_edges`` of
+three or more, ``inconsistent_edges`` of two that run it in the same direction; ``openings``, walks along which the
+surface ends; ``flipped_shells`` that face into the material; of the volume, the shares ``inside_out``, where the
+winding number is negative, and ``overlap``, where it is 2 or more; ``doubtful_rays``, the share of the rays with
+material that end within an opening instead of on the surface.)")
       .def_static("from_bytes", &volume_from_bytes, py::arg("data"), py::arg("name") = "volume",
                   "The volume whose to_bytes() these are; ``name`` stands in messages.")
       .def_property_readonly("pitch", [](SharedVolume& v) { return v.volume.frame().pitch; })

@@ -1,8 +1,10 @@
 #include "dexel/from_mesh.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "dexel/boundary.hpp"
 #include "dexel/crossings.hpp"
@@ -20,8 +22,11 @@ constexpr double kThinnest = 1e-9;
 /// opening of a thousand cells.
 constexpr double kThinnestOpening = 1e-2;
 
-/// The source of an end at the box's side, and of passages that were repaired.
-constexpr std::uint32_t kBox = 0xffffffffU;
+/// Share of the time that counting a mesh's defects takes.
+constexpr double kCounted = 0.1;
+
+/// The sources of ends at the box's side and of passages that were repaired.
+constexpr std::uint32_t kBox = 0xffffffffU, kRepaired = 0xfffffffeU;
 
 /// A column's span while it is put together: where it begins and ends, and what gives the normals there. A source
 /// faces out of the material where `outward`, otherwise its reverse does.
@@ -35,10 +40,28 @@ double most(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+/// What the winding numbers of columns tell about a mesh.
+struct Tally {
+  double inside = 0, overlap = 0, inside_out = 0;  // mm of rays
+  std::size_t rays = 0, doubtful = 0;
+
+  void operator+=(const Tally& o) {
+    inside += o.inside, overlap += o.overlap, inside_out += o.inside_out;
+    rays += o.rays, doubtful += o.doubtful;
+  }
+};
+
+/// The tally of all grids, and the triangles at which negative winding numbers begin or end.
+struct Findings {
+  Tally tally;
+  std::vector<std::uint8_t> flipped;
+};
+
 /// Fills one grid from the crossings of its columns.
 class Filler {
  public:
-  Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress);
+  Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress,
+         Findings* findings);
 
   /// Entries of triangles in bands: the triangles tested.
   std::size_t triangles_tested() const { return bands_.size(); }
@@ -52,10 +75,11 @@ class Filler {
   };
 
   int rows_per_band() const;
-  void tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders) const;
+  void tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders, Tally& tally) const;
   void add_passages(int first, int last, std::vector<BandCrossing>& out) const;
   void fill(std::span<const Crossing> crossings, TileBuilder& builder) const;
   bool repair(int row, int column, std::span<const Crossing> crossings, std::vector<Crossing>& out) const;
+  void look(std::span<const Crossing> crossings, Tally& tally) const;
   void emit(End near, End far, TileBuilder& builder) const;
   PackedNormal normal(const End& end) const;
   double thinnest(const End& a, const End& b) const {
@@ -69,16 +93,19 @@ class Filler {
   Projection projection_;
   std::vector<Passage> passages_;
   Bands bands_;
+  Findings* findings_;
 };
 
-Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress)
+Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress,
+               Findings* findings)
     : mesh_(mesh),
       loops_(loops),
       box_(loops.empty() ? Box3{} : bounds(mesh)),
       grid_(grid),
       projection_(mesh, grid),
       passages_(loops.empty() ? std::vector<Passage>{} : find_passages(mesh, loops, projection_, grid, progress)),
-      bands_(mesh, projection_, rows_per_band()) {}
+      bands_(mesh, projection_, rows_per_band()),
+      findings_(findings) {}
 
 /// A divisor of the tile's side such that a band's crossings stay in the cache.
 int Filler::rows_per_band() const {
@@ -88,17 +115,20 @@ int Filler::rows_per_band() const {
 }
 
 void Filler::run(const Progress& progress) {
+  std::vector<Tally> tallies(static_cast<std::size_t>(grid_.tiles_u()));
   parallel_for(
       static_cast<std::size_t>(grid_.tiles_u()), 1,
       [&](std::size_t begin, std::size_t end) {
         Scratch scratch;
         std::vector<TileBuilder> builders(static_cast<std::size_t>(grid_.tiles_v()), TileBuilder(grid_.has_normals()));
-        for (std::size_t k = begin; k < end; ++k) tile_row(static_cast<int>(k), scratch, builders);
+        for (std::size_t k = begin; k < end; ++k) tile_row(static_cast<int>(k), scratch, builders, tallies[k]);
       },
       progress);
+  if (findings_)
+    for (const Tally& tally : tallies) findings_->tally += tally;
 }
 
-void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders) const {
+void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders, Tally& tally) const {
   const int first_row = tile_u * kTileSide, end_row = std::min(grid_.nu(), first_row + kTileSide), nv = grid_.nv();
   for (int first = first_row; first < end_row; first += bands_.rows()) {
     const int last = std::min(end_row, first + bands_.rows());
@@ -117,6 +147,7 @@ void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& bu
                                             scratch.sorted.data() + scratch.begin[column + 1]};
         if (!loops_.empty() && repair(row, j, crossings, scratch.repaired)) crossings = scratch.repaired;
         if (!crossings.empty()) fill(crossings, builder);
+        if (findings_ && !crossings.empty()) look(crossings, tally);
         builder.next_ray();
       }
       // Rays beyond the grid.
@@ -167,6 +198,31 @@ void Filler::fill(std::span<const Crossing> crossings, TileBuilder& builder) con
   if (waiting) emit(near, far, builder);
 }
 
+/// Notes what a column tells about the mesh.
+void Filler::look(std::span<const Crossing> crossings, Tally& tally) const {
+  const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
+  const double before = tally.inside;
+  bool doubtful = false;
+  int sum = 0;
+  for (std::size_t k = 0; k < crossings.size(); ++k) {
+    const Crossing& c = crossings[k];
+    const bool open = (c.source & kOpening) != 0;
+    const int last = std::exchange(sum, sum + c.sign);
+    if (last == 0 || sum == 0) doubtful |= open && c.z > lower && c.z < upper;
+    // Negative on one side, nothing on the other: the triangle faces into the material.
+    if (!open && std::max(last, sum) == 0)
+      std::atomic_ref(findings_->flipped[c.source]).store(1, std::memory_order_relaxed);
+    if (sum == 0 || k + 1 == crossings.size()) continue;
+    const double length = std::min(upper, crossings[k + 1].z) - std::max(lower, c.z);
+    if (!(length > grid_.pitch() * kThinnestOpening)) continue;
+    tally.inside += length;
+    if (std::abs(sum) > 1) tally.overlap += length;
+    if (sum < 0) tally.inside_out += length;
+  }
+  const bool some = tally.inside > before;
+  tally.rays += some, tally.doubtful += some && doubtful;
+}
+
 /// Clips a span to the box and appends it.
 void Filler::emit(End near, End far, TileBuilder& builder) const {
   const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
@@ -185,7 +241,7 @@ PackedNormal Filler::normal(const End& end) const {
     const Vec3 &a = mesh_.vertices[t.x], &b = mesh_.vertices[t.y], &c = mesh_.vertices[t.z];
     n = glm::cross(b - a, c - a);
     if (!(glm::dot(n, n) > 0)) n = to_world(grid_.axis(), Vec3(0, 0, 1));
-  } else if (end.source != kBox) {
+  } else if (end.source < kRepaired) {
     n = to_world(grid_.axis(), -passages_[end.source & ~kOpening].gradient);
   } else {
     n = to_world(grid_.axis(), n);
@@ -218,8 +274,8 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
   for (const Crossing& c : crossings)
     if ((c.source & kOpening) == 0) out.push_back(c);
   const auto step = [&](double z, int change) {
-    for (; change > 0; --change) out.push_back({z, kBox, 1});
-    for (; change < 0; ++change) out.push_back({z, kBox, -1});
+    for (; change > 0; --change) out.push_back({z, kRepaired, 1});
+    for (; change < 0; ++change) out.push_back({z, kRepaired, -1});
   };
   int before = rounded(samples.front());
   step(samples.front(), before);
@@ -241,13 +297,14 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
   return true;
 }
 
-void fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress) {
+void fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress,
+          Findings* findings = nullptr) {
   Stats stats;
   const double grids = static_cast<double>(result.grids().size());
   double done = 0;
   for (Grid& grid : result.grids()) {
     const double middle = done + (loops.empty() ? 0.1 : 0.7) / grids;
-    Filler filler(mesh, loops, grid, part(progress, done, middle));
+    Filler filler(mesh, loops, grid, part(progress, done, middle), findings);
     filler.run(part(progress, middle, done += 1 / grids));
     stats.triangles_tested += filler.triangles_tested();
   }
@@ -278,13 +335,30 @@ bool has_volume(const Mesh& mesh, const std::vector<std::vector<int>>& loops, co
   return most_volume(probe) > least;
 }
 
+void conclude(const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Findings& findings,
+              MeshReport& report) {
+  report.openings = loops.size();
+  const Tally& t = findings.tally;
+  if (t.inside > 0) report.overlap = t.overlap / t.inside, report.inside_out = t.inside_out / t.inside;
+  if (t.rays > 0) report.doubtful_rays = static_cast<double>(t.doubtful) / static_cast<double>(t.rays);
+  if (t.inside_out > 0) report.flipped_shells = count_shells(mesh, findings.flipped);
+}
+
 }  // namespace
 
-Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress) {
+Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress, MeshReport* report) {
   validate(mesh);
   if (mesh.empty()) throw std::invalid_argument("the mesh has no triangles, so it has no volume");
   Volume result(frame);
-  report(progress, 0);
+  riffler::report(progress, 0);
+  Findings findings;
+  if (report) {
+    *report = {};
+    count_defects(mesh, *report);
+    findings.flipped.resize(mesh.triangles.size());
+    riffler::report(progress, kCounted);
+  }
+  const Progress rest = part(progress, report ? kCounted : 0, 1);
   const Box3 box = bounds(mesh);
   std::vector<std::vector<int>> loops = boundary_loops(mesh);
   // Coordinates may have been rounded to single precision on their way here.
@@ -298,10 +372,11 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress)
     joined = join_cracks(mesh, loops, std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
     if (joined.vertices != mesh.vertices) used = &joined, loops = boundary_loops(joined);
   }
-  fill(result, *used, loops, progress);
+  fill(result, *used, loops, rest, report ? &findings : nullptr);
   if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(*used, loops, box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
-  report(progress, 1);
+  if (report) conclude(mesh, loops, findings, *report);
+  riffler::report(progress, 1);
   return result;
 }
 

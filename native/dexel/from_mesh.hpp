@@ -1,6 +1,7 @@
 // Mesh → volume by winding number along each column.
 #pragma once
 
+#include "dexel/mesh_report.hpp"
 #include "dexel/volume.hpp"
 #include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
@@ -10,7 +11,9 @@ namespace riffler {
 /// A volume over frame.box filled with the points whose absolute generalized winding number exceeds ½: spans end at
 /// crossings of the surface, or, in an opening of a broken part, where |w| passes ½. Rays on vertices, edges and walls
 /// are decided by a half-open rule on snapped coordinates, so a closed part has no odd ray at any alignment. What lies
-/// outside the box is clipped. Throws std::invalid_argument for a mesh that is invalid or has no volume.
-Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress = {});
+/// outside the box is clipped. Throws std::invalid_argument for a mesh that is invalid or has no volume. `report`,
+/// where it is given, is filled with what was wrong with the mesh; shares are of what lies within the box, all
+/// directions.
+Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress = {}, MeshReport* report = nullptr);
 
 }  // namespace riffler

@@ -43,6 +43,17 @@ void EdgeTable::for_each_edge(const std::function<void(int, std::span<const Use>
   });
 }
 
+std::size_t duplicates_at(const Mesh& mesh, std::span<const EdgeTable::Use> uses) {
+  if (uses.size() < 2) return 0;
+  thread_local std::vector<int> tips;
+  tips.clear();
+  for (const EdgeTable::Use& use : uses)
+    if (const int tip = start_of(mesh, previous_half(use.half())); tip > use.upper) tips.push_back(tip);
+  if (tips.size() < 2) return 0;
+  std::sort(tips.begin(), tips.end());
+  return tips.size() - static_cast<std::size_t>(std::unique(tips.begin(), tips.end()) - tips.begin());
+}
+
 Adjacency::Adjacency(const Mesh& mesh, const EdgeTable& edges) : across_(3 * mesh.triangles.size(), kNoEdge) {
   edges.for_each_edge([&](int, std::span<const EdgeTable::Use> uses) {
     if (uses.size() == 2) {

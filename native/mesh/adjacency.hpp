@@ -53,6 +53,10 @@ class EdgeTable {
   std::vector<Use> uses_;
 };
 
+/// Triangles beyond the first with the same vertices, in whatever order, counted at the edge of their two lower ones:
+/// summed over all edges each counts once.
+std::size_t duplicates_at(const Mesh& mesh, std::span<const EdgeTable::Use> uses);
+
 /// What lies across each half-edge.
 class Adjacency {
  public:

@@ -40,16 +40,6 @@ bool is_fold(const Mesh& mesh, int half, int twin) {
   return lengths > 0 && dot < -0.99999 * lengths;
 }
 
-/// Triangles beyond the first with the same vertices, counted at the edge of their two lower vertices.
-std::size_t duplicates_at(const Mesh& mesh, std::span<const EdgeTable::Use> uses, std::vector<int>& tips) {
-  tips.clear();
-  for (const EdgeTable::Use& use : uses)
-    if (const int tip = start_of(mesh, previous_half(use.half())); tip > use.upper) tips.push_back(tip);
-  if (tips.size() < 2) return 0;
-  std::sort(tips.begin(), tips.end());
-  return tips.size() - static_cast<std::size_t>(std::unique(tips.begin(), tips.end()) - tips.begin());
-}
-
 /// The edge at vertex v on the other side of the triangle of `half`, which has v at one of its ends.
 int other_edge_at(const Mesh& mesh, int half, int v) {
   return start_of(mesh, half) == v ? previous_half(half) : next_half(half);
@@ -144,8 +134,7 @@ Audit audit(const Mesh& mesh, const Progress& progress) {
   std::vector<std::pair<int, int>> crowded;  // half-edges at one edge of three or more
   edges.for_each_edge([&](int, std::span<const EdgeTable::Use> uses) {
     if (uses.size() < 2) return;
-    thread_local std::vector<int> tips;
-    if (const std::size_t n = duplicates_at(mesh, uses, tips)) twice += n;
+    if (const std::size_t n = duplicates_at(mesh, uses)) twice += n;
     if (uses.size() == 2 && !adjacency.is_same_way(uses[0].half())) return;
     ++bad;
     if (uses.size() == 2) return;

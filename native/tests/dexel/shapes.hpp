@@ -12,6 +12,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -130,6 +131,37 @@ inline bool inside(const Grid& grid, int i, int j, double z) {
   for (const Span& s : grid.ray(i, j))
     if (z > s.near && z < s.far) return true;
   return false;
+}
+
+struct Agreement {
+  int tested = 0, different = 0;
+  double worst = 0;  // | |w| − ½ | of points that differ
+};
+
+/// Points on rays, half of them near span ends.
+inline Agreement compare(const Mesh& mesh, const Volume& volume, int points, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  Agreement result;
+  for (const Grid& grid : volume.grids()) {
+    std::uniform_real_distribution<double> along(grid.box().lower.z, grid.box().upper.z);
+    for (int k = 0; k < points; ++k) {
+      const int i = static_cast<int>(random() % grid.nu()), j = static_cast<int>(random() % grid.nv());
+      double z = along(random);
+      const auto spans = grid.ray(i, j);
+      if (k % 2 == 1 && !spans.empty()) {
+        const Span& s = spans[random() % spans.size()];
+        z = (random() % 2 == 0 ? s.near : s.far) + (random() % 2 == 0 ? 1e-2 : -1e-2) * grid.pitch();
+      }
+      // Off the ray as the half-open rule has it: walls may stand exactly on rays.
+      const Vec3 p = to_world(grid.axis(), Vec3(grid.u(i) + 1e-9, grid.v(j) + 1e-8, z));
+      const double w = std::abs(winding_number(mesh, p));
+      if (std::abs(w - 0.5) < 1e-6) continue;  // a tie, such as everywhere in the plane of a flat opening
+      ++result.tested;
+      if (inside(grid, i, j, z) == (w > 0.5)) continue;
+      ++result.different, result.worst = std::max(result.worst, std::abs(w - 0.5));
+    }
+  }
+  return result;
 }
 
 /// RIFFLER_MODELS, or else shared/models beside the repository, sought from the working directory upwards.

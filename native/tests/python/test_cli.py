@@ -186,6 +186,21 @@ def test_convert_and_mesh(folder):
     assert result("audit", "few.stl", cwd=folder)["closed"]
 
 
+def test_convert_tells_what_was_wrong_with_the_mesh(folder):
+    done = riffle("convert", "box.stl", "--pitch", 0.5, "--out", "box.rvol", cwd=folder)
+    assert not any(word in done.stdout for word in ("open", "inside out", "overlap", "edges", "triangles"))
+    vertices, triangles = box_triangles((0, 0, 0), (10, 10, 10))
+    (folder / "open.stl").write_bytes(stl_bytes(vertices, triangles[1:]))
+    data = result("convert", "open.stl", "--pitch", 0.5, "--out", "open.rvol", cwd=folder)
+    assert (data["mesh"]["open_edges"], data["mesh"]["openings"], data["mesh"]["overlap"]) == (3, 1, 0)
+    done = riffle("convert", "open.stl", "--pitch", 0.5, "--out", "open.rvol", cwd=folder)
+    assert "1 opening, 3 open edges" in done.stdout and "inside out" not in done.stdout
+    (folder / "bad.stl").write_bytes(stl_bytes(vertices, [t[::-1] for t in triangles] * 2))
+    done = riffle("convert", "bad.stl", "--pitch", 0.5, "--out", "bad.rvol", cwd=folder)
+    for line in ("1 shell is inside out", "100 % of the volume is enclosed more than once", "12 doubled triangles"):
+        assert line in " ".join(done.stdout.split()), done.stdout
+
+
 def test_audit_fails_a_mesh_that_is_not_closed(folder):
     vertices, triangles = box_triangles((0, 0, 0), (1, 1, 1))
     (folder / "open.stl").write_bytes(stl_bytes(vertices, triangles[1:]))

@@ -206,6 +206,39 @@ def test_from_mesh_refuses_what_has_no_volume():
             riffler.Volume.from_mesh(mesh, 0.1)
 
 
+def test_from_mesh_tells_what_was_wrong():
+    v = riffler.Volume.block([0, 0, 0], [4, 3, 2], 0.5, "xyz")
+    mesh = v.to_mesh()
+    report = {"old": 1}
+    riffler.Volume.from_mesh(mesh, 0.5, "xyz", report=report)
+    assert report.pop("triangles") == len(mesh.triangles) and report.pop("old") == 1
+    assert len(report) == 10 and not any(report.values())
+
+    report = {}
+    cut = riffler.Mesh(mesh.vertices, mesh.triangles[1:])
+    riffler.Volume.from_mesh(cut, 0.5, report=report)
+    assert (report["open_edges"], report["openings"], report["flipped_shells"]) == (3, 1, 0)
+    riffler.Volume.from_mesh(riffler.Mesh(mesh.vertices, mesh.triangles[:, ::-1]), 0.5, report=report)
+    assert (report["open_edges"], report["openings"], report["flipped_shells"]) == (0, 0, 1)
+    assert report["inside_out"] == 1
+    riffler.Volume.from_mesh(mesh, 0.5, report=None)
+    with pytest.raises(TypeError):
+        riffler.Volume.from_mesh(mesh, 0.5, report=[])
+
+
+def test_from_mesh_refuses_bad_meshes_by_name():
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    for vertices, triangles, message in [
+        (np.empty((0, 3)), np.empty((0, 3), int), "no triangles"),
+        (corners, [[0, 1, 2], [0, 1, 8]], "row 1"),
+        (corners, [[0, 1, -1]], "row 0"),
+        (np.where(corners == 1, np.nan, corners), [[0, 1, 2]], "row"),
+        (corners, [[0, 1, 2], [1, 3, 2]], "flat"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            riffler.Volume.from_mesh(riffler.Mesh(vertices, triangles), 0.1)
+
+
 def test_a_volume_in_use_by_another_thread_says_so():
     v = riffler.Volume.block([0, 0, 0], [60, 60, 10], 0.1, "xyz")
     poses = np.array([[5 + 0.05 * k, 5 + 0.05 * k, 5, *UP] for k in range(900)])

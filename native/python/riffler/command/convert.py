@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 
 from .arguments import MESHES, VOLUMES, add_directions, add_pitch, input_file, length, output_file
-from .console import Console, number, times
+from .console import Console, Rows, number, times
 from .shapes import from_mesh, rays, write_volume
 
 HELP = "turn a mesh into a dexel volume"
@@ -25,7 +25,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     pitch = length(arguments.pitch, "--pitch")
     path = input_file(arguments.mesh, MESHES)
     out = output_file(arguments.out, VOLUMES)
-    volume = from_mesh(path, pitch, arguments.directions or "xyz", console, "convert")
+    report: dict[str, float] = {}
+    volume = from_mesh(path, pitch, arguments.directions or "xyz", console, "convert", report)
     write_volume(volume, out, console)
     data = {
         "out": str(out),
@@ -36,13 +37,56 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "rays": rays(volume),
         "volume": volume.volume,
         "bytes": out.stat().st_size,
+        "mesh": report,
         "seconds": console.seconds,
     }
     rows = [
         ("rays", f"{number(data['rays'])} ({volume.directions}, pitch {volume.pitch:g} mm)"),
         ("volume", number(data["volume"], "mm³")),
         ("file", number(data["bytes"], "bytes")),
+        *defects(report),
         ("times", times(console.seconds)),
     ]
     console.result(data, f"{out.name} written", rows)
     return 0
+
+
+def defects(report: dict[str, float]) -> Rows:
+    """What was wrong with the mesh and what was made of it, in words."""
+
+    def count(name: str, one: str, many: str = "") -> str:
+        n = int(report[name])
+        return f"{number(n)} {one if n == 1 else many or one + 's'}"
+
+    def share(name: str) -> str:
+        percent = 100 * report[name]
+        return f"{percent:.3g} %" if percent >= 0.01 else "less than 0.01 %"
+
+    rows: Rows = []
+    if report["openings"]:
+        text = f"{count('openings', 'opening')}, {count('open_edges', 'open edge')}"
+        if report["doubtful_rays"]:
+            text += f"; {share('doubtful_rays')} of the rays end in one, where a closed part would have its surface"
+        rows.append(("open", text))
+    elif report["open_edges"]:
+        rows.append(("open", f"{count('open_edges', 'open edge')} that cancel: the volume is not in doubt"))
+    edges = [
+        count(name, f"{word} edge")
+        for name, word in (("nonmanifold_edges", "non-manifold"), ("inconsistent_edges", "inconsistently oriented"))
+        if report[name]
+    ]
+    if edges:
+        rows.append(("edges", ", ".join(edges)))
+    if report["flipped_shells"]:
+        shells = count("flipped_shells", "shell is", "shells are")
+        rows.append(("inside out", f"{shells} inside out, {share('inside_out')} of the volume; taken as solid"))
+    if report["overlap"]:
+        rows.append(("overlap", f"{share('overlap')} of the volume is enclosed more than once; taken once"))
+    triangles = [
+        count(name, f"{word} triangle")
+        for name, word in (("duplicates", "doubled"), ("degenerate", "flat"))
+        if report[name]
+    ]
+    if triangles:
+        rows.append(("triangles", ", ".join(triangles)))
+    return rows

@@ -8,13 +8,15 @@ from .. import Mesh, Volume
 from .console import Console
 
 
-def from_mesh(path: Path, pitch: float, directions: str, console: Console, step: str) -> Volume:
-    """The volume of a mesh file."""
+def from_mesh(
+    path: Path, pitch: float, directions: str, console: Console, step: str, report: dict[str, float] | None = None
+) -> Volume:
+    """The volume of a mesh file; ``report`` is filled as by Volume.from_mesh."""
     with console.step("read"):
         mesh = Mesh.read(path)
     with console.step(step) as progress:
         try:
-            return Volume.from_mesh(mesh, pitch, directions, progress=progress)
+            return Volume.from_mesh(mesh, pitch, directions, progress=progress, report=report)
         except ValueError as error:
             raise ValueError(f"{path.name}: {error}") from None
 
