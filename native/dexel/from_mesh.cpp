@@ -242,7 +242,7 @@ PackedNormal Filler::normal(const End& end) const {
     n = glm::cross(b - a, c - a);
     if (!(glm::dot(n, n) > 0)) n = to_world(grid_.axis(), Vec3(0, 0, 1));
   } else if (end.source < kRepaired) {
-    n = to_world(grid_.axis(), -passages_[end.source & ~kOpening].gradient);
+    n = passages_[end.source & ~kOpening].normal.unpack();
   } else {
     n = to_world(grid_.axis(), n);
   }

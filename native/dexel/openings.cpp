@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "dexel/boundary_field.hpp"
 #include "dexel/field.hpp"
@@ -57,8 +58,8 @@ class Search {
  public:
   using Rounded = std::function<int(int row, int column, double z)>;
 
-  Search(const BoundaryPieces& pieces, const Rounded& rounded, bool with_gradients, std::vector<Passage>& out)
-      : pieces_(pieces), descent_(pieces), rounded_(rounded), with_gradients_(with_gradients), out_(out) {}
+  Search(const BoundaryPieces& pieces, const Rounded& rounded, const Grid& grid, std::vector<Passage>& out)
+      : pieces_(pieces), descent_(pieces), rounded_(rounded), grid_(grid), out_(out) {}
 
   /// Calls body for the parts of a block, whose surroundings are `around`, in which K may pass ½.
   template <class Body>
@@ -143,15 +144,21 @@ class Search {
   }
 
   void add(double z, bool rising) {
-    Passage passage{row_, column_, rising ? 1 : -1, z, Vec3(0)};
-    if (with_gradients_) field_.at(Vec3(row_, column_, z), passage.gradient);
+    Passage passage{row_, column_, z, rising ? 1 : -1, {}};
+    if (grid_.has_normals()) {
+      Vec3 gradient;
+      field_.at(Vec3(row_, column_, z), gradient);
+      const double length = glm::length(gradient);
+      const Vec3 normal = length > 0 ? gradient / -length : Vec3(0, 0, rising ? -1 : 1);
+      passage.normal = PackedNormal::pack(to_world(grid_.axis(), normal));
+    }
     out_.push_back(passage);
   }
 
   const BoundaryPieces& pieces_;
   Descent descent_;
   const Rounded& rounded_;  // K rounded to an integer, by boundary_winding
-  bool with_gradients_;
+  const Grid& grid_;
   std::vector<Passage>& out_;
   std::deque<Surroundings> levels_;  // of the blocks that enclose the present one
   Field field_;
@@ -166,15 +173,17 @@ double margin(const Mesh& mesh, double pitch, double boundary) {
 }
 
 /// All passages sorted; one that two blocks found at their common face stands once.
-std::vector<Passage> sorted(const std::vector<std::vector<Passage>>& found, int rows) {
+std::vector<Passage> sorted(std::vector<std::vector<Passage>> found, int rows) {
   std::vector<std::size_t> begin(static_cast<std::size_t>(rows) + 1, 0);
   for (const std::vector<Passage>& part : found)
     for (const Passage& p : part) ++begin[p.row + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<Passage> all(begin.back());
   std::vector<std::size_t> end = begin;
-  for (const std::vector<Passage>& part : found)
+  for (std::vector<Passage>& part : found) {
     for (const Passage& p : part) all[end[p.row]++] = p;
+    part = {};
+  }
   parallel_for(static_cast<std::size_t>(rows), 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row)
       std::sort(all.begin() + begin[row], all.begin() + end[row], [](const Passage& a, const Passage& b) {
@@ -229,7 +238,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
         tasks.size(), 1,
         [&](std::size_t k, std::size_t) {
           Task& task = tasks[k];
-          Search search(pieces, rounded, false, task.found);
+          Search search(pieces, rounded, grid, task.found);
           auto around = std::make_shared<Surroundings>();
           search.enter(task.block, *task.within, *around);
           search.parts(task.block, *around,
@@ -247,13 +256,12 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   parallel_for(
       tasks.size(), 1,
       [&](std::size_t k, std::size_t) {
-        Search(pieces, rounded, grid.has_normals(), tasks[k].found)
-            .block(tasks[k].block, tasks[k].tangent, *tasks[k].within);
+        Search(pieces, rounded, grid, tasks[k].found).block(tasks[k].block, tasks[k].tangent, *tasks[k].within);
       },
       part(progress, 0.3, 1));
   std::vector<std::vector<Passage>> found;
   for (Task& task : tasks) found.push_back(std::move(task.found));
-  std::vector<Passage> passages = sorted(found, grid.nu());
+  std::vector<Passage> passages = sorted(std::move(found), grid.nu());
   for (Passage& p : passages) p.z = base + p.z * pitch;
   return passages;
 }

@@ -16,9 +16,9 @@ namespace riffler {
 /// of a column, from below the part to above it, sum to zero.
 struct Passage {
   std::int32_t row, column;
+  double z;  ///< mm along the ray
   std::int32_t sign;
-  double z;       ///< mm along the ray
-  Vec3 gradient;  ///< of K, in the cyclic frame, any length; only for grids with normals
+  PackedNormal normal;  ///< against K's gradient, out of what lies where K is greater; only for grids with normals
 };
 
 /// All passages of the grid's columns, sorted by row, column and z. `loops` is the mesh's boundary.

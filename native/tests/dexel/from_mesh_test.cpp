@@ -200,6 +200,10 @@ TEST(FromMesh, SameBytesForAnyNumberOfThreads) {
   expect_same_for_any_threads(mesh, frame_of(mesh, 150, "xyz"));
   const Mesh open = open_box({0, 0, 0}, {10, 8, 6});
   expect_same_for_any_threads(open, frame_of(open, 100, "xyz", 3));
+  Mesh torn = mesh;
+  std::mt19937_64 random(3);
+  std::erase_if(torn.triangles, [&](const Vec3i&) { return random() % 30 == 0; });
+  expect_same_for_any_threads(torn, frame_of(torn, 80, "xyz", 1));
 }
 
 TEST(FromMesh, BoxSmallerOrElsewhere) {
