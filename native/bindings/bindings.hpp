@@ -20,6 +20,7 @@ namespace py = pybind11;
 void bind_mesh(py::module_& m);
 void bind_tool(py::module_& m);
 void bind_volume(py::module_& m);
+void bind_mesher(py::module_& m);
 void bind_program(py::module_& m);
 void bind_journal(py::module_& m);
 void bind_bench(py::module_& m);
@@ -41,10 +42,10 @@ py::array_t<double> from_vec3s(const std::vector<Vec3>& v);
 std::vector<Pose> to_poses(const Doubles& array, const char* name);
 
 /// Hands a vector's storage to numpy without a copy; shape (rows, columns), or (rows,) for columns = 0.
-template <class T, class V>
-py::array_t<T> take(std::vector<V>&& values, std::size_t columns = 0) {
-  auto* owned = new std::vector<V>(std::move(values));
-  const py::capsule free(owned, [](void* p) { delete static_cast<std::vector<V>*>(p); });
+template <class T, class V, class A>
+py::array_t<T> take(std::vector<V, A>&& values, std::size_t columns = 0) {
+  auto* owned = new std::vector<V, A>(std::move(values));
+  const py::capsule free(owned, [](void* p) { delete static_cast<std::vector<V, A>*>(p); });
   const auto n = static_cast<py::ssize_t>(owned->size() * sizeof(V) / sizeof(T));
   const auto wide = static_cast<py::ssize_t>(columns);
   const T* data = reinterpret_cast<const T*>(owned->data());

@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, m) {
   bind_mesh(m);
   bind_tool(m);
   bind_volume(m);
+  bind_mesher(m);
   bind_program(m);
   bind_journal(m);
   bind_bench(m);
