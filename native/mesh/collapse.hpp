@@ -1,68 +1,88 @@
-// One half-edge collapse: what it would change, and whether it may.
+// One edge collapse: what it would change, and whether it may.
 #pragma once
 
 #include <vector>
 
 #include "geom/vec.hpp"
+#include "mesh/edge_costs.hpp"
 #include "mesh/half_edge.hpp"
 
 namespace riffler {
 
-/// The collapse of `from` into `to` along a half-edge. prepare gathers it and decides; the rest describes the last
+/// The two ends of an edge become one vertex. prepare gathers what changes and decides; the rest describes the last
 /// prepared one.
 ///
-/// The ring are the neighbours of `from` in counter-clockwise order; old face i is (from, ring[i], ring[i + 1]), and
-/// the faces first … last of them become the new faces (to, ring[i], ring[i + 1]). The others vanish.
+/// `from` goes, `to` stays and may move. The ring are the vertices round what changes, counter-clockwise: the
+/// neighbours of `from`, `to` among them, or where `to` moves, those of both. Old face i has the edge from ring(i) to
+/// ring(i + 1); the faces first … last of them become the new faces (to, ring(i), ring(i + 1)). The other old faces
+/// vanish.
 class Collapse {
  public:
-  explicit Collapse(HalfEdgeMesh& mesh) : mesh_(mesh), stamps_(mesh.n_vertices(), 0) {}
+  explicit Collapse(HalfEdgeMesh& mesh) : mesh_(mesh) {}
 
   /// False where the mesh would not stay a manifold, a border would leave its line of vertices, or a triangle would
   /// turn over, lose its area or fold onto a neighbour.
-  bool prepare(OpenMesh::HalfedgeHandle half);
-  void commit() { mesh_.collapse(half_); }
+  bool prepare(const Placement& placement);
+  void commit();
 
   OpenMesh::VertexHandle from() const { return from_; }
   OpenMesh::VertexHandle to() const { return to_; }
-  const Vec3& old_point() const { return old_; }
+  const Vec3& from_point() const { return from_point_; }
+  const Vec3& to_point() const { return to_point_; }
   const Vec3& new_point() const { return new_; }
+  bool between() const { return between_; }
   int faces_lost() const { return lost_; }
 
   int ring_size() const { return static_cast<int>(ring_.size()); }
   /// i may be ring_size(): the ring is closed, unless `from` is on a border.
-  const Vec3& ring(int i) const { return points_[wrap(i)]; }
-  OpenMesh::VertexHandle ring_vertex(int i) const { return mesh_.to_vertex_handle(ring_[wrap(i)]); }
-  /// The half-edge from `from` to ring(i), and the face between it and the next; commit turns them into those of `to`.
-  OpenMesh::HalfedgeHandle spoke(int i) const { return ring_[wrap(i)]; }
-  OpenMesh::FaceHandle face(int i) const { return faces_[i]; }
+  const Vec3& ring(int i) const { return ring_[wrap(i)].point; }
+  OpenMesh::VertexHandle ring_vertex(int i) const { return mesh_.to_vertex_handle(ring_[wrap(i)].spoke); }
+  /// A half-edge that ends at ring(i); it starts at `from` or `to`.
+  OpenMesh::HalfedgeHandle spoke(int i) const { return ring_[wrap(i)].spoke; }
+  OpenMesh::FaceHandle face(int i) const { return faces_[i].handle; }
   int old_faces() const { return static_cast<int>(faces_.size()); }
   int first() const { return first_; }
   int last() const { return last_; }
-  /// Twice the area, times the normal, of old and of new face i.
-  const Vec3& old_cross(int i) const { return old_cross_[i]; }
-  const Vec3& new_cross(int i) const { return new_cross_[i]; }
+  /// Twice the area, times the normal, of old and of new face i; the latter is 0 where there is none.
+  const Vec3& old_cross(int i) const { return faces_[i].old_cross; }
+  const Vec3& new_cross(int i) const { return faces_[i].new_cross; }
   bool on_border() const { return border_; }
-  /// The ring's index of `to`.
+  /// The ring's index of `to`, where that does not move.
   int target() const { return target_; }
 
  private:
+  struct Place {
+    OpenMesh::HalfedgeHandle spoke;
+    Vec3 point;
+  };
+  struct Face {
+    OpenMesh::FaceHandle handle;
+    OpenMesh::HalfedgeHandle outer;  // the half-edge that is not at the apex
+    Vec3 old_cross, new_cross;
+    double shape;
+  };
+
   int wrap(int i) const { return i == ring_size() ? 0 : i; }
   bool keeps_borders() const;
   bool keeps_manifold();
-  void gather();
+  void gather_fan();
+  void gather_both_fans();
+  void add_spoke(OpenMesh::HalfedgeHandle spoke);
+  void add_face(OpenMesh::HalfedgeHandle spoke, const Vec3& apex, const Vec3& a, const Vec3& b);
   bool keeps_shape();
+  bool keeps_angles() const;
   bool folds(int i, OpenMesh::HalfedgeHandle across) const;
+  void close_side(OpenMesh::HalfedgeHandle kept, OpenMesh::HalfedgeHandle gone);
 
   HalfEdgeMesh& mesh_;
-  std::vector<unsigned> stamps_;  // vertices marked by the last test carry its number
-  unsigned stamp_ = 0;
   OpenMesh::HalfedgeHandle half_;
   OpenMesh::VertexHandle from_, to_;
-  Vec3 old_, new_;
-  std::vector<OpenMesh::HalfedgeHandle> ring_;
-  std::vector<OpenMesh::FaceHandle> faces_;
-  std::vector<Vec3> points_, old_cross_, new_cross_;
-  bool border_ = false;
+  Vec3 from_point_, to_point_, new_;
+  bool between_ = false;
+  std::vector<Place> ring_;
+  std::vector<Face> faces_;
+  std::vector<int> around_from_, around_to_;
+  bool border_ = false, to_border_ = false;
   int first_ = 0, last_ = -1, target_ = 0, lost_ = 0;
 };
 

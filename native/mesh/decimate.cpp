@@ -1,6 +1,5 @@
 #include "mesh/decimate.hpp"
 
-#include <OpenMesh/Tools/Utils/HeapT.hh>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,129 +9,30 @@
 #include <vector>
 
 #include "geom/float32.hpp"
+#include "geom/parallel.hpp"
 #include "mesh/collapse.hpp"
+#include "mesh/edge_costs.hpp"
+#include "mesh/edge_queue.hpp"
 #include "mesh/half_edge.hpp"
-#include "mesh/quadric.hpp"
+#include "mesh/patches.hpp"
 #include "mesh/tolerance_check.hpp"
 
 namespace riffler {
 
 namespace {
 
-using OpenMesh::FaceHandle;
+using OpenMesh::EdgeHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-/// The coordinates that a binary STL will hold, about the box's centre: what has area and does not fold here does not
-/// in the file either, and quadrics keep their digits far from the origin.
-Mesh rounded(const Mesh& mesh) {
-  const Box3 box = bounds(mesh);
-  const Vec3 centre = to_float32(0.5 * box.lower + 0.5 * box.upper);
-  Mesh result = mesh;
-  for (Vec3& v : result.vertices) v = to_float32(v) - centre;
-  return result;
+// Fits the cache that a core has to itself.
+constexpr std::size_t kPatchVertices = 8192;
+
+void check_limits(const DecimateLimits& limits) {
+  if (!limits.triangles && !limits.tolerance) throw std::invalid_argument("decimate needs triangles or tolerance");
+  if (limits.tolerance && !(*limits.tolerance >= 0 && std::isfinite(*limits.tolerance)))
+    throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*limits.tolerance));
 }
-
-/// What each vertex would best collapse into, cheapest first.
-class Queue {
- public:
-  explicit Queue(HalfEdgeMesh& mesh) : mesh_(mesh), best_(mesh.n_vertices()), heap_(Interface{&best_}) {
-    quadrics_.resize(mesh.n_vertices());
-    for (const FaceHandle face : mesh.faces()) add_face(face);
-    heap_.reserve(mesh.n_vertices());
-    for (const VertexHandle v : mesh.vertices()) refresh(v);
-  }
-
-  bool empty() const { return heap_.empty(); }
-  std::size_t size() const { return heap_.size(); }
-  HalfedgeHandle front() const { return best_[heap_.front().idx()].target; }
-
-  /// Takes the front's next best target instead.
-  void reject() {
-    const VertexHandle v = heap_.front();
-    choose(v, best_[v.idx()].cost, best_[v.idx()].target.idx());
-  }
-  /// Starts again with all targets of v.
-  void refresh(VertexHandle v) { choose(v, -1, -1); }
-  void remove(VertexHandle v) {
-    if (heap_.is_stored(v)) heap_.remove(v);
-  }
-  void merge(VertexHandle gone, VertexHandle into) { quadrics_[into.idx()] += quadrics_[gone.idx()]; }
-
- private:
-  struct Best {
-    double cost = 0;
-    HalfedgeHandle target;
-    int position = -1;
-  };
-  struct Interface {
-    std::vector<Best>* best;
-    bool less(VertexHandle a, VertexHandle b) const {
-      const Best &x = (*best)[a.idx()], &y = (*best)[b.idx()];
-      return x.cost != y.cost ? x.cost < y.cost : a.idx() < b.idx();
-    }
-    bool greater(VertexHandle a, VertexHandle b) const { return less(b, a); }
-    int get_heap_position(VertexHandle v) const { return (*best)[v.idx()].position; }
-    void set_heap_position(VertexHandle v, int position) { (*best)[v.idx()].position = position; }
-  };
-
-  void add_face(FaceHandle face) {
-    HalfedgeHandle half = mesh_.halfedge_handle(face);
-    Vec3 p[3];
-    VertexHandle v[3];
-    for (int k = 0; k < 3; ++k, half = mesh_.next_halfedge_handle(half))
-      v[k] = mesh_.from_vertex_handle(half), p[k] = to_vec3(mesh_.point(v[k]));
-    const Vec3 cross = glm::cross(p[1] - p[0], p[2] - p[0]);
-    const double length = glm::length(cross);
-    if (!(length > 0)) return;
-    const Quadric quadric(cross / length, p[0], length / 2);
-    for (const VertexHandle corner : v) quadrics_[corner.idx()] += quadric;
-    for (int k = 0; k < 3; ++k, half = mesh_.next_halfedge_handle(half)) {
-      if (!mesh_.is_boundary(mesh_.opposite_halfedge_handle(half))) continue;
-      // A wall through the border, square to the triangle, keeps the border in place.
-      const Vec3 edge = p[(k + 1) % 3] - p[k];
-      const double edge_length = glm::length(edge);
-      if (!(edge_length > 0)) continue;
-      const Quadric wall(glm::cross(edge, cross) / (edge_length * length), p[k], edge_length * edge_length);
-      quadrics_[v[k].idx()] += wall, quadrics_[v[(k + 1) % 3].idx()] += wall;
-    }
-  }
-
-  /// The cheapest target of v that comes after (cost, half-edge); v leaves the heap if there is none.
-  void choose(VertexHandle v, double after_cost, int after) {
-    Best& best = best_[v.idx()];
-    best.cost = std::numeric_limits<double>::infinity();
-    best.target = HalfedgeHandle();
-    if (!mesh_.status(v).locked())
-      for (const HalfedgeHandle half : mesh_.voh_range(v)) {
-        const double cost = cost_of(half);
-        if ((cost > after_cost || (cost == after_cost && half.idx() > after)) &&
-            (cost < best.cost || (cost == best.cost && half.idx() < best.target.idx())))
-          best.cost = cost, best.target = half;
-      }
-    if (!best.target.is_valid())
-      remove(v);
-    else if (heap_.is_stored(v))
-      heap_.update(v);
-    else
-      heap_.insert(v);
-  }
-
-  /// Distance from the planes of both ends, squared, times area, and a little for length: among equals, as everywhere
-  /// in a plane, short edges go first and the triangles stay well shaped.
-  double cost_of(HalfedgeHandle half) const {
-    const VertexHandle from = mesh_.from_vertex_handle(half), to = mesh_.to_vertex_handle(half);
-    const Vec3 p = to_vec3(mesh_.point(to)), edge = p - to_vec3(mesh_.point(from));
-    const double length2 = glm::dot(edge, edge);
-    // Rounding may take the sum a little below 0.
-    return std::max(0.0, quadrics_[from.idx()](p) + quadrics_[to.idx()](p)) + 1e-8 * length2 * length2;
-  }
-
-  HalfEdgeMesh& mesh_;
-  std::vector<Quadric> quadrics_;
-  std::vector<Best> best_;
-  OpenMesh::Utils::HeapT<VertexHandle, Interface> heap_;
-};
 
 /// What is left of the tolerance for the rounded surface, so that the unrounded one keeps to it.
 double left_after_rounding(double tolerance, const Mesh& mesh) {
@@ -141,11 +41,159 @@ double left_after_rounding(double tolerance, const Mesh& mesh) {
   return std::max(0.0, tolerance - 2 * largest);
 }
 
-void check_limits(const DecimateLimits& limits) {
-  if (!limits.triangles && !limits.tolerance) throw std::invalid_argument("decimate needs triangles or tolerance");
-  if (limits.tolerance && !(*limits.tolerance >= 0 && std::isfinite(*limits.tolerance)))
-    throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*limits.tolerance));
-}
+/// What all patches have in common.
+struct Surface {
+  HalfEdges& half_edges;
+  EdgeCosts& costs;
+  Traces* traces;  // none without a tolerance
+  double tolerance;
+};
+
+/// Collapses edges of one patch, cheapest first.
+class Worker {
+ public:
+  explicit Worker(const Surface& surface)
+      : mesh_(surface.half_edges.mesh), costs_(surface.costs), collapse_(mesh_) {
+    if (surface.traces) check_.emplace(*surface.traces, surface.tolerance);
+  }
+
+  EdgeQueue& queue() { return queue_; }
+  std::size_t lost() const { return lost_; }
+
+  /// All edges between inner vertices.
+  void fill(const Patches& patches, std::size_t patch) {
+    patches.for_each_vertex(patch, [&](VertexHandle v) {
+      if (!patches.inner(v)) return;
+      for_each_spoke(v, [&](HalfedgeHandle spoke) {
+        const VertexHandle other = mesh_.to_vertex_handle(spoke);
+        if (v.idx() < other.idx() && patches.inner(other)) add(mesh_.edge_handle(spoke));
+      });
+    });
+  }
+  void fill() {
+    for (int e = 0; e < static_cast<int>(mesh_.n_edges()); ++e)
+      if (!mesh_.status(EdgeHandle(e)).deleted()) add(EdgeHandle(e));
+  }
+
+  /// Goes on until the next edge's cost is beyond the bucket `last`, or `quota` triangles are gone.
+  void run(int last, std::size_t quota, const Patches* patches) {
+    for (lost_ = 0; lost_ < quota && queue_.first() <= last;) {
+      const EdgeQueue::Entry entry = queue_.pop();
+      const EdgeHandle edge(entry.edge);
+      if (costs_[edge] != entry.cost || mesh_.status(edge).deleted()) continue;
+      if (collapse_.prepare(costs_.place(edge)) && (!check_ || check_->allow(collapse_)))
+        commit(patches);
+      else
+        costs_.put_off(edge);
+    }
+  }
+
+ private:
+  template <class Visit>
+  void for_each_spoke(VertexHandle v, const Visit& visit) const {
+    const HalfedgeHandle start = mesh_.halfedge_handle(v);
+    HalfedgeHandle spoke = start;
+    do {
+      visit(spoke);
+      spoke = mesh_.opposite_halfedge_handle(mesh_.prev_halfedge_handle(spoke));
+    } while (spoke != start);
+  }
+
+  void add(EdgeHandle edge) {
+    if (!(costs_[edge] < std::numeric_limits<float>::infinity())) costs_.refresh(edge);
+    queue_.push(edge.idx(), costs_[edge]);
+  }
+
+  void commit(const Patches* patches) {
+    costs_.merge(collapse_.from(), collapse_.to());
+    lost_ += static_cast<std::size_t>(collapse_.faces_lost());
+    if (check_) check_->commit(collapse_);
+    collapse_.commit();
+    for_each_spoke(collapse_.to(), [&](HalfedgeHandle spoke) {
+      const EdgeHandle edge = mesh_.edge_handle(spoke);
+      costs_.refresh(edge);
+      if (!patches || patches->inner(mesh_.to_vertex_handle(spoke))) queue_.push(edge.idx(), costs_[edge]);
+    });
+  }
+
+  HalfEdgeMesh& mesh_;
+  EdgeCosts& costs_;
+  Collapse collapse_;
+  std::optional<ToleranceCheck> check_;
+  EdgeQueue queue_;
+  std::size_t lost_ = 0;
+};
+
+class Decimation {
+ public:
+  Decimation(const Surface& surface, std::size_t target, const Progress& progress)
+      : surface_(surface),
+        target_(target),
+        start_(surface.half_edges.mesh.n_faces()),
+        left_(start_),
+        progress_(progress) {}
+
+  void run() {
+    for (int frame = 0; left_ > target_ + target_ / 32 && left_ > 2 * kPatchVertices; ++frame) {
+      const std::size_t before = left_;
+      if (!run_patches(frame) || left_ > before - before / 32) break;
+    }
+    for (std::size_t before = 2 * left_; left_ > target_ && left_ < before - before / 100;) {
+      before = left_;
+      run_whole();
+    }
+  }
+
+ private:
+  /// One partition, until about half of the triangles are gone; false if there is nothing left to do.
+  bool run_patches(int frame) {
+    const Patches patches(surface_.half_edges.mesh, frame, kPatchVertices);
+    std::vector<std::unique_ptr<Worker>> workers(patches.size());
+    for_each(patches.size(), [&](std::size_t i) {
+      workers[i] = std::make_unique<Worker>(surface_);
+      workers[i]->fill(patches, i);
+    });
+    const std::size_t enough = left_ / 2;
+    int last = -1;
+    while (left_ > target_ + target_ / 32 && left_ > enough) {
+      int first = EdgeQueue::kLast + 1;
+      for (const auto& worker : workers) first = std::min(first, worker->queue().first());
+      if (first > EdgeQueue::kLast) return true;
+      if (first > last) last = first + kStep;
+      const std::size_t quota = 2 * ((left_ - target_) / patches.size() / 4 + 1);
+      for_each(patches.size(), [&](std::size_t i) { workers[i]->run(last, quota, &patches); });
+      for (const auto& worker : workers) left_ -= worker->lost();
+    }
+    return true;
+  }
+
+  void run_whole() {
+    Worker worker(surface_);
+    worker.fill();
+    while (left_ > target_ && worker.queue().first() <= EdgeQueue::kLast) {
+      report(progress_, share());
+      worker.run(EdgeQueue::kLast, std::min<std::size_t>(512, left_ - target_), nullptr);
+      left_ -= std::min(left_, worker.lost());
+    }
+  }
+
+  double share() const {
+    return 0.2 + 0.8 * static_cast<double>(start_ - left_) / static_cast<double>(std::max<std::size_t>(1, start_ - target_));
+  }
+  template <class Body>
+  void for_each(std::size_t n, const Body& body) {
+    const double now = share();
+    parallel_for(
+        n, 1, [&](std::size_t i, std::size_t) { body(i); },
+        [&](double) { return !progress_ || progress_(now); });
+  }
+
+  static constexpr int kStep = 8;  // a factor of two in cost
+
+  const Surface& surface_;
+  std::size_t target_, start_, left_;
+  const Progress& progress_;
+};
 
 }  // namespace
 
@@ -155,34 +203,25 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   const std::size_t target = limits.triangles.value_or(0);
   if (mesh.triangles.size() <= target || mesh.empty()) return mesh;
 
-  const Mesh local = rounded(mesh);
-  HalfEdges half_edges(local);
-  HalfEdgeMesh& half_mesh = half_edges.mesh;
-  std::unique_ptr<ToleranceCheck> distance;
-  if (limits.tolerance)
-    distance = std::make_unique<ToleranceCheck>(half_edges, left_after_rounding(*limits.tolerance, mesh));
-  report(progress, 0.1);
-  Queue queue(half_mesh);
-  report(progress, 0.2);
+  // The coordinates that a binary STL will hold, about the box's centre: what has area and does not fold here does not
+  // in the file either, and quadrics keep their digits far from the origin.
+  const Box3 box = bounds(mesh);
+  const Vec3 centre = to_float32(0.5 * box.lower + 0.5 * box.upper);
+  Mesh local = mesh;
+  for (Vec3& v : local.vertices) v = to_float32(v) - centre;
+  const Vec3 largest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  const double grain = std::ldexp(std::max({largest.x, largest.y, largest.z}), -24);
 
-  const std::size_t start = half_mesh.n_faces(), goal = start > target ? start - target : 1;
-  Collapse collapse(half_mesh);
-  std::size_t left = start;
-  for (std::size_t step = 0; left > target && !queue.empty(); ++step) {
-    if (step % 256 == 0) report(progress, 0.2 + 0.8 * static_cast<double>(start - left) / static_cast<double>(goal));
-    if (!collapse.prepare(queue.front()) || (distance && !distance->allow(collapse))) {
-      queue.reject();
-      continue;
-    }
-    queue.remove(collapse.from());
-    queue.merge(collapse.from(), collapse.to());
-    left -= collapse.faces_lost();
-    collapse.commit();
-    if (distance) distance->commit(collapse);
-    queue.refresh(collapse.to());
-    for (const VertexHandle v : half_mesh.vv_range(collapse.to())) queue.refresh(v);
-  }
-  return half_edges.to_mesh(mesh);
+  HalfEdges half_edges(local);
+  report(progress, 0.1);
+  EdgeCosts costs(half_edges, centre, grain);
+  report(progress, 0.2);
+  std::optional<Traces> traces;
+  if (limits.tolerance) traces.emplace(half_edges);
+  const Surface surface{half_edges, costs, traces ? &*traces : nullptr,
+                        limits.tolerance ? left_after_rounding(*limits.tolerance, mesh) : 0};
+  Decimation(surface, target, progress).run();
+  return half_edges.to_mesh(mesh, local, centre);
 }
 
 }  // namespace riffler

@@ -15,14 +15,16 @@ struct DecimateLimits {
   std::optional<double> tolerance;       ///< mm between old and new surface, in both directions
 };
 
-/// A mesh with some of the vertices of `mesh`, whose edges were collapsed one after the other, cheapest first
-/// (quadrics: Garland & Heckbert, SIGGRAPH 97). It is closed, oriented and two-manifold where `mesh` is; vertices stay
-/// distinct in float32; no triangle turns over or folds onto a neighbour. Borders stay borders and keep to the
-/// tolerance; vertices with several fans and ends of non-manifold edges stay where they are. There may be more
-/// triangles left than asked for where no further collapse keeps to all this. Triangles that name a vertex twice are
-/// dropped.
+/// A mesh like `mesh` with fewer triangles: edges become vertices one after the other, cheapest first, each where the
+/// squared distances from the planes of the triangles that it stands for are least (quadrics: Garland & Heckbert,
+/// SIGGRAPH 97). In planes, on straight edges and at corners these are vertices of `mesh`; others are float32 numbers.
+/// The result is closed, oriented and two-manifold where `mesh` is; vertices stay distinct in float32; no triangle turns
+/// over or folds onto a neighbour. Borders keep some of their vertices, and to the tolerance; vertices with several fans
+/// and ends of non-manifold edges stay where they are. There may be more triangles left than asked for where no further
+/// collapse keeps to all this. Triangles that name a vertex twice are dropped. The bytes are the same for any number of
+/// threads.
 ///
-/// The tolerance bounds the distance of every point of either surface from the other (see ToleranceCheck).
+/// The tolerance bounds the distance of every point of either surface from the other (see Traces).
 ///
 /// std::invalid_argument where `validate` throws, without a limit, or for a tolerance that is negative or not finite.
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress = {});

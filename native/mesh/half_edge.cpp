@@ -2,6 +2,8 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include "mesh/half_edge.hpp"
 
+#include "geom/parallel.hpp"
+
 namespace riffler {
 
 namespace {
@@ -33,39 +35,51 @@ void number_fans(const Mesh& mesh, const Adjacency& adjacency, std::vector<int>&
 HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
   number_fans(from, adjacency, corner, source);
   const int halves = static_cast<int>(corner.size());
-  mesh.reserve(source.size(), static_cast<std::size_t>(halves) / 2 + 1, from.triangles.size());
   std::vector<int> copies(from.vertices.size(), 0);
-  for (const int v : source) ++copies[v], mesh.add_vertex(to_openmesh(from.vertices[v]));
+  for (const int v : source) ++copies[v];
 
   // The connectivity is known, so it is set directly: OpenMesh's add_face would search for it again, and depends on the
-  // order of the faces.
+  // order of the faces. Likewise everything gets its room at once: new_edge looks at every property each time.
   std::vector<HalfedgeHandle> handle(halves), out_border(source.size());
-  const auto end_corner = [&](int half) { return corner[next_half(half)]; };
-  for (int half = 0; half < halves; ++half) {
-    if (corner[half] < 0 || handle[half].is_valid()) continue;
-    handle[half] = mesh.new_edge(VertexHandle(corner[half]), VertexHandle(end_corner(half)));
-    const HalfedgeHandle opposite = mesh.opposite_halfedge_handle(handle[half]);
-    if (const int twin = adjacency.twin(half); twin >= 0) {
-      handle[twin] = opposite;
-    } else {
-      out_border[end_corner(half)] = opposite;
-      const bool open = adjacency.is_open(half);
-      for (const int v : {corner[half], end_corner(half)})
-        if (!open) mesh.status(VertexHandle(v)).set_locked(true);
-    }
-  }
+  int edges = 0, faces = 0;
   for (int half = 0; half < halves; ++half) {
     if (corner[half] < 0) continue;
-    mesh.set_next_halfedge_handle(handle[half], handle[next_half(half)]);
-    mesh.set_halfedge_handle(VertexHandle(corner[half]), handle[half]);
-    if (half % 3 == 0) {
-      const OpenMesh::FaceHandle face = mesh.new_face();
-      mesh.set_halfedge_handle(face, handle[half]);
-      for (int k = 0; k < 3; ++k) mesh.set_face_handle(handle[half + k], face);
+    if (half % 3 == 0) ++faces;
+    if (const int twin = adjacency.twin(half); twin < 0 || twin > half) {
+      handle[half] = HalfedgeHandle(2 * edges);
+      if (twin >= 0) handle[twin] = HalfedgeHandle(2 * edges + 1);
+      ++edges;
     }
   }
+  mesh.resize(source.size(), static_cast<std::size_t>(edges), static_cast<std::size_t>(faces));
+  parallel_for(source.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const VertexHandle vertex(static_cast<int>(v));
+      mesh.set_point(vertex, to_openmesh(from.vertices[source[v]]));
+      if (copies[source[v]] > 1) mesh.status(vertex).set_locked(true);
+    }
+  });
+
+  const auto end_corner = [&](int half) { return corner[next_half(half)]; };
+  OpenMesh::FaceHandle face(-1);
+  for (int half = 0; half < halves; ++half) {
+    if (corner[half] < 0) continue;
+    if (half % 3 == 0) {
+      face = OpenMesh::FaceHandle(face.idx() + 1);
+      mesh.set_halfedge_handle(face, handle[half]);
+    }
+    mesh.set_vertex_handle(handle[half], VertexHandle(end_corner(half)));
+    mesh.set_next_halfedge_handle(handle[half], handle[next_half(half)]);
+    mesh.set_halfedge_handle(VertexHandle(corner[half]), handle[half]);
+    mesh.set_face_handle(handle[half], face);
+    if (adjacency.twin(half) >= 0) continue;
+    const HalfedgeHandle opposite = mesh.opposite_halfedge_handle(handle[half]);
+    mesh.set_vertex_handle(opposite, VertexHandle(corner[half]));
+    out_border[end_corner(half)] = opposite;
+    if (!adjacency.is_open(half))
+      for (const int v : {corner[half], end_corner(half)}) mesh.status(VertexHandle(v)).set_locked(true);
+  }
   for (std::size_t v = 0; v < source.size(); ++v) {
-    if (copies[source[v]] > 1) mesh.status(VertexHandle(static_cast<int>(v))).set_locked(true);
     if (!out_border[v].is_valid()) continue;
     // OpenMesh wants a border vertex to name its outgoing border half-edge; every fan has just one.
     mesh.set_halfedge_handle(VertexHandle(static_cast<int>(v)), out_border[v]);
@@ -73,22 +87,26 @@ HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
   }
 }
 
-Mesh HalfEdges::to_mesh(const Mesh& from) const {
+Mesh HalfEdges::to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre) const {
   Mesh result;
   std::vector<int> number(from.vertices.size(), -1);
+  std::vector<Vec3> moved_to(from.vertices);
   for (const OpenMesh::FaceHandle face : mesh.all_faces()) {
     if (mesh.status(face).deleted()) continue;
     HalfedgeHandle half = mesh.halfedge_handle(face);
     Vec3i& t = result.triangles.emplace_back();
     for (int k = 0; k < 3; ++k, half = mesh.next_halfedge_handle(half)) {
-      t[k] = source[mesh.from_vertex_handle(half).idx()];
+      const VertexHandle v = mesh.from_vertex_handle(half);
+      t[k] = source[v.idx()];
+      if (number[t[k]] == 0) continue;
       number[t[k]] = 0;
+      if (const Vec3 p = to_vec3(mesh.point(v)); p != start.vertices[t[k]]) moved_to[t[k]] = p + centre;
     }
   }
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
     number[v] = static_cast<int>(result.vertices.size());
-    result.vertices.push_back(from.vertices[v]);
+    result.vertices.push_back(moved_to[v]);
   }
   for (Vec3i& t : result.triangles) t = {number[t.x], number[t.y], number[t.z]};
   return result;

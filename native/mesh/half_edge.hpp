@@ -38,8 +38,9 @@ struct HalfEdges {
   std::vector<int> corner;  // vertex here at which each half-edge of `adjacency` starts, -1 for triangles left out
 
   explicit HalfEdges(const Mesh& from);
-  /// Triangles that are not deleted, in their old order, with the vertices of `from` that they use, in their old order.
-  Mesh to_mesh(const Mesh& from) const;
+  /// Triangles that are not deleted, in their old order, with the vertices that they use, in their old order: as in
+  /// `from` where they are still where they were in `start`, else about `centre`.
+  Mesh to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre) const;
 };
 
 }  // namespace riffler

@@ -31,9 +31,27 @@ struct Quadric {
     return *this;
   }
 
-  double operator()(const Vec3& p) const {
-    const Vec3 a{xx * p.x + xy * p.y + zx * p.z, xy * p.x + yy * p.y + yz * p.z, zx * p.x + yz * p.y + zz * p.z};
-    return glm::dot(p, a + 2.0 * b) + c;
+  Vec3 times(const Vec3& p) const {
+    return {xx * p.x + xy * p.y + zx * p.z, xy * p.x + yy * p.y + yz * p.z, zx * p.x + yz * p.y + zz * p.z};
+  }
+
+  double operator()(const Vec3& p) const { return glm::dot(p, times(p) + 2.0 * b) + c; }
+
+  /// Sum of the weights.
+  double weight() const { return xx + yy + zz; }
+
+  /// The point where this and `hold` times the squared distance from `home` are least together: along a crease or in a
+  /// plane, where this alone leaves the point open, it stays at `home`. `hold` must be positive.
+  Vec3 lowest(const Vec3& home, double hold) const {
+    const double x = xx + hold, y = yy + hold, z = zz + hold;
+    const Vec3 r = -(times(home) + b);
+    // The inverse by cofactors.
+    const double cx = y * z - yz * yz, cy = zx * yz - xy * z, cz = xy * yz - y * zx;
+    const double det = x * cx + xy * cy + zx * cz;
+    return home + Vec3(cx * r.x + cy * r.y + cz * r.z,
+                       cy * r.x + (x * z - zx * zx) * r.y + (xy * zx - x * yz) * r.z,
+                       cz * r.x + (xy * zx - x * yz) * r.y + (x * y - xy * xy) * r.z) /
+                      det;
   }
 };
 

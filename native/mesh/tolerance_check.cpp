@@ -11,43 +11,48 @@ namespace riffler {
 namespace {
 
 using OpenMesh::HalfedgeHandle;
+using OpenMesh::VertexHandle;
 
 /// The share of the tolerance that flat fans may use up by dropping vertices.
 constexpr double kFlatShare = 0.1;
 
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+double square_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
   const double length2 = glm::dot(ab, ab), along = length2 > 0 ? glm::dot(p - a, ab) / length2 : 0;
-  return glm::length(p - a - std::clamp(along, 0.0, 1.0) * ab);
+  const Vec3 d = p - a - std::clamp(along, 0.0, 1.0) * ab;
+  return glm::dot(d, d);
 }
 
 }  // namespace
 
-ToleranceCheck::ToleranceCheck(const HalfEdges& half_edges, double tolerance)
-    : half_edges_(half_edges),
-      mesh_(half_edges.mesh),
-      tolerance_(tolerance),
-      corner_of_(mesh_.n_vertices(), -1),
-      next_(mesh_.n_vertices(), -1),
-      in_face_(mesh_.n_faces(), -1),
-      on_border_(mesh_.n_edges(), -1),
-      error_(mesh_.n_faces(), 0.0) {
-  for (std::size_t half = 0; half < half_edges.corner.size(); ++half)
-    if (const int v = half_edges.corner[half]; v >= 0) corner_of_[v] = static_cast<int>(half);
+Traces::Traces(const HalfEdges& from)
+    : half_edges(from),
+      old_points(from.mesh.n_vertices()),
+      anchor(from.mesh.n_vertices()),
+      next(from.mesh.n_vertices(), -1),
+      in_face(from.mesh.n_faces(), -1),
+      on_border(from.mesh.n_edges(), -1),
+      error(from.mesh.n_faces(), 0.0) {
+  for (std::size_t v = 0; v < old_points.size(); ++v)
+    old_points[v] = to_vec3(from.mesh.point(VertexHandle(static_cast<int>(v))));
+  for (std::size_t half = 0; half < from.corner.size(); ++half)
+    if (const int v = from.corner[half]; v >= 0) anchor[v] = {old_points[v], static_cast<int>(half), true};
 }
 
 bool ToleranceCheck::allow(const Collapse& c) {
   fan_error_ = 0;
-  for (int i = 0; i < c.old_faces(); ++i) fan_error_ = std::max(fan_error_, error_[c.face(i).idx()]);
+  for (int i = 0; i < c.old_faces(); ++i) fan_error_ = std::max(fan_error_, traces_.error[c.face(i).idx()]);
   // Once for what was dropped and its fan, once for that fan and the old surface under a trace.
   limit_ = tolerance_ - 2 * fan_error_;
+  if (!(limit_ >= 0) || !find_anchor(c)) return false;
   find_normal(c);
+  find_planes(c);
   if (c.on_border() ? !border_near(c) : !vertices_near(c)) return false;
   // Old and new fan fill the same part of a slab: no point of one is farther from the other than it is thick.
   flat_error_ = fan_error_ + std::max(largest_, thickness_);
   flat_ = flat_error_ <= kFlatShare * tolerance_ && !c.on_border();
   if (flat_) return true;
-  for (int i = c.first() + 1; i <= c.last(); ++i)
+  for (int i = c.between() ? 0 : c.first() + 1; i <= c.last(); ++i)
     if (!trace_near(c, i)) return false;
   return true;
 }
@@ -59,43 +64,86 @@ void ToleranceCheck::find_normal(const Collapse& c) {
   for (int i = 0; i < c.old_faces(); ++i) normal_ += c.old_cross(i) + c.new_cross(i);
   const double length = glm::length(normal_);
   if (length > 0) normal_ /= length;
-  double low = glm::dot(normal_, c.old_point()), high = low;
-  for (int i = 0; i < c.ring_size(); ++i) {
-    const double height = glm::dot(normal_, c.ring(i));
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const auto add = [&](const Vec3& p) {
+    const double height = glm::dot(normal_, p);
     low = std::min(low, height), high = std::max(high, height);
-  }
+  };
+  add(c.from_point());
+  if (c.between()) add(c.to_point()), add(c.new_point());
+  for (int i = 0; i < c.ring_size(); ++i) add(c.ring(i));
   thickness_ = high - low;
   for (int i = 0; i < c.old_faces(); ++i)
     if (glm::dot(c.old_cross(i), normal_) < 0 || glm::dot(c.new_cross(i), normal_) < 0)
       thickness_ = std::numeric_limits<double>::infinity();
 }
 
-/// The old vertices of the fan, `from` among them unless it is on a border.
+/// Walks over the old surface, from the nearer of both anchors, as long as it comes nearer to the new vertex.
+bool ToleranceCheck::find_anchor(const Collapse& c) {
+  anchor_ = traces_.anchor[c.to().idx()];
+  if (!c.between()) return true;
+  const Vec3& p = c.new_point();
+  const Traces::Anchor& other = traces_.anchor[c.from().idx()];
+  const auto square_from = [&](const Vec3& q) { return glm::dot(p - q, p - q); };
+  int face = triangle_of(square_from(other.point) < square_from(anchor_.point) ? other.half : anchor_.half);
+  double best = std::numeric_limits<double>::infinity();
+  for (int next = face; next >= 0;) {
+    const Vec3 &a = old_point(3 * next), &b = old_point(3 * next + 1), &d = old_point(3 * next + 2);
+    const OnTriangle on = closest_on_triangle(p, a, b, d);
+    const double distance2 = square_from(on.point);
+    if (!(distance2 < best)) break;
+    best = distance2, face = next;
+    // A shade inside of the triangle, so that a plane through the anchor always leaves it over an edge.
+    anchor_ = {on.point + 1e-3 * ((a + b + d) / 3.0 - on.point), 3 * face, false};
+    // Across the edge that the point lies on; of a corner, across the edge that starts there.
+    next = on.part == OnTriangle::Face ? -1 : (on.part - OnTriangle::EdgeAB) % 3;
+    if (next >= 0) next = half_edges_.adjacency.twin(3 * face + next);
+    if (next >= 0) next = triangle_of(next);
+  }
+  return square_from(anchor_.point) <= limit_ * limit_;
+}
+
+void ToleranceCheck::find_planes(const Collapse& c) {
+  corners_.resize(static_cast<std::size_t>(c.ring_size()));
+  for (int i = 0; i < c.ring_size(); ++i) {
+    corners_[i].anchor = traces_.anchor[c.ring_vertex(i).idx()];
+    corners_[i].side = glm::cross(normal_, corners_[i].anchor.point - anchor_.point);
+  }
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Corner& next = corners_[i + 1 < corners_.size() ? i + 1 : 0];
+    corners_[i].outer_side = glm::cross(normal_, next.anchor.point - corners_[i].anchor.point);
+  }
+}
+
+/// The old vertices of the fan, the collapsed ones among them unless they are on a border.
 bool ToleranceCheck::vertices_near(const Collapse& c) {
   moves_.clear();
   largest_ = 0;
-  if (!c.on_border() && !near_new_face(c, c.from().idx())) return false;
+  const auto unlisted = [&](VertexHandle v) { return traces_.anchor[v.idx()].vertex; };
+  if (!c.on_border() && unlisted(c.from()) && !near_new_face(c, c.from().idx())) return false;
+  if (c.between() && unlisted(c.to()) && !near_new_face(c, c.to().idx())) return false;
   for (int i = 0; i < c.old_faces(); ++i)
-    for (int v = in_face_[c.face(i).idx()]; v >= 0; v = next_[v])
+    for (int v = traces_.in_face[c.face(i).idx()]; v >= 0; v = traces_.next[v])
       if (!near_new_face(c, v)) return false;
   return true;
 }
 
 bool ToleranceCheck::near_new_face(const Collapse& c, int vertex) {
-  const Vec3 p = point(vertex), a = c.new_point();
+  const Vec3& p = traces_.old_points[vertex];
   const auto distance_to = [&](int i) {
-    return glm::length(p - closest_on_triangle(p, a, c.ring(i), c.ring(i + 1)).point);
+    return glm::length(p - closest_on_triangle(p, c.new_point(), c.ring(i), c.ring(i + 1)).point);
   };
-  const auto left_of = [&](const Vec3& from, const Vec3& to) {
-    return glm::dot(glm::cross(to - from, p - from), normal_) >= 0;
-  };
+  const auto left_of = [&](const Vec3& from, const Vec3& side) { return glm::dot(p - from, side) >= 0; };
   // The region is told by the traces, and these by the sides of their planes. What is seen outside of the fan, because
   // the traces round it belong to other planes, goes to the nearest.
   int face = -1;
   double distance = std::numeric_limits<double>::infinity();
-  for (int i = c.first(); i <= c.last() && face < 0; ++i)
-    if (left_of(a, c.ring(i)) && left_of(c.ring(i), c.ring(i + 1)) && !left_of(a, c.ring(i + 1)))
+  for (int i = c.first(); i <= c.last() && face < 0; ++i) {
+    const Corner &here = corners_[i], &next = corners_[i + 1 < c.ring_size() ? i + 1 : 0];
+    if (left_of(anchor_.point, here.side) && !left_of(anchor_.point, next.side) &&
+        left_of(here.anchor.point, here.outer_side))
       face = i, distance = distance_to(i);
+  }
   if (face < 0)
     for (int i = c.first(); i <= c.last(); ++i)
       if (const double d = distance_to(i); d < distance) face = i, distance = d;
@@ -112,65 +160,96 @@ HalfedgeHandle ToleranceCheck::other_border(const Collapse& c) {
 
 bool ToleranceCheck::near_new_border(const Collapse& c, int vertex) const {
   const Vec3& end = c.ring(c.target() == 0 ? c.ring_size() - 1 : 0);
-  return distance_to_segment(point(vertex), c.new_point(), end) <= limit_;
+  return square_to_segment(traces_.old_points[vertex], c.new_point(), end) <= limit_ * limit_;
 }
 
 bool ToleranceCheck::border_near(const Collapse& c) {
   if (!near_new_border(c, c.from().idx())) return false;
   for (const HalfedgeHandle edge : {c.spoke(c.target()), other_border(c)})
-    for (int v = on_border_[edge.idx() / 2]; v >= 0; v = next_[v])
+    for (int v = traces_.on_border[edge.idx() / 2]; v >= 0; v = traces_.next[v])
       if (!near_new_border(c, v)) return false;
   return vertices_near(c);
 }
 
-/// The trace of the new edge from `to` to ring(i).
+bool ToleranceCheck::has_corner(int half, int vertex) const {
+  const int first = 3 * triangle_of(half);
+  for (int k = 0; k < 3; ++k)
+    if (half_edges_.corner[first + k] == vertex) return true;
+  return false;
+}
+
+/// The trace of the new edge to ring(i).
 bool ToleranceCheck::trace_near(const Collapse& c, int i) const {
-  const Vec3 &from = c.new_point(), &to = c.ring(i);
-  const Vec3 side = glm::cross(normal_, to - from);
-  const int target = c.ring_vertex(i).idx();
-  // Of the old triangles at `to`, the one through which the plane leaves it forwards: its next vertex is to the right,
+  const Traces::Anchor& target = corners_[i].anchor;
+  return anchor_.vertex ? leave_vertex(target, c.new_point(), c.ring(i), corners_[i].side)
+                        : leave_face(target, c.new_point(), c.ring(i), corners_[i].side);
+}
+
+/// A trace that starts at an old vertex.
+bool ToleranceCheck::leave_vertex(const Traces::Anchor& target, const Vec3& from, const Vec3& to,
+                                  const Vec3& side) const {
+  const Vec3 &start = anchor_.point, way = target.point - start;
+  const int target_vertex = target.vertex ? half_edges_.corner[target.half] : -1;
+  // Of the old triangles there, the one through which the plane leaves it forwards: its next vertex is to the right,
   // the one after to the left. A vertex in the plane counts as left, everywhere.
-  const auto is_left = [&](int v) { return glm::dot(point(v) - from, side) >= 0; };
+  const auto is_left = [&](int half) { return glm::dot(old_point(half) - start, side) >= 0; };
   const auto leaves_here = [&](int half) {
-    const int p = half_edges_.corner[next_half(half)], q = half_edges_.corner[previous_half(half)];
-    return !is_left(p) && is_left(q) && glm::dot(point(p) + point(q) - 2.0 * from, to - from) > 0;
+    const int p = next_half(half), q = previous_half(half);
+    return !is_left(p) && is_left(q) && glm::dot(old_point(p) + old_point(q) - 2.0 * start, way) > 0;
   };
-  const int start = corner_of_[c.to().idx()];
   int exits[4], count = 0;
   const auto visit = [&](int half) {
-    const int p = half_edges_.corner[next_half(half)], q = half_edges_.corner[previous_half(half)];
-    if (p == target || q == target) return true;  // an old edge
+    if (target.vertex ? half_edges_.corner[next_half(half)] == target_vertex ||
+                            half_edges_.corner[previous_half(half)] == target_vertex
+                      : triangle_of(half) == triangle_of(target.half))
+      return true;  // within one old triangle
     if (leaves_here(half) && count < 4) exits[count++] = half;
     return false;
   };
-  int half = start;
+  int half = anchor_.half;
   do {
     if (visit(half)) return true;
     half = half_edges_.adjacency.twin(previous_half(half));
-  } while (half >= 0 && half != start);
+  } while (half >= 0 && half != anchor_.half);
   if (half < 0)
-    for (int twin = half_edges_.adjacency.twin(start); twin >= 0; twin = half_edges_.adjacency.twin(next_half(twin)))
+    for (int twin = half_edges_.adjacency.twin(anchor_.half); twin >= 0;
+         twin = half_edges_.adjacency.twin(next_half(twin)))
       if (visit(next_half(twin))) return true;
   for (int k = 0; k < count; ++k)
     if (follow(next_half(exits[k]), target, from, to, side)) return true;
   return false;
 }
 
+/// A trace that starts within an old triangle.
+bool ToleranceCheck::leave_face(const Traces::Anchor& target, const Vec3& from, const Vec3& to,
+                                const Vec3& side) const {
+  const int first = 3 * triangle_of(anchor_.half);
+  if (target.vertex ? has_corner(first, half_edges_.corner[target.half]) : triangle_of(target.half) * 3 == first)
+    return true;
+  const auto height = [&](int half) { return glm::dot(old_point(half) - anchor_.point, side); };
+  for (int half = first; half < first + 3; ++half)
+    if (height(half) < 0 && height(next_half(half)) >= 0) return follow(half, target, from, to, side);
+  return false;
+}
+
 /// Follows a trace out of a triangle over its half-edge `half`, whose start is right of the plane and whose end left.
-bool ToleranceCheck::follow(int half, int target, const Vec3& from, const Vec3& to, const Vec3& side) const {
-  Vec3 right = point(half_edges_.corner[half]), left = point(half_edges_.corner[next_half(half)]);
-  double right_height = glm::dot(right - from, side), left_height = glm::dot(left - from, side);
+bool ToleranceCheck::follow(int half, const Traces::Anchor& target, const Vec3& from, const Vec3& to,
+                            const Vec3& side) const {
+  const int target_vertex = target.vertex ? half_edges_.corner[target.half] : -1;
+  const int target_face = target.vertex ? -1 : triangle_of(target.half);
+  Vec3 right = old_point(half), left = old_point(next_half(half));
+  double right_height = glm::dot(right - anchor_.point, side), left_height = glm::dot(left - anchor_.point, side);
   const int start = half;
   do {
     const Vec3 crossing = right + (right_height / (right_height - left_height)) * (left - right);
-    if (!(distance_to_segment(crossing, from, to) <= limit_)) return false;
+    if (!(square_to_segment(crossing, from, to) <= limit_ * limit_)) return false;
     const int twin = half_edges_.adjacency.twin(half);
     if (twin < 0) return false;
     const int tip = half_edges_.corner[previous_half(twin)];
-    if (tip == target) return true;
-    const Vec3 p = point(tip);
+    if (tip == target_vertex || triangle_of(twin) == target_face) return true;
+    const Vec3& p = traces_.old_points[tip];
     // The twin runs from left to right; then comes right → tip, then tip → left.
-    if (const double height = glm::dot(p - from, side); height >= 0)
+    if (const double height = glm::dot(p - anchor_.point, side); height >= 0)
       half = next_half(twin), left = p, left_height = height;
     else
       half = previous_half(twin), right = p, right_height = height;
@@ -180,22 +259,23 @@ bool ToleranceCheck::follow(int half, int target, const Vec3& from, const Vec3& 
 
 void ToleranceCheck::commit(const Collapse& c) {
   for (int i = 0; i < c.old_faces(); ++i) {
-    in_face_[c.face(i).idx()] = -1;
-    error_[c.face(i).idx()] = flat_ ? flat_error_ : fan_error_;
+    traces_.in_face[c.face(i).idx()] = -1;
+    traces_.error[c.face(i).idx()] = flat_ ? flat_error_ : fan_error_;
   }
+  traces_.anchor[c.to().idx()] = anchor_;
   if (c.on_border()) {
     // One list of both edges and the vertex between them.
     const int gone = c.spoke(c.target()).idx() / 2, kept = other_border(c).idx() / 2;
     int last = c.from().idx();
-    next_[last] = on_border_[gone];
-    while (next_[last] >= 0) last = next_[last];
-    next_[last] = on_border_[kept];
-    on_border_[kept] = c.from().idx();
+    traces_.next[last] = traces_.on_border[gone];
+    while (traces_.next[last] >= 0) last = traces_.next[last];
+    traces_.next[last] = traces_.on_border[kept];
+    traces_.on_border[kept] = c.from().idx();
   }
   if (flat_) return;
   for (const Move& move : moves_) {
-    next_[move.vertex] = in_face_[move.face];
-    in_face_[move.face] = move.vertex;
+    traces_.next[move.vertex] = traces_.in_face[move.face];
+    traces_.in_face[move.face] = move.vertex;
   }
 }
 

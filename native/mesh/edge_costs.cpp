@@ -1,0 +1,141 @@
+#include "mesh/edge_costs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geom/float32.hpp"
+#include "geom/parallel.hpp"
+
+namespace riffler {
+
+namespace {
+
+using OpenMesh::EdgeHandle;
+using OpenMesh::HalfedgeHandle;
+using OpenMesh::VertexHandle;
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+// Among equals, as everywhere in a plane, short edges go first and the triangles stay well shaped.
+constexpr double kLength = 1e-8;
+// How hard the middle of the edge holds the new vertex where the planes leave it open; relative to their weight.
+constexpr double kHold = 1e-5;
+
+/// Quadrics grow with the area they were summed over, so that large triangles would be spared and small features go
+/// first. Divided by the root of the area the largest distance comes out least: a measurement, between the whole area,
+/// that is the mean squared distance, and none.
+double scale_of(double weight) {
+  return weight > 0 ? 1 / std::sqrt(weight) : 1;
+}
+
+}  // namespace
+
+EdgeCosts::EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain)
+    : mesh_(half_edges.mesh),
+      centre_(centre),
+      noise_(grain * grain),
+      kind_(mesh_.n_vertices(), Free),
+      quadric_(mesh_.n_vertices()),
+      cost_(mesh_.n_edges()) {
+  parallel_for(mesh_.n_vertices(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const VertexHandle v(static_cast<int>(i));
+      if (mesh_.is_boundary(v)) kind_[i] = Border;
+      if (mesh_.status(v).locked()) kind_[i] = Fixed;
+      add_faces_of(v);
+    }
+  });
+  parallel_for(mesh_.n_edges(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) refresh(EdgeHandle(static_cast<int>(i)));
+  });
+}
+
+void EdgeCosts::add_faces_of(VertexHandle v) {
+  Quadric& sum = quadric_[v.idx()];
+  const Vec3 p = to_vec3(mesh_.point(v));
+  const HalfedgeHandle start = mesh_.halfedge_handle(v);
+  HalfedgeHandle spoke = start;
+  if (!start.is_valid()) return;
+  const auto wall = [&](HalfedgeHandle border) {
+    // A wall through the border, square to the triangle, keeps the border in place.
+    const HalfedgeHandle inner = mesh_.opposite_halfedge_handle(border);
+    const Vec3 a = to_vec3(mesh_.point(mesh_.from_vertex_handle(inner)));
+    const Vec3 b = to_vec3(mesh_.point(mesh_.to_vertex_handle(inner)));
+    const Vec3 c = to_vec3(mesh_.point(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(inner))));
+    const Vec3 normal = glm::cross(b - a, glm::cross(b - a, c - a));
+    const double length = glm::length(normal);
+    if (length > 0) sum += Quadric(normal / length, a, glm::dot(b - a, b - a));
+  };
+  do {
+    const HalfedgeHandle before = mesh_.prev_halfedge_handle(spoke);
+    if (mesh_.is_boundary(spoke)) {
+      wall(spoke), wall(before);
+    } else {
+      const Vec3 q = to_vec3(mesh_.point(mesh_.to_vertex_handle(spoke)));
+      const Vec3 r = to_vec3(mesh_.point(mesh_.from_vertex_handle(before)));
+      const Vec3 cross = glm::cross(q - p, r - p);
+      const double length = glm::length(cross);
+      if (length > 0) sum += Quadric(cross / length, p, length / 2);
+    }
+    spoke = mesh_.opposite_halfedge_handle(before);
+  } while (spoke != start);
+}
+
+void EdgeCosts::refresh(EdgeHandle edge) {
+  const Placement placement = place(edge);
+  cost_[edge.idx()] = placement.half.is_valid() ? static_cast<float>(placement.cost) : kNever;
+}
+
+void EdgeCosts::put_off(EdgeHandle edge) {
+  cost_[edge.idx()] = kNever;
+}
+
+/// A vertex on a border keeps to the border's vertices, one that is fixed stays.
+Placement EdgeCosts::place(EdgeHandle edge) const {
+  HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
+  const VertexHandle a = mesh_.from_vertex_handle(half), b = mesh_.to_vertex_handle(half);
+  Kind from = kind_[a.idx()], to = kind_[b.idx()];
+  if (from == Free && to == Free) return free_place(half);
+  bool from_may_go = from == Free, to_may_go = to == Free;
+  if (from == Border || to == Border) {
+    const bool along = mesh_.is_boundary(edge);
+    from_may_go |= from == Border && along;
+    to_may_go |= to == Border && along;
+  }
+  const Vec3 p = to_vec3(mesh_.point(a)), q = to_vec3(mesh_.point(b));
+  const Quadric &qa = quadric_[a.idx()], &qb = quadric_[b.idx()];
+  const double scale = scale_of(qa.weight() + qb.weight());
+  const auto cost = [&](const Vec3& at) { return scale * std::max(0.0, qa(at) + qb(at)); };
+  const double length2 = glm::dot(q - p, q - p), extra = kLength * length2 * length2;
+  Placement best;
+  if (from_may_go) best = {half, q, false, cost(q) + extra};
+  if (to_may_go)
+    if (const double other = cost(p) + extra; !from_may_go || other < best.cost)
+      best = {mesh_.opposite_halfedge_handle(half), p, false, other};
+  return best;
+}
+
+Placement EdgeCosts::free_place(HalfedgeHandle half) const {
+  const VertexHandle a = mesh_.from_vertex_handle(half), b = mesh_.to_vertex_handle(half);
+  const Vec3 p = to_vec3(mesh_.point(a)), q = to_vec3(mesh_.point(b));
+  Quadric sum = quadric_[a.idx()];
+  sum += quadric_[b.idx()];
+  const double length2 = glm::dot(q - p, q - p), extra = kLength * length2 * length2;
+  const double at_a = sum(p), at_b = sum(q), weight = sum.weight(), scale = scale_of(weight);
+  const bool to_b = at_b <= at_a;
+  // Rounding may take the sum a little below 0.
+  Placement best{to_b ? half : mesh_.opposite_halfedge_handle(half), to_b ? q : p, false,
+                 scale * std::max(0.0, std::min(at_a, at_b)) + extra};
+  if (!(weight > 0)) return best;
+  const Vec3 lowest = sum.lowest(0.5 * (p + q), kHold * weight);
+  const double cost = scale * std::max(0.0, sum(lowest)) + extra;
+  // What float32 cannot tell from an end is that end: planes, and edges of planes, keep their vertices to the last bit.
+  if (!(best.cost - cost > noise_ * scale * weight)) return best;
+  if (const Vec3 d = lowest - 0.5 * (p + q); !(glm::dot(d, d) <= length2)) return best;
+  best.point = to_float32(lowest + centre_) - centre_;
+  best.between = true, best.cost = cost;
+  return best;
+}
+
+}  // namespace riffler
