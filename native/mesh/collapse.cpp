@@ -1,6 +1,7 @@
 #include "mesh/collapse.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace riffler {
 
@@ -19,11 +20,6 @@ constexpr double kThin = 1e-4;
 
 double square(const Vec3& v) {
   return glm::dot(v, v);
-}
-
-double shape(const Vec3& cross, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double longest = std::max({square(b - a), square(c - b), square(a - c)});
-  return longest > 0 ? glm::length(cross) / longest : 0;
 }
 
 /// Whether the angle between a and b has a cosine below `limit`, which is not positive.
@@ -74,35 +70,41 @@ bool Collapse::keeps_borders() const {
 /// neighbours but the tips of the edge's triangles. The tetrahedron meets it and would become two triangles back to
 /// back, but these are a fold. (OpenMesh's is_collapse_ok asks the same, but allocates memory on each call.)
 bool Collapse::keeps_manifold() {
-  const auto gather = [&](VertexHandle v, std::vector<int>& around) {
-    around.clear();
-    const HalfedgeHandle start = mesh_.halfedge_handle(v);
-    HalfedgeHandle spoke = start;
-    do {
-      around.push_back(mesh_.to_vertex_handle(spoke).idx());
-      spoke = mesh_.opposite_halfedge_handle(mesh_.prev_halfedge_handle(spoke));
-    } while (spoke != start);
-  };
-  gather(from_, around_from_), gather(to_, around_to_);
-  std::size_t common = 0;
-  if (around_from_.size() * around_to_.size() < 256) {
-    for (const int v : around_from_) common += std::count(around_to_.begin(), around_to_.end(), v);
-  } else {
-    std::sort(around_to_.begin(), around_to_.end());
-    for (const int v : around_from_) common += std::binary_search(around_to_.begin(), around_to_.end(), v) ? 1 : 0;
+  if (between_) return ring_is_simple();
+  marked_.clear();
+  for (const Place& place : ring_) marked_.push_back(place.vertex.idx());
+  std::sort(marked_.begin(), marked_.end());
+  int common = 0;
+  for_each_spoke(to_, [&](HalfedgeHandle spoke) {
+    common += std::binary_search(marked_.begin(), marked_.end(), mesh_.to_vertex_handle(spoke).idx()) ? 1 : 0;
+  });
+  return common == lost_;
+}
+
+/// Whether all vertices of the ring are different: the link condition where the ring goes round both ends.
+bool Collapse::ring_is_simple() {
+  if (ring_.size() <= 24) {
+    for (std::size_t i = 1; i < ring_.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (ring_[i].vertex == ring_[j].vertex) return false;
+    return true;
   }
-  return common == static_cast<std::size_t>(lost_);
+  marked_.clear();
+  for (const Place& place : ring_) marked_.push_back(place.vertex.idx());
+  std::sort(marked_.begin(), marked_.end());
+  return std::adjacent_find(marked_.begin(), marked_.end()) == marked_.end();
 }
 
 void Collapse::add_spoke(HalfedgeHandle spoke) {
-  ring_.push_back({spoke, to_vec3(mesh_.point(mesh_.to_vertex_handle(spoke)))});
+  const VertexHandle v = mesh_.to_vertex_handle(spoke);
+  ring_.push_back({spoke, v, to_vec3(mesh_.point(v))});
 }
 
 /// The face to the left of `spoke`, which is (apex, a, b).
 void Collapse::add_face(HalfedgeHandle spoke, const Vec3& apex, const Vec3& a, const Vec3& b) {
   const Vec3 cross = glm::cross(a - apex, b - apex);
-  faces_.push_back(
-      {mesh_.face_handle(spoke), mesh_.next_halfedge_handle(spoke), cross, Vec3(0), shape(cross, apex, a, b)});
+  const double longest = std::max({square(a - apex), square(b - a), square(apex - b)});
+  faces_.push_back({mesh_.face_handle(spoke), mesh_.next_halfedge_handle(spoke), cross, Vec3(0), longest});
 }
 
 void Collapse::gather_fan() {
@@ -146,14 +148,18 @@ void Collapse::gather_both_fans() {
 
 /// No new face without area, or turned over.
 bool Collapse::keeps_shape() {
-  double worst = 1;
-  for (const Face& face : faces_) worst = std::min(worst, face.shape);
   for (int i = first_; i <= last_; ++i) {
     Face& face = faces_[i];
-    face.new_cross = glm::cross(ring(i) - new_, ring(i + 1) - new_);
-    const double thin = shape(face.new_cross, new_, ring(i), ring(i + 1));
+    const Vec3 a = ring(i) - new_, b = ring(i + 1) - new_;
+    face.new_cross = glm::cross(a, b);
+    if (turned(face.old_cross, face.new_cross)) return false;
+    const double longest = std::max({square(a), square(b), square(b - a)}), area = square(face.new_cross);
+    if (area > kThin * kThin * longest * longest) continue;
     // A mesh with slivers may keep them, but not get worse ones.
-    if (!(thin > kThin || (thin > 0 && thin > worst)) || turned(face.old_cross, face.new_cross)) return false;
+    double worst = 1;
+    for (const Face& old : faces_)
+      worst = std::min(worst, old.longest > 0 ? glm::length(old.old_cross) / old.longest : 0);
+    if (!(area > 0 && std::sqrt(area) / longest > worst)) return false;
   }
   return true;
 }
@@ -161,23 +167,21 @@ bool Collapse::keeps_shape() {
 /// No two neighbours on each other.
 bool Collapse::keeps_angles() const {
   for (int i = first_; i <= last_; ++i) {
-    if (folds(i, faces_[i].outer)) return false;
+    if (folds(i, i)) return false;
     if (i > first_ && opposed(faces_[i - 1].new_cross, faces_[i].new_cross)) return false;
   }
   if (between_) return !opposed(faces_[last_].new_cross, faces_[first_].new_cross);
   // Across the edges that vanishing triangles had in common with what lies beyond them.
-  if (first_ > 0 && folds(first_, faces_[0].outer)) return false;
-  return last_ + 1 >= old_faces() || !folds(last_, faces_[last_ + 1].outer);
+  if (first_ > 0 && folds(first_, 0)) return false;
+  return last_ + 1 >= old_faces() || !folds(last_, last_ + 1);
 }
 
-/// Whether new face i would lie on the face beyond the half-edge `across` of the old fan.
-bool Collapse::folds(int i, HalfedgeHandle across) const {
-  const HalfedgeHandle twin = mesh_.opposite_halfedge_handle(across);
+/// Whether new face i would lie on the face beyond the edge from ring(j) to ring(j + 1).
+bool Collapse::folds(int i, int j) const {
+  const HalfedgeHandle twin = mesh_.opposite_halfedge_handle(faces_[j].outer);
   if (mesh_.is_boundary(twin)) return false;
-  const Vec3 a = to_vec3(mesh_.point(mesh_.from_vertex_handle(twin)));
-  const Vec3 b = to_vec3(mesh_.point(mesh_.to_vertex_handle(twin)));
-  const Vec3 c = to_vec3(mesh_.point(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(twin))));
-  return opposed(faces_[i].new_cross, glm::cross(b - a, c - a));
+  const Vec3 tip = to_vec3(mesh_.point(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(twin))));
+  return opposed(faces_[i].new_cross, glm::cross(ring(j) - ring(j + 1), tip - ring(j + 1)));
 }
 
 /// Away from borders this does what OpenMesh's collapse does, without its search for border half-edges at every vertex

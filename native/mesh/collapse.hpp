@@ -25,6 +25,17 @@ class Collapse {
   bool prepare(const Placement& placement);
   void commit();
 
+  /// Calls visit(half-edge that starts at v) once for each.
+  template <class Visit>
+  void for_each_spoke(OpenMesh::VertexHandle v, const Visit& visit) const {
+    const OpenMesh::HalfedgeHandle start = mesh_.halfedge_handle(v);
+    OpenMesh::HalfedgeHandle spoke = start;
+    do {
+      visit(spoke);
+      spoke = mesh_.opposite_halfedge_handle(mesh_.prev_halfedge_handle(spoke));
+    } while (spoke != start);
+  }
+
   OpenMesh::VertexHandle from() const { return from_; }
   OpenMesh::VertexHandle to() const { return to_; }
   const Vec3& from_point() const { return from_point_; }
@@ -36,7 +47,7 @@ class Collapse {
   int ring_size() const { return static_cast<int>(ring_.size()); }
   /// i may be ring_size(): the ring is closed, unless `from` is on a border.
   const Vec3& ring(int i) const { return ring_[wrap(i)].point; }
-  OpenMesh::VertexHandle ring_vertex(int i) const { return mesh_.to_vertex_handle(ring_[wrap(i)].spoke); }
+  OpenMesh::VertexHandle ring_vertex(int i) const { return ring_[wrap(i)].vertex; }
   /// A half-edge that ends at ring(i); it starts at `from` or `to`.
   OpenMesh::HalfedgeHandle spoke(int i) const { return ring_[wrap(i)].spoke; }
   OpenMesh::FaceHandle face(int i) const { return faces_[i].handle; }
@@ -53,25 +64,27 @@ class Collapse {
  private:
   struct Place {
     OpenMesh::HalfedgeHandle spoke;
+    OpenMesh::VertexHandle vertex;
     Vec3 point;
   };
   struct Face {
     OpenMesh::FaceHandle handle;
     OpenMesh::HalfedgeHandle outer;  // the half-edge that is not at the apex
     Vec3 old_cross, new_cross;
-    double shape;
+    double longest;  // edge of the old face, squared
   };
 
   int wrap(int i) const { return i == ring_size() ? 0 : i; }
   bool keeps_borders() const;
   bool keeps_manifold();
+  bool ring_is_simple();
   void gather_fan();
   void gather_both_fans();
   void add_spoke(OpenMesh::HalfedgeHandle spoke);
   void add_face(OpenMesh::HalfedgeHandle spoke, const Vec3& apex, const Vec3& a, const Vec3& b);
   bool keeps_shape();
   bool keeps_angles() const;
-  bool folds(int i, OpenMesh::HalfedgeHandle across) const;
+  bool folds(int i, int j) const;
   void close_side(OpenMesh::HalfedgeHandle kept, OpenMesh::HalfedgeHandle gone);
 
   HalfEdgeMesh& mesh_;
@@ -81,7 +94,7 @@ class Collapse {
   bool between_ = false;
   std::vector<Place> ring_;
   std::vector<Face> faces_;
-  std::vector<int> around_from_, around_to_;
+  std::vector<int> marked_;
   bool border_ = false, to_border_ = false;
   int first_ = 0, last_ = -1, target_ = 0, lost_ = 0;
 };

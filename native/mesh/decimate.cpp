@@ -15,6 +15,7 @@
 #include "mesh/edge_queue.hpp"
 #include "mesh/half_edge.hpp"
 #include "mesh/patches.hpp"
+#include "mesh/separate.hpp"
 #include "mesh/tolerance_check.hpp"
 
 namespace riffler {
@@ -64,7 +65,7 @@ class Worker {
   void fill(const Patches& patches, std::size_t patch) {
     patches.for_each_vertex(patch, [&](VertexHandle v) {
       if (!patches.inner(v)) return;
-      for_each_spoke(v, [&](HalfedgeHandle spoke) {
+      collapse_.for_each_spoke(v, [&](HalfedgeHandle spoke) {
         const VertexHandle other = mesh_.to_vertex_handle(spoke);
         if (v.idx() < other.idx() && patches.inner(other)) add(mesh_.edge_handle(spoke));
       });
@@ -75,9 +76,11 @@ class Worker {
       if (!mesh_.status(EdgeHandle(e)).deleted()) add(EdgeHandle(e));
   }
 
-  /// Goes on until the next edge's cost is beyond the bucket `last`, or `quota` triangles are gone.
+  /// Goes on until the next edge's cost is beyond the bucket `last`, or `quota` triangles are gone,
+  /// or for a while.
   void run(int last, std::size_t quota, const Patches* patches) {
-    for (lost_ = 0; lost_ < quota && queue_.first() <= last;) {
+    lost_ = 0;
+    for (std::size_t tries = 0; lost_ < quota && tries < kTries && queue_.first() <= last; ++tries) {
       const EdgeQueue::Entry entry = queue_.pop();
       const EdgeHandle edge(entry.edge);
       if (costs_[edge] != entry.cost || mesh_.status(edge).deleted()) continue;
@@ -89,15 +92,7 @@ class Worker {
   }
 
  private:
-  template <class Visit>
-  void for_each_spoke(VertexHandle v, const Visit& visit) const {
-    const HalfedgeHandle start = mesh_.halfedge_handle(v);
-    HalfedgeHandle spoke = start;
-    do {
-      visit(spoke);
-      spoke = mesh_.opposite_halfedge_handle(mesh_.prev_halfedge_handle(spoke));
-    } while (spoke != start);
-  }
+  static constexpr std::size_t kTries = 1 << 15;  // until the caller is heard again
 
   void add(EdgeHandle edge) {
     if (!(costs_[edge] < std::numeric_limits<float>::infinity())) costs_.refresh(edge);
@@ -109,7 +104,7 @@ class Worker {
     lost_ += static_cast<std::size_t>(collapse_.faces_lost());
     if (check_) check_->commit(collapse_);
     collapse_.commit();
-    for_each_spoke(collapse_.to(), [&](HalfedgeHandle spoke) {
+    collapse_.for_each_spoke(collapse_.to(), [&](HalfedgeHandle spoke) {
       const EdgeHandle edge = mesh_.edge_handle(spoke);
       costs_.refresh(edge);
       if (!patches || patches->inner(mesh_.to_vertex_handle(spoke))) queue_.push(edge.idx(), costs_[edge]);
@@ -209,17 +204,20 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   const Vec3 centre = to_float32(0.5 * box.lower + 0.5 * box.upper);
   Mesh local = mesh;
   for (Vec3& v : local.vertices) v = to_float32(v) - centre;
-  const Vec3 largest = glm::max(glm::abs(box.lower), glm::abs(box.upper));
-  const double grain = std::ldexp(std::max({largest.x, largest.y, largest.z}), -24);
+  const Vec3 corner = glm::max(glm::abs(box.lower), glm::abs(box.upper));
+  const double largest = std::max({corner.x, corner.y, corner.z}), reach = separation_reach(largest);
+  double tolerance = limits.tolerance ? left_after_rounding(*limits.tolerance, mesh) : 0;
+  // Where float32 is too coarse for the tolerance, vertices stay where they are.
+  const bool may_move = !limits.tolerance || tolerance > 16 * reach;
+  if (may_move) tolerance -= reach;
 
   HalfEdges half_edges(local);
   report(progress, 0.1);
-  EdgeCosts costs(half_edges, centre, grain);
+  EdgeCosts costs(half_edges, centre, may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity());
   report(progress, 0.2);
   std::optional<Traces> traces;
   if (limits.tolerance) traces.emplace(half_edges);
-  const Surface surface{half_edges, costs, traces ? &*traces : nullptr,
-                        limits.tolerance ? left_after_rounding(*limits.tolerance, mesh) : 0};
+  const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
   Decimation(surface, target, progress).run();
   return half_edges.to_mesh(mesh, local, centre);
 }

@@ -26,7 +26,7 @@ constexpr double kHold = 1e-5;
 /// first. Divided by the root of the area the largest distance comes out least: a measurement, between the whole area,
 /// that is the mean squared distance, and none.
 double scale_of(double weight) {
-  return weight > 0 ? 1 / std::sqrt(weight) : 1;
+  return weight > 0 ? 1 / static_cast<double>(std::sqrt(static_cast<float>(weight))) : 1;
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ void EdgeCosts::add_faces_of(VertexHandle v) {
 }
 
 void EdgeCosts::refresh(EdgeHandle edge) {
-  const Placement placement = place(edge);
+  const Placement placement = place(edge, false);
   cost_[edge.idx()] = placement.half.is_valid() ? static_cast<float>(placement.cost) : kNever;
 }
 
@@ -92,11 +92,11 @@ void EdgeCosts::put_off(EdgeHandle edge) {
 }
 
 /// A vertex on a border keeps to the border's vertices, one that is fixed stays.
-Placement EdgeCosts::place(EdgeHandle edge) const {
+Placement EdgeCosts::place(EdgeHandle edge, bool rounded) const {
   HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
   const VertexHandle a = mesh_.from_vertex_handle(half), b = mesh_.to_vertex_handle(half);
   Kind from = kind_[a.idx()], to = kind_[b.idx()];
-  if (from == Free && to == Free) return free_place(half);
+  if (from == Free && to == Free) return free_place(half, rounded);
   bool from_may_go = from == Free, to_may_go = to == Free;
   if (from == Border || to == Border) {
     const bool along = mesh_.is_boundary(edge);
@@ -116,25 +116,30 @@ Placement EdgeCosts::place(EdgeHandle edge) const {
   return best;
 }
 
-Placement EdgeCosts::free_place(HalfedgeHandle half) const {
+Placement EdgeCosts::free_place(HalfedgeHandle half, bool rounded) const {
   const VertexHandle a = mesh_.from_vertex_handle(half), b = mesh_.to_vertex_handle(half);
-  const Vec3 p = to_vec3(mesh_.point(a)), q = to_vec3(mesh_.point(b));
+  const Vec3 p = to_vec3(mesh_.point(a)), q = to_vec3(mesh_.point(b)), middle = 0.5 * (p + q), arm = 0.5 * (q - p);
   Quadric sum = quadric_[a.idx()];
   sum += quadric_[b.idx()];
-  const double length2 = glm::dot(q - p, q - p), extra = kLength * length2 * length2;
-  const double at_a = sum(p), at_b = sum(q), weight = sum.weight(), scale = scale_of(weight);
-  const bool to_b = at_b <= at_a;
-  // Rounding may take the sum a little below 0.
+  const double weight = sum.weight(), scale = scale_of(weight), square = glm::dot(arm, arm);
+  const double extra = 16 * kLength * square * square;
+  // Everything from the middle of the edge: E(middle + d) = E(middle) + 2 g d + d A d.
+  const Vec3 g = sum.times(middle) + sum.b;
+  const double at_middle = glm::dot(middle, g + sum.b) + sum.c;
+  const double slope = 2 * glm::dot(g, arm), at_end = at_middle + glm::dot(arm, sum.times(arm)) - std::abs(slope);
+  const bool to_b = slope <= 0;
+  // Rounding may take a sum a little below 0.
   Placement best{to_b ? half : mesh_.opposite_halfedge_handle(half), to_b ? q : p, false,
-                 scale * std::max(0.0, std::min(at_a, at_b)) + extra};
+                 scale * std::max(0.0, at_end) + extra};
   if (!(weight > 0)) return best;
-  const Vec3 lowest = sum.lowest(0.5 * (p + q), kHold * weight);
-  const double cost = scale * std::max(0.0, sum(lowest)) + extra;
+  const double hold = kHold * weight;
+  const Vec3 d = sum.solved(-g, hold);
+  const double square_d = glm::dot(d, d), at_lowest = at_middle + glm::dot(g, d) - hold * square_d;
   // What float32 cannot tell from an end is that end: planes, and edges of planes, keep their vertices to the last bit.
-  if (!(best.cost - cost > noise_ * scale * weight)) return best;
-  if (const Vec3 d = lowest - 0.5 * (p + q); !(glm::dot(d, d) <= length2)) return best;
-  best.point = to_float32(lowest + centre_) - centre_;
-  best.between = true, best.cost = cost;
+  if (!(at_end - std::max(0.0, at_lowest) > noise_ * weight) || !(square_d <= 4 * square)) return best;
+  best.point = middle + d;
+  if (rounded) best.point = to_float32(best.point + centre_) - centre_;
+  best.between = true, best.cost = scale * std::max(0.0, at_lowest) + extra;
   return best;
 }
 

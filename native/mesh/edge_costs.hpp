@@ -19,11 +19,12 @@ struct Placement {
 /// Quadrics of all vertices, and the costs of all edges that follow from them.
 class EdgeCosts {
  public:
-  /// `centre` was subtracted from the float32 coordinates of a file; `grain` is how far apart these are at most.
+  /// `centre` was subtracted from the float32 coordinates of a file; `grain` is how far at
+  /// most a number is from the next of these; if infinite, vertices do not move.
   EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain);
 
-  /// The cheapest place for the two ends of `edge`.
-  Placement place(OpenMesh::EdgeHandle edge) const;
+  /// The cheapest place for the two ends of `edge`: a vertex's, or one that a file can hold.
+  Placement place(OpenMesh::EdgeHandle edge) const { return place(edge, true); }
   /// The last cost computed; infinite where the edge has to stay or was put off.
   float operator[](OpenMesh::EdgeHandle edge) const { return cost_[edge.idx()]; }
   /// Computes the cost of `edge` anew.
@@ -36,7 +37,8 @@ class EdgeCosts {
   enum Kind : char { Free, Border, Fixed };
 
   void add_faces_of(OpenMesh::VertexHandle v);
-  Placement free_place(OpenMesh::HalfedgeHandle half) const;
+  Placement place(OpenMesh::EdgeHandle edge, bool rounded) const;
+  Placement free_place(OpenMesh::HalfedgeHandle half, bool rounded) const;
 
   const HalfEdgeMesh& mesh_;
   Vec3 centre_;

@@ -3,6 +3,7 @@
 #include "mesh/half_edge.hpp"
 
 #include "geom/parallel.hpp"
+#include "mesh/separate.hpp"
 
 namespace riffler {
 
@@ -90,7 +91,8 @@ HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
 Mesh HalfEdges::to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre) const {
   Mesh result;
   std::vector<int> number(from.vertices.size(), -1);
-  std::vector<Vec3> moved_to(from.vertices);
+  std::vector<Vec3> point(from.vertices);
+  std::vector<char> moved(from.vertices.size(), 0), movable;
   for (const OpenMesh::FaceHandle face : mesh.all_faces()) {
     if (mesh.status(face).deleted()) continue;
     HalfedgeHandle half = mesh.halfedge_handle(face);
@@ -100,15 +102,18 @@ Mesh HalfEdges::to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre)
       t[k] = source[v.idx()];
       if (number[t[k]] == 0) continue;
       number[t[k]] = 0;
-      if (const Vec3 p = to_vec3(mesh.point(v)); p != start.vertices[t[k]]) moved_to[t[k]] = p + centre;
+      if (const Vec3 p = to_vec3(mesh.point(v)); p != start.vertices[t[k]])
+        point[t[k]] = p + centre, moved[t[k]] = 1;
     }
   }
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
     number[v] = static_cast<int>(result.vertices.size());
-    result.vertices.push_back(moved_to[v]);
+    result.vertices.push_back(point[v]);
+    movable.push_back(moved[v]);
   }
   for (Vec3i& t : result.triangles) t = {number[t.x], number[t.y], number[t.z]};
+  separate(result, movable);
   return result;
 }
 

@@ -40,18 +40,15 @@ struct Quadric {
   /// Sum of the weights.
   double weight() const { return xx + yy + zz; }
 
-  /// The point where this and `hold` times the squared distance from `home` are least together: along a crease or in a
-  /// plane, where this alone leaves the point open, it stays at `home`. `hold` must be positive.
-  Vec3 lowest(const Vec3& home, double hold) const {
+  /// (A + hold I)⁻¹ r, by cofactors. With hold > 0 there is one, and where A leaves a direction open, along a crease or
+  /// in a plane, it has no part in that direction unless r has.
+  Vec3 solved(const Vec3& r, double hold) const {
     const double x = xx + hold, y = yy + hold, z = zz + hold;
-    const Vec3 r = -(times(home) + b);
-    // The inverse by cofactors.
-    const double cx = y * z - yz * yz, cy = zx * yz - xy * z, cz = xy * yz - y * zx;
+    const double cx = y * z - yz * yz, cy = zx * yz - xy * z, cz = xy * yz - y * zx, co = xy * zx - x * yz;
     const double det = x * cx + xy * cy + zx * cz;
-    return home + Vec3(cx * r.x + cy * r.y + cz * r.z,
-                       cy * r.x + (x * z - zx * zx) * r.y + (xy * zx - x * yz) * r.z,
-                       cz * r.x + (xy * zx - x * yz) * r.y + (x * y - xy * xy) * r.z) /
-                      det;
+    return Vec3(cx * r.x + cy * r.y + cz * r.z, cy * r.x + (x * z - zx * zx) * r.y + co * r.z,
+                cz * r.x + co * r.y + (x * y - xy * xy) * r.z) *
+           (1 / det);
   }
 };
 
