@@ -113,10 +113,11 @@ MeshPtr decimated(const Mesh& mesh, std::optional<std::int64_t> triangles, std::
   return std::make_shared<Mesh>(decimate(mesh, limits, listener));
 }
 
-MeshPtr smoothed(const Mesh& mesh, int iterations, std::optional<double> tolerance, const py::object& progress) {
+MeshPtr smoothed(const Mesh& mesh, int iterations, std::optional<double> tolerance, double feature_angle,
+                 const py::object& progress) {
   const Progress listener = to_progress(progress);
   const NoGil no_gil;
-  return std::make_shared<Mesh>(smooth(mesh, iterations, tolerance, listener));
+  return std::make_shared<Mesh>(smooth(mesh, iterations, tolerance, feature_angle, listener));
 }
 
 py::array_t<double> deviation_array(const Mesh& mesh, const Mesh& other, bool with_sign, const py::object& progress) {
@@ -174,12 +175,14 @@ duplicates (the vertices of an earlier triangle), folds (edges whose two triangl
 components (pieces connected across edges), volume (mm³, signed).)");
   mesh.def("decimate", &decimated, "triangles"_a = py::none(), "tolerance"_a = py::none(), py::kw_only(),
            "progress"_a = py::none(),
-           R"(A mesh with fewer of the same vertices: down to `triangles`, or as far as old and new surface stay within
-`tolerance` (mm) of each other, or until the first of both. Closed and two-manifold where this one is.)");
+           R"(A mesh with fewer triangles: down to `triangles`, or as far as old and new surface stay within `tolerance` (mm) of
+each other, or until the first of both. Closed and two-manifold where this one is; sharp edges and borders stay. The
+vertices are some of the old ones, or where that fits better new ones between them.)");
   mesh.def("smooth", &smoothed, "iterations"_a = 10, "tolerance"_a = py::none(), py::kw_only(),
-           "progress"_a = py::none(),
-           R"(A smoother mesh of the same triangles (Taubin); no vertex moves farther than `tolerance` (mm) in all.
-Vertices on borders stay.)");
+           "feature_angle"_a = kFeatureAngle, "progress"_a = py::none(),
+           R"(A smoother mesh of the same triangles (Taubin) and the same volume; no vertex moves farther than `tolerance`
+(mm) in all. Edges whose sides turn by more than `feature_angle` (rad) stay sharp, and corners stay where they are, as
+do vertices on borders.)");
   mesh.def(
       "deviation", &deviation_array, "other"_a, py::kw_only(), "signed"_a = false, "progress"_a = py::none(),
       R"((n,) float64: how far (mm) each vertex is from the surface of `other`; with signed=True negative inside.)");

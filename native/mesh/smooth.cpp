@@ -18,23 +18,35 @@ namespace {
 constexpr std::size_t kGrain = 1 << 13;
 constexpr double kShrink = 0.5, kInflate = -0.51;
 
-/// The neighbours of every vertex; none for those that must stay.
+// Two edges of a feature that meet at a sharper angle than this make a corner: its cosine.
+constexpr double kCorner = -0.5;
+
+/// What every vertex is drawn to: all its neighbours, on a feature line the two along it, nothing if it must stay.
 class Neighbours {
  public:
-  explicit Neighbours(const Mesh& mesh) : begin_(mesh.vertices.size() + 1, 0) {
-    const Adjacency adjacency(mesh);
+  Neighbours(const Mesh& mesh, const Adjacency& adjacency, double feature_angle)
+      : begin_(mesh.vertices.size() + 1, 0) {
     std::vector<char> fixed(mesh.vertices.size(), 0);
     const int halves = static_cast<int>(3 * mesh.triangles.size());
     for (int half = 0; half < halves; ++half)
       if (adjacency.twin(half) < 0) fixed[start_of(mesh, half)] = fixed[end_of(mesh, half)] = 1;
+    const std::vector<char> sharp = sharp_edges(mesh, adjacency, feature_angle);
+    std::vector<Line> lines(mesh.vertices.size());
     for (int half = 0; half < halves; ++half)
-      if (const int v = start_of(mesh, half); !fixed[v]) ++begin_[v + 1];
+      if (sharp[half]) lines[start_of(mesh, half)].add(end_of(mesh, half));
+    // Around a vertex without border every neighbour is the end of just one half-edge. One edge alone is the end of a
+    // line that fades away.
+    const auto draws = [&](int half) {
+      const int v = start_of(mesh, half);
+      return !fixed[v] && (lines[v].count < 2 || (lines[v].goes_on(mesh, v) && sharp[half]));
+    };
+    for (int half = 0; half < halves; ++half)
+      if (draws(half)) ++begin_[start_of(mesh, half) + 1];
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
     other_.resize(begin_.back());
     std::vector<std::size_t> at(begin_.begin(), begin_.end() - 1);
-    // Around a vertex without border every neighbour is the end of just one half-edge.
     for (int half = 0; half < halves; ++half)
-      if (const int v = start_of(mesh, half); !fixed[v]) other_[at[v]++] = end_of(mesh, half);
+      if (draws(half)) other_[at[start_of(mesh, half)]++] = end_of(mesh, half);
   }
 
   std::span<const int> of(std::size_t v) const {
@@ -42,6 +54,42 @@ class Neighbours {
   }
 
  private:
+  /// The sharp edges at a vertex.
+  struct Line {
+    int count = 0;
+    int ends[2] = {-1, -1};
+    void add(int end) {
+      if (count < 2) ends[count] = end;
+      ++count;
+    }
+    bool goes_on(const Mesh& mesh, int v) const {
+      if (count != 2) return false;
+      const Vec3 a = mesh.vertices[ends[0]] - mesh.vertices[v], b = mesh.vertices[ends[1]] - mesh.vertices[v];
+      return glm::dot(a, b) < kCorner * glm::length(a) * glm::length(b);
+    }
+  };
+
+  /// For every half-edge, whether the normals on its sides differ by more than `angle`.
+  static std::vector<char> sharp_edges(const Mesh& mesh, const Adjacency& adjacency, double angle) {
+    const auto cross = [&](int t) {
+      const Vec3i& v = mesh.triangles[t];
+      const Vec3& a = mesh.vertices[v.x];
+      return glm::cross(mesh.vertices[v.y] - a, mesh.vertices[v.z] - a);
+    };
+    const double least = std::cos(angle);
+    std::vector<char> sharp(3 * mesh.triangles.size(), 0);
+    parallel_for(sharp.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t half = begin; half < end; ++half) {
+        const int twin = adjacency.twin(static_cast<int>(half));
+        if (twin < 0) continue;
+        const Vec3 a = cross(static_cast<int>(half / 3)), b = cross(twin / 3);
+        const double lengths = glm::length(a) * glm::length(b);
+        sharp[half] = lengths > 0 && glm::dot(a, b) < least * lengths;
+      }
+    });
+    return sharp;
+  }
+
   std::vector<std::size_t> begin_;
   std::vector<int> other_;
 };
@@ -68,6 +116,34 @@ void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours
   });
 }
 
+/// Moves every vertex on along its normal, in proportion to how far it has moved, so that the mesh has the volume that
+/// it had. What was smooth, and stayed, stays.
+void restore_volume(const Mesh& mesh, Vertices& vertices, double limit) {
+  constexpr int kRounds = 3;  // the first one is exact up to the square of the shift and to what `limit` holds back
+  const double wanted = volume(mesh);
+  Mesh now{vertices, mesh.triangles};
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Vec3> slope(vertices.size(), Vec3(0));  // of the volume, times 6
+    for (const Vec3i& t : mesh.triangles) {
+      const Vec3 &a = now.vertices[t.x], &b = now.vertices[t.y], &c = now.vertices[t.z];
+      const Vec3 cross = glm::cross(b - a, c - a);
+      slope[t.x] += cross, slope[t.y] += cross, slope[t.z] += cross;
+    }
+    double sum = 0;
+    for (std::size_t v = 0; v < slope.size(); ++v)
+      sum += glm::length(slope[v]) / 6 * glm::length(now.vertices[v] - mesh.vertices[v]);
+    const double missing = wanted - volume(now), share = missing / sum;
+    // A correction as large as the smoothing itself would be none.
+    if (missing == 0 || !(std::abs(share) < 0.5)) break;
+    for (std::size_t v = 0; v < slope.size(); ++v) {
+      const double length = glm::length(slope[v]), far = glm::length(now.vertices[v] - mesh.vertices[v]);
+      if (length > 0 && far > 0)
+        now.vertices[v] = limited(now.vertices[v] + (share * far / length) * slope[v], mesh.vertices[v], limit);
+    }
+  }
+  vertices = std::move(now.vertices);
+}
+
 Vec3 cross_in_float(const Vertices& vertices, const Vec3i& t) {
   const Vec3 a = to_float32(vertices[t.x]), b = to_float32(vertices[t.y]), c = to_float32(vertices[t.z]);
   return glm::cross(b - a, c - a);
@@ -80,7 +156,8 @@ bool opposed(const Vec3& a, const Vec3& b) {
 /// Puts vertices back until nothing is wrong; at the latest everything is back where it was.
 class Repair {
  public:
-  Repair(const Mesh& mesh, Vertices& vertices) : mesh_(mesh), vertices_(vertices), adjacency_(mesh) {
+  Repair(const Mesh& mesh, const Adjacency& adjacency, Vertices& vertices)
+      : mesh_(mesh), vertices_(vertices), adjacency_(adjacency) {
     for (const Vec3i& t : mesh.triangles) old_.push_back(cross_in_float(mesh.vertices, t));
   }
 
@@ -129,7 +206,7 @@ class Repair {
 
   const Mesh& mesh_;
   Vertices& vertices_;
-  Adjacency adjacency_;
+  const Adjacency& adjacency_;
   std::vector<Vec3> old_;
   std::vector<char> back_;
 };
@@ -137,20 +214,33 @@ class Repair {
 }  // namespace
 
 Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, const Progress& progress) {
+  return smooth(mesh, iterations, tolerance, kFeatureAngle, progress);
+}
+
+Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, double feature_angle,
+            const Progress& progress) {
   if (iterations < 0) throw std::invalid_argument("iterations must not be negative, not " + std::to_string(iterations));
   if (tolerance && !(*tolerance >= 0 && std::isfinite(*tolerance)))
     throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*tolerance));
+  if (!(feature_angle > 0 && feature_angle <= std::acos(-1.0)))
+    throw std::invalid_argument("feature_angle must be above 0 and at most pi, not " + std::to_string(feature_angle));
   validate(mesh);
-  const Neighbours neighbours(mesh);
+  const Adjacency adjacency(mesh);
+  const Neighbours neighbours(mesh, adjacency, feature_angle);
   // A hair less than asked for, so that rounding does not exceed it.
   const double limit = tolerance ? *tolerance * (1 - 1e-12) : std::numeric_limits<double>::infinity();
   Vertices vertices = mesh.vertices, scratch(vertices.size());
   for (int i = 0; i < iterations; ++i) {
-    report(progress, 0.9 * i / iterations);
+    report(progress, 0.8 * i / iterations);
     step(vertices, scratch, mesh, neighbours, kShrink, limit);
     step(scratch, vertices, mesh, neighbours, kInflate, limit);
   }
-  if (iterations > 0) Repair(mesh, vertices).run();
+  report(progress, 0.8);
+  if (iterations > 0) {
+    restore_volume(mesh, vertices, limit);
+    report(progress, 0.9);
+    Repair(mesh, adjacency, vertices).run();
+  }
   return {std::move(vertices), mesh.triangles};
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <random>
 #include <set>
 
@@ -150,6 +151,53 @@ TEST(Decimate, VerticesThatMovedAreFloat32) {
     ++moved;
   }
   EXPECT_GT(moved, 100);
+}
+
+TEST(Decimate, IsTheSameForAnyNumberOfThreads) {
+  const Mesh mesh = rough(torus_mesh(10, 4, 260, 130), 0.01);  // several patches, several partitions
+  const auto run = [&](const char* threads) {
+    setenv("RIFFLER_THREADS", threads, 1);
+    std::vector<Mesh> results{decimate(mesh, {6000, {}}), decimate(mesh, {6000, 0.05}), decimate(mesh, {{}, 0.05})};
+    unsetenv("RIFFLER_THREADS");
+    return results;
+  };
+  const std::vector<Mesh> one = run("1");
+  EXPECT_EQ(one[0].triangles.size(), 6000U);
+  for (const Mesh& result : one) expect_sound(result);
+  for (const char* threads : {"2", "7"}) {
+    const std::vector<Mesh> more = run(threads);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i].vertices, more[i].vertices);
+      EXPECT_EQ(one[i].triangles, more[i].triangles);
+    }
+  }
+}
+
+TEST(Decimate, NewVerticesStraddleTheSurface) {
+  // The vertices of an inscribed mesh lie on the sphere and its triangles within; the best ones straddle it.
+  const Mesh mesh = sphere_mesh(10, 6);
+  const Mesh result = decimate(mesh, {2000, {}});
+  const double inscribed = 10 * 7.26 / 2000;  // 4 π / √3 n of the radius
+  EXPECT_LT(one_way(mesh, result), inscribed);
+  EXPECT_LT(one_way(result, mesh), inscribed);
+  EXPECT_NEAR(volume(result) / volume(mesh), 1, 0.003);  // 0.5 % for an inscribed one
+}
+
+TEST(Decimate, VerticesStayDistinctInFloat32) {
+  // Float32 has steps of 1 out there: two spheres that cross have vertices that would be one.
+  const Vec3 far(1.6e7);
+  int movable = 0;
+  for (int turn = 0; turn < 200; ++turn) {
+    Mesh second = sphere_mesh(100, 3);
+    const double c = std::cos(0.1 + 0.03 * turn), s = std::sin(0.1 + 0.03 * turn);
+    for (Vec3& v : second.vertices) v = Vec3(c * v.x - s * v.y + 2, s * v.x + c * v.y + 3, v.z + 4);
+    Mesh mesh = both(moved(sphere_mesh(100, 3), far), moved(second, far));
+    for (Vec3& v : mesh.vertices) v = to_float32(v);
+    if (from_stl(to_stl(mesh), "part").vertices.size() < mesh.vertices.size()) continue;
+    ++movable;
+    expect_sound(decimate(mesh, {600, {}}));
+  }
+  EXPECT_GT(movable, 50);
 }
 
 TEST(Decimate, ABorderKeepsToTheTolerance) {

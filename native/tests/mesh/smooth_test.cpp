@@ -35,6 +35,50 @@ TEST(Smooth, TakesRoughnessAwayAndKeepsTheSize) {
   EXPECT_TRUE(audit(from_stl(to_stl(result), "part")).watertight());
 }
 
+TEST(Smooth, KeepsTheVolume) {
+  const Mesh rough = rough_sphere(0.05);
+  for (const int n : {1, 10, 50}) {
+    // What is left over are the vertices that went back.
+    EXPECT_NEAR(volume(smooth(rough, n)) / volume(rough), 1, 1e-6);
+    EXPECT_NEAR(volume(smooth(rough, n, 0.03)) / volume(rough), 1, 1e-6);
+  }
+  // Of two bodies the one that is smooth is not paid for the other.
+  Mesh both_bodies = both(box_mesh({20, 0, 0}, {24, 5, 6}), rough);
+  const Mesh result = smooth(both_bodies, 20);
+  for (std::size_t v = 0; v < 8; ++v) EXPECT_EQ(result.vertices[v], both_bodies.vertices[v]);
+}
+
+/// Distance of p from the surface of the box 0 … size.
+double off_box(const Vec3& p, const Vec3& size) {
+  const Vec3 q = glm::abs(p - 0.5 * size) - 0.5 * size;
+  return std::fabs(glm::length(glm::max(q, Vec3(0))) + std::fmin(0, std::fmax(q.x, std::fmax(q.y, q.z))));
+}
+
+TEST(Smooth, EdgesAndCornersStaySharp) {
+  const Vec3 size(10, 8, 6);
+  const Mesh flat = subdivided(box_mesh({0, 0, 0}, size), 4);
+  for (const Vec3& v : smooth(flat, 20).vertices) EXPECT_LT(off_box(v, size), 1e-14);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> step(-0.02, 0.02);
+  Mesh rough = flat;
+  for (Vec3& v : rough.vertices) v += Vec3(step(random), step(random), step(random));
+  const auto mean_off = [&](const Mesh& mesh) {
+    double sum = 0, worst = 0;
+    for (const Vec3& v : mesh.vertices) sum += off_box(v, size), worst = std::fmax(worst, off_box(v, size));
+    EXPECT_LT(worst, 0.05);
+    return sum / static_cast<double>(mesh.vertices.size());
+  };
+  const Mesh result = smooth(rough, 20);
+  EXPECT_LT(mean_off(result), mean_off(rough) / 1.8);
+  for (std::size_t v = 0; v < 8; ++v) EXPECT_EQ(result.vertices[v], rough.vertices[v]);  // the corners
+  EXPECT_NEAR(volume(result) / volume(rough), 1, 1e-6);
+  // Without features the edges go: the same call with every edge taken for a smooth one.
+  const Mesh round = smooth(rough, 20, {}, 3.14);
+  double worst = 0;
+  for (const Vec3& v : round.vertices) worst = std::fmax(worst, off_box(v, size));
+  EXPECT_GT(worst, 0.1);
+}
+
 TEST(Smooth, NoVertexMovesFartherThanTheTolerance) {
   const Mesh mesh = rough_sphere(0.05);
   for (const double tolerance : {0.0, 0.001, 0.01}) {
@@ -93,6 +137,7 @@ TEST(Smooth, OddInputs) {
   EXPECT_THROW(smooth(mesh, -1), std::invalid_argument);
   EXPECT_THROW(smooth(mesh, 1, -0.1), std::invalid_argument);
   EXPECT_THROW(smooth(mesh, 1, std::nan("")), std::invalid_argument);
+  for (const double angle : {0.0, -1.0, 4.0, std::nan("")}) EXPECT_THROW(smooth(mesh, 1, {}, angle), std::invalid_argument);
   EXPECT_THROW(smooth(mesh, 5, {}, [](double) { return false; }), Cancelled);
 }
 
