@@ -173,14 +173,16 @@ open_edges (of one triangle), nonmanifold_edges (of three or more, or of two in 
 nonmanifold_vertices (whose triangles are not one fan), degenerate (a vertex twice, or area exactly 0),
 duplicates (the vertices of an earlier triangle), folds (edges whose two triangles lie on each other),
 components (pieces connected across edges), volume (mm³, signed).)");
-  mesh.def("decimate", &decimated, "triangles"_a = py::none(), "tolerance"_a = py::none(), py::kw_only(),
-           "progress"_a = py::none(),
-           R"(A mesh with fewer triangles: down to `triangles`, or as far as old and new surface stay within `tolerance` (mm) of
+  mesh.def(
+      "decimate", &decimated, "triangles"_a = py::none(), "tolerance"_a = py::none(), py::kw_only(),
+      "progress"_a = py::none(),
+      R"(A mesh with fewer triangles: down to `triangles`, or as far as old and new surface stay within `tolerance` (mm) of
 each other, or until the first of both. Closed and two-manifold where this one is; sharp edges and borders stay. The
 vertices are some of the old ones, or where that fits better new ones between them.)");
-  mesh.def("smooth", &smoothed, "iterations"_a = 10, "tolerance"_a = py::none(), py::kw_only(),
-           "feature_angle"_a = kFeatureAngle, "progress"_a = py::none(),
-           R"(A smoother mesh of the same triangles (Taubin) and the same volume; no vertex moves farther than `tolerance`
+  mesh.def(
+      "smooth", &smoothed, "iterations"_a = 10, "tolerance"_a = py::none(), py::kw_only(),
+      "feature_angle"_a = kFeatureAngle, "progress"_a = py::none(),
+      R"(A smoother mesh of the same triangles (Taubin) and the same volume; no vertex moves farther than `tolerance`
 (mm) in all. Edges whose sides turn by more than `feature_angle` (rad) stay sharp, and corners stay where they are, as
 do vertices on borders.)");
   mesh.def(

@@ -53,8 +53,7 @@ struct Surface {
 /// Collapses edges of one patch, cheapest first.
 class Worker {
  public:
-  explicit Worker(const Surface& surface)
-      : mesh_(surface.half_edges.mesh), costs_(surface.costs), collapse_(mesh_) {
+  explicit Worker(const Surface& surface) : mesh_(surface.half_edges.mesh), costs_(surface.costs), collapse_(mesh_) {
     if (surface.traces) check_.emplace(*surface.traces, surface.tolerance);
   }
 
@@ -173,14 +172,14 @@ class Decimation {
   }
 
   double share() const {
-    return 0.2 + 0.8 * static_cast<double>(start_ - left_) / static_cast<double>(std::max<std::size_t>(1, start_ - target_));
+    return 0.2 +
+           0.8 * static_cast<double>(start_ - left_) / static_cast<double>(std::max<std::size_t>(1, start_ - target_));
   }
   template <class Body>
   void for_each(std::size_t n, const Body& body) {
     const double now = share();
     parallel_for(
-        n, 1, [&](std::size_t i, std::size_t) { body(i); },
-        [&](double) { return !progress_ || progress_(now); });
+        n, 1, [&](std::size_t i, std::size_t) { body(i); }, [&](double) { return !progress_ || progress_(now); });
   }
 
   static constexpr int kStep = 8;  // a factor of two in cost

@@ -18,11 +18,11 @@ struct DecimateLimits {
 /// A mesh like `mesh` with fewer triangles: edges become vertices one after the other, cheapest first, each where the
 /// squared distances from the planes of the triangles that it stands for are least (quadrics: Garland & Heckbert,
 /// SIGGRAPH 97). In planes, on straight edges and at corners these are vertices of `mesh`; others are float32 numbers.
-/// The result is closed, oriented and two-manifold where `mesh` is; vertices stay distinct in float32; no triangle turns
-/// over or folds onto a neighbour. Borders keep some of their vertices, and to the tolerance; vertices with several fans
-/// and ends of non-manifold edges stay where they are. There may be more triangles left than asked for where no further
-/// collapse keeps to all this. Triangles that name a vertex twice are dropped. The bytes are the same for any number of
-/// threads.
+/// The result is closed, oriented and two-manifold where `mesh` is; vertices stay distinct in float32; no triangle
+/// turns over or folds onto a neighbour. Borders keep some of their vertices, and to the tolerance; vertices with
+/// several fans and ends of non-manifold edges stay where they are. There may be more triangles left than asked for
+/// where no further collapse keeps to all this. Triangles that name a vertex twice are dropped. The bytes are the same
+/// for any number of threads.
 ///
 /// The tolerance bounds the distance of every point of either surface from the other (see Traces).
 ///

@@ -102,8 +102,7 @@ Mesh HalfEdges::to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre)
       t[k] = source[v.idx()];
       if (number[t[k]] == 0) continue;
       number[t[k]] = 0;
-      if (const Vec3 p = to_vec3(mesh.point(v)); p != start.vertices[t[k]])
-        point[t[k]] = p + centre, moved[t[k]] = 1;
+      if (const Vec3 p = to_vec3(mesh.point(v)); p != start.vertices[t[k]]) point[t[k]] = p + centre, moved[t[k]] = 1;
     }
   }
   for (std::size_t v = 0; v < number.size(); ++v) {

@@ -24,8 +24,7 @@ constexpr double kCorner = -0.5;
 /// What every vertex is drawn to: all its neighbours, on a feature line the two along it, nothing if it must stay.
 class Neighbours {
  public:
-  Neighbours(const Mesh& mesh, const Adjacency& adjacency, double feature_angle)
-      : begin_(mesh.vertices.size() + 1, 0) {
+  Neighbours(const Mesh& mesh, const Adjacency& adjacency, double feature_angle) : begin_(mesh.vertices.size() + 1, 0) {
     std::vector<char> fixed(mesh.vertices.size(), 0);
     const int halves = static_cast<int>(3 * mesh.triangles.size());
     for (int half = 0; half < halves; ++half)

@@ -9,10 +9,10 @@ namespace riffler {
 
 /// What is known of the way from the new surface to the old one; the checks of all patches share it.
 ///
-/// Every vertex of the new surface has an *anchor*, a point of the old one: at first itself, and where it has moved, the
-/// nearest point found. Every new edge has a *trace* on the old surface: the path between the anchors of its ends in the
-/// plane through both that holds the fan's normal when the edge came to be. The traces cut the old surface into regions,
-/// one for each new triangle. Checked are
+/// Every vertex of the new surface has an *anchor*, a point of the old one: at first itself, and where it has moved,
+/// the nearest point found. Every new edge has a *trace* on the old surface: the path between the anchors of its ends
+/// in the plane through both that holds the fan's normal when the edge came to be. The traces cut the old surface into
+/// regions, one for each new triangle. Checked are
 ///  - every anchor: it must be near its vertex;
 ///  - where a trace crosses an old edge: the point must be near the new edge;
 ///  - every old vertex within a region: it must be near the new triangle;
@@ -26,7 +26,7 @@ namespace riffler {
 struct Traces {
   struct Anchor {
     Vec3 point;
-    int half;    // of the old surface: starts at the anchor or, where that is no vertex, bounds its triangle
+    int half;  // of the old surface: starts at the anchor or, where that is no vertex, bounds its triangle
     bool vertex;
   };
 

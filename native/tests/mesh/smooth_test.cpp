@@ -137,7 +137,8 @@ TEST(Smooth, OddInputs) {
   EXPECT_THROW(smooth(mesh, -1), std::invalid_argument);
   EXPECT_THROW(smooth(mesh, 1, -0.1), std::invalid_argument);
   EXPECT_THROW(smooth(mesh, 1, std::nan("")), std::invalid_argument);
-  for (const double angle : {0.0, -1.0, 4.0, std::nan("")}) EXPECT_THROW(smooth(mesh, 1, {}, angle), std::invalid_argument);
+  for (const double angle : {0.0, -1.0, 4.0, std::nan("")})
+    EXPECT_THROW(smooth(mesh, 1, {}, angle), std::invalid_argument);
   EXPECT_THROW(smooth(mesh, 5, {}, [](double) { return false; }), Cancelled);
 }
 
