@@ -14,29 +14,34 @@ using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
 /// The share of the tolerance that flat fans may use up by dropping vertices.
-constexpr double kFlatShare = 0.1;
+constexpr double kFlatShare = 0.02;
 
-double square_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double length2 = glm::dot(ab, ab), along = length2 > 0 ? glm::dot(p - a, ab) / length2 : 0;
-  const Vec3 d = p - a - std::clamp(along, 0.0, 1.0) * ab;
-  return glm::dot(d, d);
-}
+struct Segment {
+  Vec3 a, ab;
+  double scale;
+  Segment(const Vec3& from, const Vec3& to) : a(from), ab(to - from) {
+    const double length2 = glm::dot(ab, ab);
+    scale = length2 > 0 ? 1 / length2 : 0;
+  }
+  double square_to(const Vec3& p) const {
+    const Vec3 d = p - a - std::clamp(glm::dot(p - a, ab) * scale, 0.0, 1.0) * ab;
+    return glm::dot(d, d);
+  }
+};
 
 }  // namespace
 
 Traces::Traces(const HalfEdges& from)
     : half_edges(from),
-      old_points(from.mesh.n_vertices()),
+      old(from.mesh.n_vertices()),
       anchor(from.mesh.n_vertices()),
-      next(from.mesh.n_vertices(), -1),
       in_face(from.mesh.n_faces(), -1),
       on_border(from.mesh.n_edges(), -1),
       error(from.mesh.n_faces(), 0.0) {
-  for (std::size_t v = 0; v < old_points.size(); ++v)
-    old_points[v] = to_vec3(from.mesh.point(VertexHandle(static_cast<int>(v))));
+  for (std::size_t v = 0; v < old.size(); ++v)
+    old[v] = {to_vec3(from.mesh.point(VertexHandle(static_cast<int>(v)))), -1};
   for (std::size_t half = 0; half < from.corner.size(); ++half)
-    if (const int v = from.corner[half]; v >= 0) anchor[v] = {old_points[v], static_cast<int>(half), true};
+    if (const int v = from.corner[half]; v >= 0) anchor[v] = {old[v].point, static_cast<int>(half), true};
 }
 
 bool ToleranceCheck::allow(const Collapse& c) {
@@ -123,13 +128,13 @@ bool ToleranceCheck::vertices_near(const Collapse& c) {
   if (!c.on_border() && unlisted(c.from()) && !near_new_face(c, c.from().idx())) return false;
   if (c.between() && unlisted(c.to()) && !near_new_face(c, c.to().idx())) return false;
   for (int i = 0; i < c.old_faces(); ++i)
-    for (int v = traces_.in_face[c.face(i).idx()]; v >= 0; v = traces_.next[v])
+    for (int v = traces_.in_face[c.face(i).idx()]; v >= 0; v = traces_.old[v].next)
       if (!near_new_face(c, v)) return false;
   return true;
 }
 
 bool ToleranceCheck::near_new_face(const Collapse& c, int vertex) {
-  const Vec3& p = traces_.old_points[vertex];
+  const Vec3& p = traces_.old[vertex].point;
   const auto distance_to = [&](int i) {
     return glm::length(p - closest_on_triangle(p, c.new_point(), c.ring(i), c.ring(i + 1)).point);
   };
@@ -160,13 +165,13 @@ HalfedgeHandle ToleranceCheck::other_border(const Collapse& c) {
 
 bool ToleranceCheck::near_new_border(const Collapse& c, int vertex) const {
   const Vec3& end = c.ring(c.target() == 0 ? c.ring_size() - 1 : 0);
-  return square_to_segment(traces_.old_points[vertex], c.new_point(), end) <= limit_ * limit_;
+  return Segment(c.new_point(), end).square_to(traces_.old[vertex].point) <= limit_ * limit_;
 }
 
 bool ToleranceCheck::border_near(const Collapse& c) {
   if (!near_new_border(c, c.from().idx())) return false;
   for (const HalfedgeHandle edge : {c.spoke(c.target()), other_border(c)})
-    for (int v = traces_.on_border[edge.idx() / 2]; v >= 0; v = traces_.next[v])
+    for (int v = traces_.on_border[edge.idx() / 2]; v >= 0; v = traces_.old[v].next)
       if (!near_new_border(c, v)) return false;
   return vertices_near(c);
 }
@@ -239,15 +244,16 @@ bool ToleranceCheck::follow(int half, const Traces::Anchor& target, const Vec3& 
   const int target_face = target.vertex ? -1 : triangle_of(target.half);
   Vec3 right = old_point(half), left = old_point(next_half(half));
   double right_height = glm::dot(right - anchor_.point, side), left_height = glm::dot(left - anchor_.point, side);
+  const Segment edge(from, to);
   const int start = half;
   do {
     const Vec3 crossing = right + (right_height / (right_height - left_height)) * (left - right);
-    if (!(square_to_segment(crossing, from, to) <= limit_ * limit_)) return false;
+    if (!(edge.square_to(crossing) <= limit_ * limit_)) return false;
     const int twin = half_edges_.adjacency.twin(half);
     if (twin < 0) return false;
     const int tip = half_edges_.corner[previous_half(twin)];
     if (tip == target_vertex || triangle_of(twin) == target_face) return true;
-    const Vec3& p = traces_.old_points[tip];
+    const Vec3& p = traces_.old[tip].point;
     // The twin runs from left to right; then comes right → tip, then tip → left.
     if (const double height = glm::dot(p - anchor_.point, side); height >= 0)
       half = next_half(twin), left = p, left_height = height;
@@ -267,14 +273,14 @@ void ToleranceCheck::commit(const Collapse& c) {
     // One list of both edges and the vertex between them.
     const int gone = c.spoke(c.target()).idx() / 2, kept = other_border(c).idx() / 2;
     int last = c.from().idx();
-    traces_.next[last] = traces_.on_border[gone];
-    while (traces_.next[last] >= 0) last = traces_.next[last];
-    traces_.next[last] = traces_.on_border[kept];
+    traces_.old[last].next = traces_.on_border[gone];
+    while (traces_.old[last].next >= 0) last = traces_.old[last].next;
+    traces_.old[last].next = traces_.on_border[kept];
     traces_.on_border[kept] = c.from().idx();
   }
   if (flat_) return;
   for (const Move& move : moves_) {
-    traces_.next[move.vertex] = traces_.in_face[move.face];
+    traces_.old[move.vertex].next = traces_.in_face[move.face];
     traces_.in_face[move.face] = move.vertex;
   }
 }

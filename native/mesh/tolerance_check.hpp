@@ -33,13 +33,17 @@ struct Traces {
   /// `half_edges` before the first collapse; must outlive this.
   explicit Traces(const HalfEdges& half_edges);
 
+  struct OldVertex {
+    Vec3 point;
+    int next;  // old vertices of a face or of a border edge are a list; -1 at its end
+  };
+
   const HalfEdges& half_edges;
-  std::vector<Vec3> old_points;  // where the vertices were
-  std::vector<Anchor> anchor;    // of a vertex
-  std::vector<int> next;         // old vertices of a face or of a border edge are a list; -1 at its end
-  std::vector<int> in_face;      // first one of a face
-  std::vector<int> on_border;    // first one of a border edge
-  std::vector<double> error;     // of a face: by how much it may be off where vertices were dropped
+  std::vector<OldVertex> old;
+  std::vector<Anchor> anchor;  // of a vertex
+  std::vector<int> in_face;    // first old vertex of a face
+  std::vector<int> on_border;  // first old vertex of a border edge
+  std::vector<double> error;   // of a face: by how much it may be off where vertices were dropped
 };
 
 class ToleranceCheck {
@@ -62,7 +66,7 @@ class ToleranceCheck {
     Vec3 side, outer_side;
   };
 
-  const Vec3& old_point(int half) const { return traces_.old_points[half_edges_.corner[half]]; }
+  const Vec3& old_point(int half) const { return traces_.old[half_edges_.corner[half]].point; }
   void find_normal(const Collapse& collapse);
   bool find_anchor(const Collapse& collapse);
   void find_planes(const Collapse& collapse);
