@@ -91,7 +91,7 @@ HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
 Mesh HalfEdges::to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre) const {
   Mesh result;
   std::vector<int> number(from.vertices.size(), -1);
-  std::vector<Vec3> point(from.vertices);
+  Vertices point = from.vertices;
   std::vector<char> moved(from.vertices.size(), 0), movable;
   for (const OpenMesh::FaceHandle face : mesh.all_faces()) {
     if (mesh.status(face).deleted()) continue;

@@ -101,8 +101,8 @@ Vec3 limited(const Vec3& p, const Vec3& home, double limit) {
 }
 
 /// One step of every vertex towards (factor > 0) or away from the mean of its neighbours.
-void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours& neighbours,
-          double factor, double limit) {
+void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours& neighbours, double factor,
+          double limit) {
   parallel_for(from.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const std::span<const int> others = neighbours.of(v);
