@@ -265,6 +265,32 @@ def test_smooth_moves_vertices_by_at_most_the_tolerance():
         rough.smooth(1, -1.0)
 
 
+def test_decimate_keeps_to_a_count_and_a_tolerance_at_once():
+    mesh = torus(240, 120)
+    result = mesh.decimate(5760, tolerance=0.03)
+    assert len(result.triangles) == 5760
+    assert defects(result) == {}
+    weights = np.array([(i, j, 4 - i - j) for i in range(5) for j in range(5 - i)]) / 4
+    dense = riffler.Mesh(np.einsum("wk,tkd->twd", weights, result.vertices[result.triangles]).reshape(-1, 3), [])
+    assert max(mesh.deviation(result).max(), dense.deviation(mesh).max()) <= 0.03
+    assert result.volume == pytest.approx(mesh.volume, rel=2e-3)
+
+
+def test_smooth_keeps_sharp_edges_and_the_volume():
+    mesh = riffler.Volume.block((0, 0, 0), (8, 8, 8), 0.5, "xyz").to_mesh()
+    rough = riffler.Mesh(
+        mesh.vertices + np.random.default_rng(2).uniform(-0.02, 0.02, mesh.vertices.shape), mesh.triangles
+    )
+    result = rough.smooth(16)
+    assert result.volume == pytest.approx(rough.volume, rel=1e-6)
+    inset = 4 - np.abs(result.vertices - 4).max(axis=1)  # of every vertex, from the cube's surface
+    assert np.abs(inset).max() < 0.03
+    rounded = rough.smooth(16, feature_angle=3.1)
+    assert (4 - np.abs(rounded.vertices - 4).max(axis=1)).max() > 0.05
+    with pytest.raises(ValueError, match="feature_angle"):
+        rough.smooth(1, feature_angle=0)
+
+
 def test_progress_is_reported_and_cancels():
     mesh = torus(400, 200)
     for call in (
