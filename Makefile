@@ -58,7 +58,7 @@ bench:  ## Measure run time and error, of rivals too: out/bench (JOBS="b5x force
 	RIFFLER_THREADS=1 build/bench/native/bench/riffler_bench --benchmark_filter='whole|stage' \
 	  --benchmark_out=out/bench/native.json
 	.venv/bin/riffler bench $(JOBS) --out out/bench $(if $(RIFFLER_MODELS),--models $(RIFFLER_MODELS)) \
-	  --openvdb build/bench/native/bench/riffler_openvdb_csg --blender .envs/bpy-4.5/bin/python
+	  --programs build/bench/native/bench --rivals .envs/rivals/bin/python --blender .envs/bpy-4.5/bin/python
 
 bench-docs:  ## Put figures and plots of the last `make bench` into the documents
 	@$(ready)

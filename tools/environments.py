@@ -1,4 +1,4 @@
-"""Python environments with pinned packages: ./.venv for the work, ./.envs/bpy-X.Y for each Blender."""
+"""Python environments with pinned packages: ./.venv for the work, ./.envs/bpy-X.Y for each Blender, ./.envs/rivals."""
 
 from __future__ import annotations
 
@@ -35,6 +35,14 @@ def blender_environment(version: str) -> Path:
     path = ROOT / ".envs" / f"bpy-{version}"
     make_environment(path, requirements, fallback=["--extra-index-url", BLENDER_INDEX])
     return path
+
+
+def rivals_environment() -> None:
+    """./.envs/rivals, with the libraries that benchmarks compare with, as far as they can be had here."""
+    try:
+        make_environment(ROOT / ".envs" / "rivals", REQUIREMENTS / "rivals.txt")
+    except StepError as failure:
+        say(f"{failure}: the benchmarks will leave these rivals out")
 
 
 def make_environment(path: Path, requirements: Path, fallback: list[str] | None = None) -> None:

@@ -3,7 +3,7 @@
     python3 tools/setup.py             what `make setup` does
     python3 tools/setup.py demo        and one Blender as a Python module in ./.envs
     python3 tools/setup.py test        and every Blender, and what the tests need from the system
-    python3 tools/setup.py bench       and what the benchmarks need from the system
+    python3 tools/setup.py bench       and what the benchmarks need from the system, and the rivals' libraries
 
 Every step is done again only if what it depends on changed or if it was interrupted.
 """
@@ -14,7 +14,7 @@ import fcntl
 import sys
 
 import system
-from environments import blender_environment, blender_versions, install_wheel, make_environment
+from environments import blender_environment, blender_versions, install_wheel, make_environment, rivals_environment
 from shell import ROOT, VENV, StepError, main, run, say
 from wheel import build_wheel
 
@@ -37,6 +37,8 @@ def setup(purpose: str) -> None:
     install_wheel(VENV, wheel, key)
     for version in {"demo": [DEMO_BLENDER], "test": blender_versions()}.get(purpose, []):
         install_wheel(blender_environment(version), wheel, key)
+    if purpose == "bench":
+        rivals_environment()
 
 
 def entry() -> None:

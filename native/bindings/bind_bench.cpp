@@ -1,5 +1,6 @@
 // riffler._core.bench: what `riffler bench` measures with.
 #include "bench/capsule_loop.hpp"
+#include "bench/mesh_distance.hpp"
 #include "bench/scenes.hpp"
 #include "bench/sweep_error.hpp"
 #include "bindings/bindings.hpp"
@@ -40,6 +41,17 @@ py::dict sweep_errors(SharedVolume& volume, const Tool& tool, const Doubles& arr
   return out;
 }
 
+py::array_t<double> mesh_distances(const Doubles& array, const Mesh& mesh) {
+  const std::size_t n = check_rows(array, 3, "points");
+  const auto* points = reinterpret_cast<const Vec3*>(array.data());
+  std::vector<double> out;
+  {
+    const py::gil_scoped_release release;
+    out = bench::MeshDistance(mesh)(std::span(points, n));
+  }
+  return take<double>(std::move(out));
+}
+
 }  // namespace
 
 void bind_bench(py::module_& parent) {
@@ -54,6 +66,8 @@ void bind_bench(py::module_& parent) {
       py::arg("rays"), py::arg("seed") = 1,
       R"(Compares random rays of a carved block with the independent reference: a dict of ``error`` (n,), mm along the ray
 or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many of them are ``wrong``.)");
+  m.def("mesh_distances", &mesh_distances, py::arg("points"), py::arg("mesh"),
+        "Distance (n,) of points from a mesh, mm, by a search of its own; for points that are close to it.");
   py::class_<bench::CapsuleLoop>(m, "CapsuleLoop", "The yardstick: B200 with bare capsules on a plain height map.")
       .def(py::init<double>(), py::arg("pitch"))
       .def("reset", &bench::CapsuleLoop::reset)

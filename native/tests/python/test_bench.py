@@ -12,13 +12,13 @@ import pytest
 import riffler
 from riffler import cli
 from riffler._core import bench as core
-from riffler.bench import errors, measure, report, scenes
+from riffler.bench import errors, exact, measure, report, scenes
 from riffler.bench.jobs import JOBS, b5x, force
 from riffler.command import bench as command
 
 PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
-PLOTS = {"b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch"}
+PLOTS = {"b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh"}
 
 
 def bench(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
@@ -67,6 +67,68 @@ def test_rivals_that_are_missing_are_named(quick):
     engines = [row["engine"] for row in rows(quick, "b200", "rivals")]
     assert any(engine.startswith("OpenVDB: left out") for engine in engines)
     assert any(engine.startswith("numpy height map") for engine in engines)
+
+
+def test_meshes_of_b200_are_clean_and_their_error_falls(quick):
+    table = rows(quick, "mesh", "b200")
+    mine = [row for row in table if row["engine"].startswith("Riffler")]
+    assert {(row["engine"], row["pitch"]) for row in mine} == {
+        (f"Riffler {mode}", pitch) for mode in ("tri-dexel", "z") for pitch in (1.0, 0.5)
+    }
+    assert all(row["bad"] == row["others"] == 0 and row["triangles"] > 1000 for row in mine)
+    missing = {row["engine"] for row in table if "left out" in row["engine"]}
+    assert len(missing) == 6 and any(name.startswith("OpenVDB volumeToMesh: left out") for name in missing)
+    for directions, least in (("xyz", 1.0), ("z", 0.5)):
+        fine = next(r for r in rows(quick, "mesh", "error") if r["directions"] == directions and r["pitch"] == 0.5)
+        assert fine["rms_order"] > least
+    boxes = {row["engine"]: row for row in rows(quick, "mesh", "edges")}
+    assert 0 < boxes["Riffler tri-dexel"]["edges_largest_mm"] < 0.02 < boxes["Riffler z"]["edges_largest_mm"]
+    assert all(row["peak_bytes"] > 1e6 for row in rows(quick, "mesh", "memory") if "mesh_s" in row)
+
+
+def test_the_exact_part_is_what_it_is_described_as():
+    rng = np.random.default_rng(7)
+    # Known places: faces, an edge and a corner of the block, the groove's bottom and its end, deep inside.
+    mid = exact.centres()[100]
+    points = {
+        (-0.5, 20, 10): 0.5,
+        (50, 61, 30.75): 1.25,
+        (-0.3, -0.4, 31.2): 1.3,
+        tuple(mid - [0, 0, 2.9]): 0.1,
+        (50, 5, 29.5): 0.5,
+    }
+    np.testing.assert_allclose(exact.from_surface(np.array(list(points))), list(points.values()), atol=2e-3)
+    # Near the groove, beside a search for the nearest of the points that are inside or outside by the cutter's
+    # definition alone: balls and cylinders above them at very many places of the path.
+    t = np.linspace(0, scenes.MOVES, 40 * scenes.MOVES + 1)
+    path = np.stack([np.interp(t, np.arange(scenes.MOVES + 1), exact.centres()[:, k]) for k in range(3)], 1)
+
+    def solid(p: np.ndarray) -> bool:
+        near = path[abs(path[:, 0] - p[0]) < 3.01]
+        low = near[:, 2] - np.sqrt(np.maximum(9 - ((near[:, :2] - p[:2]) ** 2).sum(1), 0))
+        beside = ((near[:, :2] - p[:2]) ** 2).sum(1) >= 9
+        return bool(np.all((p >= 0) & (p <= exact.UPPER)) and np.all(beside | (low > p[2])))
+
+    at = path[rng.integers(0, len(path), 60)] + rng.uniform([-4, -4, -4], [4, 4, 1.5], (60, 3))
+    distance, signed = exact.from_surface(at), exact.bound(at)
+    for p, d, side in zip(at, distance, signed, strict=True):
+        if d > 1.5:
+            continue
+        assert solid(p) == (side < 0) or d < 1e-4
+        directions = rng.normal(size=(300, 3))
+        directions /= np.linalg.norm(directions, axis=1)[:, None]
+        assert all(solid(q) == (side < 0) for q in p + 0.995 * d * directions)
+        # Something of the other kind is hardly further away than that.
+        step = 1e-4
+        gradient = [(exact.from_surface(np.array([p + e, p - e])) @ [1, -1]) / (2 * step) for e in step * np.eye(3)]
+        foot = p - (d + 2e-3) * np.array(gradient) / np.linalg.norm(gradient)
+        assert solid(foot) != (side < 0)
+    field, origin = exact.field(1.0)
+    lattice = np.stack(np.meshgrid(*(np.arange(n) for n in field.shape), indexing="ij"), -1)
+    bound = exact.bound((origin + lattice).reshape(-1, 3)).reshape(field.shape)
+    close = abs(bound) < 1.9
+    np.testing.assert_allclose(field[close], bound[close], atol=1e-6)
+    assert np.array_equal(np.sign(field), np.sign(bound))
 
 
 def test_haptic_work_does_not_follow_the_grid(quick):

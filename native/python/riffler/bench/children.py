@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import Tool, Volume
 from . import scenes
+from .rivals import clock
 
 
 def b200(pitch: float, directions: str, mesh: bool = True) -> dict[str, Any]:
@@ -45,6 +46,15 @@ def b200(pitch: float, directions: str, mesh: bool = True) -> dict[str, Any]:
         "skimmed_bytes": skimmed.nbytes,
         "carved_bytes": volume.nbytes,
     }
+
+
+def mesh(pitch: float, directions: str, repeats: int, path: str) -> dict[str, Any]:
+    """B200 with a ball, carved once and meshed again and again: medians, and the mesh as a file."""
+    volume = Volume.block(*scenes.BLOCK, pitch, directions)
+    volume.carve(scenes.cutters()[0].tool, scenes.cutters()[0].path(turning=False))
+    made, times = clock.timed(volume.to_mesh, repeats)
+    made.write(path)
+    return {**times, "triangles": len(made.triangles)}
 
 
 def streamed(moves: int, calls: int) -> dict[str, Any]:
@@ -87,16 +97,9 @@ def files(folder: str) -> dict[str, Any]:
     return {}
 
 
-def peak_bytes() -> int | None:
-    """This process's peak memory. Not getrusage's: that one still counts the process which started this one."""
-    status = Path("/proc/self/status")
-    lines = status.read_text().splitlines() if status.exists() else []
-    return next((1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM")), None)
-
-
-WORK = {"b200": b200, "s500k": s500k, "streamed": streamed, "files": files}
+WORK = {"b200": b200, "mesh": mesh, "s500k": s500k, "streamed": streamed, "files": files}
 
 if __name__ == "__main__":
     result = WORK[sys.argv[1]](**json.loads(sys.argv[2]))
-    result["peak_bytes"] = peak_bytes()
+    result["peak_bytes"] = clock.peak_bytes()
     print(json.dumps(result))

@@ -28,7 +28,8 @@ class Settings:
     quick: bool = False
     models: Path | None = None
     blender: Path | None = None
-    openvdb: Path | None = None
+    rivals: Path | None = None
+    programs: Path | None = None
 
 
 @contextmanager
@@ -43,6 +44,11 @@ def threads(count: int | None) -> Iterator[None]:
         os.environ.pop("RIFFLER_THREADS", None)
         if before is not None:
             os.environ["RIFFLER_THREADS"] = before
+
+
+def how_many(threads: int | None) -> int:
+    """The number itself; for None as many as this process may run on."""
+    return threads or len(os.sched_getaffinity(0))
 
 
 def watched(items: Sequence[T], progress: Progress) -> Iterator[T]:

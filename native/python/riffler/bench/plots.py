@@ -19,8 +19,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 Data = dict[str, Any]
 INK, GRID, TARGET = "#22262b", "#e3dfd6", "#c8553d"
-COLOURS = ("#2f6690", "#c8553d", "#3f7d4f", "#d08c2a", "#7a5195", "#5b6770")
-MARKS = "osD^vP"
+COLOURS = ("#2f6690", "#c8553d", "#3f7d4f", "#d08c2a", "#7a5195", "#5b6770", "#a3475d", "#4a8f9e")
+MARKS = "osD^vPX<"
 STYLE = {
     "font.size": 9,
     "axes.edgecolor": INK,
@@ -367,10 +367,47 @@ def pitch(data: Data) -> Figure:
     return figure
 
 
+def mesh(data: Data) -> Figure:
+    """Error of B200's mesh against pitch, and against the time that it takes, beside others."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5.2))
+    table = rows(data, "error")
+    for directions, (colour, mark) in colours(values(table, "directions")).items():
+        mine = pick(table, directions=directions)
+        label = "one direction" if directions == "z" else "tri-dexel"
+        h = column(mine, "pitch")
+        left.plot(h, column(mine, "max_mm"), f"-{mark}", color=colour, label=f"{label}, largest")
+        left.plot(h, column(mine, "rms_mm"), f":{mark}", color=colour, markerfacecolor="white", label=f"{label}, RMS")
+    h = np.array(sorted(values(table, "pitch")))
+    start = pick(table, directions="xyz", pitch=h[-1])[0]
+    for power, line in ((1, "--"), (2, "-.")):
+        at = start["max_mm" if power == 1 else "rms_mm"] * (h / h[-1]) ** power
+        left.plot(h, at, line, color="#777777", linewidth=1, label=f"order {power}")
+    timed = [row for row in rows(data, "b200") if row.get("threads") == "1"]
+    for engine, (colour, mark) in colours(values(timed, "engine")).items():
+        mine = pick(timed, engine=engine)
+        right.plot(column(mine, "cpu_s"), column(mine, "rms_mm"), f"-{mark}", color=colour, label=engine)
+        for row in mine:
+            right.annotate(f"{row['pitch']:g}", (row["cpu_s"], row["rms_mm"]), xytext=(3, 3),
+                           textcoords="offset points", fontsize=6.5, color=colour)  # fmt: skip
+    left.set(xlabel="pitch  mm", ylabel="distance of vertices from the exact surface  mm")
+    right.set(xlabel="processor time of the mesh  s", ylabel="RMS distance of vertices from the exact surface  mm")
+    for axis in (left, right):
+        logarithmic(axis.xaxis)
+        logarithmic(axis.yaxis)
+        axis.legend(loc="best")
+    left.invert_xaxis()
+    left.set_xticks(h, [f"{x:g}" for x in h])
+    left.xaxis.minorticks_off()
+    title(figure, data, "B200 to a mesh: error against pitch and against time")
+    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    return figure
+
+
 PLOTS: dict[str, dict[str, Callable[[Data], Figure | None]]] = {
     "b200": {"b200": b200},
     "b5x": {"b5x": b5x, "b5x-tolerance": tolerance, "b5x-single": single},
     "haptic": {"haptic": haptic},
     "force": {"force": force},
     "pitch": {"pitch": pitch},
+    "mesh": {"mesh": mesh},
 }

@@ -17,10 +17,11 @@ from typing import Any
 from .console import Console
 
 HELP = "measure run time, error and memory"
+NAMES = "b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "random", "models", "threads"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    jobs = "b200, b5x, s500k, haptic, force, pitch, random, models, threads; all of them if none is named"
+    jobs = f"{', '.join(NAMES)}; all of them if none is named"
     parser.add_argument("jobs", nargs="*", metavar="JOB", help=jobs)
     parser.add_argument("--quick", action="store_true", help="coarser and shorter: does everything work?")
     parser.add_argument("--out", default="riffler-bench", metavar="DIR", help="default riffler-bench")
@@ -28,7 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--redraw", action="store_true", help="measure nothing, draw the plots of --out again")
     parser.add_argument("--models", metavar="DIR", help=".stl files for the job models")
     parser.add_argument("--blender", metavar="PYTHON", help="a Python with bpy, as a rival")
-    parser.add_argument("--openvdb", metavar="PROGRAM", help="the built riffler_openvdb_csg, as a rival")
+    parser.add_argument("--rivals", metavar="PYTHON", help="a Python with the libraries of requirements/rivals.txt")
+    parser.add_argument("--programs", metavar="DIR", help="the folder of the built native/bench: OpenVDB as a rival")
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
@@ -44,7 +46,9 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     out = Path(arguments.out)
     if arguments.redraw:
         return redraw(out, names, drawing, console)
-    given = {key: Path(value) for key in ("models", "blender", "openvdb") if (value := getattr(arguments, key))}
+    given = {
+        key: Path(value) for key in ("models", "blender", "rivals", "programs") if (value := getattr(arguments, key))
+    }
     settings, about = Settings(quick=arguments.quick, **given), report.about()
     out.mkdir(parents=True, exist_ok=True)
     if not console.json_output:

@@ -1,6 +1,6 @@
 """The jobs by name; each is a module with ``run(settings, progress) -> Report``."""
 
-from . import b5x, b200, force, haptic, models, pitch, random, s500k, threads
+from . import b5x, b200, force, haptic, mesh, models, pitch, random, s500k, threads
 
 JOBS = {
     "b200": b200,
@@ -9,6 +9,7 @@ JOBS = {
     "haptic": haptic,
     "force": force,
     "pitch": pitch,
+    "mesh": mesh,
     "random": random,
     "models": models,
     "threads": threads,

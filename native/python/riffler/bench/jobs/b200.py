@@ -6,7 +6,7 @@ from ... import Volume
 from .. import errors, report, scenes
 from ..measure import Progress, Settings, Yardstick, child, watched
 from ..report import Column, Report
-from ..rivals import rivals, short
+from ..rivals.b200 import rivals, short
 
 TARGET = 3.0  # times the yardstick, for any named cutter, force included
 KINDS = {"plain": ("z", None), "force": ("z", 0.001), "tri": ("xyz", None)}

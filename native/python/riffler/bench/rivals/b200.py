@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import itertools
-import json
 import os
 import statistics
-import subprocess
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from . import scenes
-from .measure import Settings
+from .. import scenes
+from ..measure import Settings
+from . import HERE, LeftOutError, program, spoken
 
-BLENDER_SCRIPT = Path(__file__).with_name("blender_boolean.py")
+BLENDER_SCRIPT = HERE / "blender_boolean.py"
 # mm³ that is left of the block by bare capsules, which do not reach out of it, and by 200 static balls.
 CAPSULES_LEFT, BALLS_LEFT = 177091.43, 177126.8
 WHOLE = float(np.prod(scenes.BLOCK[1]))
@@ -32,7 +30,7 @@ def rivals(settings: Settings) -> Iterator[dict[str, Any]]:
     yield from blender(settings)
 
 
-def left_out(engine: str, why: str) -> dict[str, Any]:
+def left_out(engine: str, why: object) -> dict[str, Any]:
     return {"engine": f"{engine}: left out, {why}"}
 
 
@@ -106,15 +104,12 @@ def manifold(moves: int, segments: int = 64) -> Iterator[dict[str, Any]]:
 
 
 def openvdb(settings: Settings) -> Iterator[dict[str, Any]]:
-    if settings.openvdb is None or not settings.openvdb.exists():
-        yield left_out("OpenVDB", "riffler_openvdb_csg was not built")
-        return
     for pitch in (0.5,) if settings.quick else (0.5, 0.25):
-        done = subprocess.run([settings.openvdb, str(pitch)], capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            yield left_out(f"OpenVDB, h = {pitch}", f"it ended with {done.returncode}")
+        try:
+            r = program(settings, "riffler_openvdb_csg", pitch)
+        except LeftOutError as why:
+            yield left_out(f"OpenVDB, h = {pitch}", why)
             continue
-        r = json.loads(done.stdout)
         yield {
             "engine": f"OpenVDB {r['version']} CSG, static balls, h = {pitch:g}",
             "us_per_move": 1e6 * r["median"],
@@ -128,23 +123,15 @@ def blender(settings: Settings) -> Iterator[dict[str, Any]]:
     """Modifiers take static balls one by one, as one would by hand; their cost grows with the mesh."""
     if settings.quick:
         return
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")}
     for solver, moves in (("FLOAT", 60), ("MANIFOLD", 60), ("EXACT", 20)):
-        if settings.blender is None or not settings.blender.exists():
-            yield left_out(f"Blender {solver}", "there is no Python with bpy (--blender)")
-            continue
-        command = [settings.blender, BLENDER_SCRIPT, solver, str(moves)]
-        environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")}
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment, check=False)
-        except subprocess.TimeoutExpired:
-            yield left_out(f"Blender {solver}", "not finished within 15 min")
+            if settings.blender is None or not settings.blender.exists():
+                raise LeftOutError("there is no Python with bpy (--blender)")
+            r = spoken([settings.blender, BLENDER_SCRIPT, solver, str(moves)], environment)
+        except LeftOutError as why:
+            yield left_out(f"Blender {solver}", why)
             continue
-        lines = [x for x in done.stdout.splitlines() if x.startswith("{")]
-        if not lines:
-            said = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
-            yield left_out(f"Blender {solver}", said)
-            continue
-        r = json.loads(lines[-1])
         yield {
             "engine": f"Blender {r['version']} boolean {r['solver']}, first {moves} static balls",
             "us_per_move": 1e6 * r["median"],

@@ -1,0 +1,38 @@
+// Distance of points from a mesh, to judge meshes by: cells of triangles, every triangle near enough looked at. Shares
+// no code with native/mesh.
+#pragma once
+
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace riffler::bench {
+
+class MeshDistance {
+ public:
+  /// Keeps a reference to the mesh. Throws std::invalid_argument for a mesh without triangles.
+  explicit MeshDistance(const Mesh& mesh);
+
+  /// Distance from `p` to the nearest triangle, mm; meant for points that are close to the mesh.
+  double operator()(const Vec3& p) const;
+  std::vector<double> operator()(std::span<const Vec3> points) const;
+
+ private:
+  Vec3i cell_of(const Vec3& p) const;
+  void insert(int triangle, const Vec3& a, const Vec3& b, const Vec3& c);
+  /// The least squared distance to the triangles of one cell, if less than `least`.
+  double in_cell(const Vec3i& cell, const Vec3& p, double least) const;
+
+  const Mesh& mesh_;
+  Vec3 origin_;
+  double side_;   // of a cell
+  Vec3i counts_;  // cells per axis
+  std::unordered_map<std::size_t, std::vector<int>> cells_;
+};
+
+/// Squared distance from `p` to the triangle a b c.
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace riffler::bench

@@ -1,0 +1,56 @@
+"""Other programs and libraries, measured in the same run.
+
+``isosurface.py``, ``rays.py``, ``simplify.py`` and ``blender_boolean.py`` run in the Python of an environment that has
+these libraries (--rivals, --blender), not in riffler's: they import nothing of it. Every job names the rivals that are
+missing.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from ..measure import Settings, how_many
+
+HERE = Path(__file__).parent
+
+
+class LeftOutError(Exception):
+    """A rival that cannot be measured here; the text says why."""
+
+
+def ask(settings: Settings, script: str, work: str, threads: int | None = 1, **arguments: Any) -> dict[str, Any]:
+    """What the function `work` of a script gives in the rivals' Python, in a process of its own."""
+    if settings.rivals is None or not settings.rivals.exists():
+        raise LeftOutError("there is no Python with it (--rivals)")
+    count = str(how_many(threads))
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")}
+    environment |= {"OMP_NUM_THREADS": count, "VTK_SMP_MAX_THREADS": count, "TBB_NUM_THREADS": count}
+    command = [settings.rivals, HERE / script, work, json.dumps(arguments | {"threads": int(count)})]
+    return spoken(command, environment)
+
+
+def program(settings: Settings, name: str, *arguments: Any) -> dict[str, Any]:
+    """What a program of native/bench prints."""
+    path = settings.programs / name if settings.programs else None
+    if path is None or not path.exists():
+        raise LeftOutError(f"{name} was not built (--programs)")
+    return spoken([path, *map(str, arguments)], dict(os.environ))
+
+
+def spoken(command: list[Any], environment: dict[str, str]) -> dict[str, Any]:
+    """The last line of JSON that a process prints."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment, check=False)
+    except subprocess.TimeoutExpired:
+        raise LeftOutError("not finished within 15 min") from None
+    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+    if lines:
+        return json.loads(lines[-1])
+    said = (done.stderr.strip().splitlines() or [f"it ended with {done.returncode}"])[-1]
+    if said.startswith(("ModuleNotFoundError", "ImportError")):
+        said = "it is not installed"
+    raise LeftOutError(said)
