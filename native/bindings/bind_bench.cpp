@@ -5,6 +5,7 @@
 #include "bench/sweep_error.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
+#include "stress/mesh_run.hpp"
 
 namespace riffler {
 
@@ -52,6 +53,31 @@ py::array_t<double> mesh_distances(const Doubles& array, const Mesh& mesh) {
   return take<double>(std::move(out));
 }
 
+py::dict mesh_stress(std::uint64_t volumes, std::uint64_t seed, const py::object& progress) {
+  stress::MeshOptions options;
+  options.seed = seed;
+  const Progress report = to_progress(progress);
+  stress::MeshResults results;
+  {
+    const py::gil_scoped_release release;
+    results = stress::run_meshes(options, volumes, [&](const stress::MeshResults& now) {
+      const long done = now.total().volumes;
+      return done % 64 != 0 || report(static_cast<double>(done) / static_cast<double>(volumes));
+    });
+  }
+  py::list scenes, failures;
+  for (std::size_t k = 0; k < results.scenes.size(); ++k) {
+    const stress::MeshTally& t = results.scenes[k];
+    scenes.append(py::dict(py::arg("scene") = name(static_cast<stress::MeshScene>(k)), py::arg("volumes") = t.volumes,
+                           py::arg("empty") = t.empty, py::arg("triangles") = t.triangles,
+                           py::arg("failures") = t.failures));
+  }
+  for (const stress::MeshFailure& f : results.failures)
+    failures.append(std::string(name(f.scene)) + ": " + f.problem + "; again: " + reproducer(f));
+  return py::dict(py::arg("scenes") = scenes, py::arg("failures") = failures,
+                  py::arg("thread_checks") = results.thread_checks);
+}
+
 }  // namespace
 
 void bind_bench(py::module_& parent) {
@@ -68,6 +94,10 @@ void bind_bench(py::module_& parent) {
 or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many of them are ``wrong``.)");
   m.def("mesh_distances", &mesh_distances, py::arg("points"), py::arg("mesh"),
         "Distance (n,) of points from a mesh, mm, by a search of its own; for points that are close to it.");
+  m.def(
+      "mesh_stress", &mesh_stress, py::arg("volumes"), py::arg("seed") = 1, py::arg("progress") = py::none(),
+      R"(Meshes random volumes from the degenerate limits and checks each mesh: a dict of ``scenes`` (what was meshed),
+``failures`` (what was wrong, and the command that shows it again) and how many ``thread_checks`` there were.)");
   py::class_<bench::CapsuleLoop>(m, "CapsuleLoop", "The yardstick: B200 with bare capsules on a plain height map.")
       .def(py::init<double>(), py::arg("pitch"))
       .def("reset", &bench::CapsuleLoop::reset)

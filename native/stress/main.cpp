@@ -1,7 +1,6 @@
 // Carves random moves from the degenerate limits with every cutter and checks each of them; see usage().
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "session/journal_file.hpp"
+#include "stress/arguments.hpp"
 #include "stress/run.hpp"
 
 using namespace riffler::stress;
@@ -37,13 +37,6 @@ void usage() {
       "Cutters:");
   for (const char* cutter : cutter_names()) std::printf(" %s", cutter);
   std::puts("");
-}
-
-std::uint64_t whole_number(const char* name, const char* text) {
-  char* end = nullptr;
-  const unsigned long long value = text ? std::strtoull(text, &end, 10) : 0;
-  if (!text || end == text || *end != '\0') throw std::invalid_argument(std::string(name) + " needs a whole number");
-  return value;
 }
 
 Arguments parse(int argc, char** argv) {

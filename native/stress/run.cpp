@@ -1,9 +1,10 @@
 #include "stress/run.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <exception>
 #include <sstream>
+
+#include "stress/thread_count.hpp"
 
 namespace riffler::stress {
 
@@ -12,26 +13,6 @@ namespace {
 constexpr std::size_t kFailuresKept = 20;
 constexpr int kRepeatEvery = 4;  // moves, until one is carved again at once
 constexpr std::uint64_t kJudge = 0x6A75646765;
-
-/// Sets RIFFLER_THREADS while it lives.
-class ThreadCount {
- public:
-  explicit ThreadCount(const char* count) {
-    if (const char* text = std::getenv("RIFFLER_THREADS")) before_ = text;
-    setenv("RIFFLER_THREADS", count, 1);
-  }
-  ThreadCount(const ThreadCount&) = delete;
-  ThreadCount& operator=(const ThreadCount&) = delete;
-  ~ThreadCount() {
-    if (before_.empty())
-      unsetenv("RIFFLER_THREADS");
-    else
-      setenv("RIFFLER_THREADS", before_.c_str(), 1);
-  }
-
- private:
-  std::string before_;
-};
 
 std::ostream& operator<<(std::ostream& out, const Vec3& v) {
   return out << v.x << " " << v.y << " " << v.z;

@@ -5,16 +5,16 @@
 #include <array>
 #include <map>
 
-#include "marching/audit.hpp"
-#include "marching/scenes.hpp"
 #include "marching/to_mesh.hpp"
+#include "stress/float_audit.hpp"
+#include "stress/mesh_scenes.hpp"
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
 
-using namespace testing;
+using namespace stress;
 
 /// The mesher has what meshing the whole volume gives, and says so of each patch.
 void expect_same(const Mesher& mesher, const Volume& volume, const std::string& what) {
@@ -71,16 +71,16 @@ TEST(Mesher, FollowsACarvedBlock) {
     Volume volume = Volume::block({{{0, 0, 0}, {30, 24, 21}}, 0.25, directions});
     Mesher mesher(volume);
     Patches patches(mesher);
-    Dice dice(7);
+    Random random(7);
     for (int stroke = 0; stroke < 25; ++stroke) {
       const Tool tools[] = {cutters::ball(3, 40), cutters::flat(2.5, 40), cutters::taper(0.4, 0.3, 4, 40)};
       const auto pose = [&] {
-        Vec3 axis = dice.direction();
+        Vec3 axis = random.direction();
         axis.z = std::abs(axis.z) + 0.3;
-        return Pose{{dice.real(0, 30), dice.real(0, 24), dice.real(12, 22)}, glm::normalize(axis)};
+        return Pose{{random.uniform(0, 30), random.uniform(0, 24), random.uniform(12, 22)}, glm::normalize(axis)};
       };
       Pose from = pose(), to = from;
-      to.tip += 2.0 * dice.direction();
+      to.tip += 2.0 * random.direction();
       carve(volume, tools[stroke % 3], std::array{from, to});
       const std::vector<std::size_t> changed = mesher.update(volume);
       const std::string what = std::string(directions) + ", stroke " + std::to_string(stroke);
@@ -96,19 +96,19 @@ TEST(Mesher, FollowsACarvedBlock) {
 /// Sharp edges everywhere, in a bar of many bricks: candidates whose choices depend on each other's across borders.
 TEST(Mesher, FollowsABarFullOfEdges) {
   for (unsigned seed = 0; seed < 2; ++seed) {
-    Dice dice(100 + seed);
+    Random random(100 + seed);
     Volume volume = Volume::block({{{0, 0, 0}, {60, 7, 7}}, 0.25, "xyz"});
     const Tool tools[] = {cutters::flat(1.1, 12), cutters::flat(0.6, 12), cutters::cone_end(0.7, 0.6, 0.2, 2, 12)};
     const auto nick = [&](double x) {
-      const Vec3 axis = dice.direction();
-      const Vec3 at = Vec3(x, 3.5, 3.5) + dice.real(2, 4.5) * axis;
-      carve(volume, tools[dice.whole(0, 2)], std::array{Pose{at, axis}, Pose{at + 0.4 * dice.direction(), axis}});
+      const Vec3 axis = random.direction();
+      const Vec3 at = Vec3(x, 3.5, 3.5) + random.uniform(2, 4.5) * axis;
+      carve(volume, tools[random.below(3)], std::array{Pose{at, axis}, Pose{at + 0.4 * random.direction(), axis}});
     };
-    for (int n = 0; n < 600; ++n) nick(dice.real(0, 60));
+    for (int n = 0; n < 600; ++n) nick(random.uniform(0, 60));
     Mesher mesher(volume);
-    EXPECT_TRUE(audit(mesher.mesh()).clean()) << audit(mesher.mesh());
+    EXPECT_TRUE(float_audit(mesher.mesh()).clean()) << float_audit(mesher.mesh());
     for (int step = 0; step < 16; ++step) {
-      nick(8.0 * dice.whole(1, 7) + dice.real(-1, 1));  // near the borders of bricks
+      nick(8.0 * (1 + random.below(7)) + random.uniform(-1, 1));  // near the borders of bricks
       const std::vector<std::size_t> changed = mesher.update(volume);
       expect_same(mesher, volume, "seed " + std::to_string(seed) + ", nick " + std::to_string(step));
       EXPECT_LT(changed.size(), 10U);
@@ -121,34 +121,34 @@ TEST(Mesher, FollowsABarFullOfEdges) {
 /// entangled folds and vertices that fall back, everywhere.
 TEST(Mesher, FollowsGridsThatContradictEachOther) {
   for (unsigned seed = 0; seed < 9; ++seed) {
-    Dice dice(seed);
+    Random random(seed);
     const double h = 0.25, offset = seed % 4 == 3 ? 4e5 : 0;
     const Vec3 lower(offset, 0, -offset);
     // Half of them are long: bricks that no change reaches lie on both sides of it.
-    const Vec3 size = seed % 2 ? Vec3(dice.real(6, 20), dice.real(6, 20), dice.real(6, 18))
-                               : Vec3(dice.real(40, 50), dice.real(4, 9), dice.real(4, 9));
+    const Vec3 size = seed % 2 ? Vec3(random.uniform(6, 20), random.uniform(6, 20), random.uniform(6, 18))
+                               : Vec3(random.uniform(40, 50), random.uniform(4, 9), random.uniform(4, 9));
     Volume volume({{lower, lower + size}, h, seed % 3 ? "xyz" : "z"});
-    const double share = dice.chance(0.5) ? dice.real(0, 0.1) : dice.real(0, 1);
-    const Solid base = turned_box(lower + size / 2.0, size * 0.4, dice.turn());
+    const double share = random.one_in(2) ? random.uniform(0, 0.1) : random.uniform(0, 1);
+    const Solid base = turned_box(lower + size / 2.0, size * 0.4, random_turn(random));
     fill(volume, [&](const Grid& grid, int i, int j) {
-      if (!dice.chance(share)) {
+      if (random.uniform() >= share) {
         const Vec3 p = to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0));
         return meet(base, box(lower, lower + size))(p, to_world(grid.axis(), Vec3(0, 0, 1)));
       }
-      return wild_cuts(dice, grid, 0.8, true);
+      return spans_at_random(random, grid, 0.8, true);
     });
     Mesher mesher(volume);
     Patches patches(mesher);
     const std::string what = "seed " + std::to_string(seed);
-    EXPECT_TRUE(audit(mesher.mesh()).clean()) << what << ": " << audit(mesher.mesh());
+    EXPECT_TRUE(float_audit(mesher.mesh()).clean()) << what << ": " << float_audit(mesher.mesh());
     for (int step = 0; step < 8; ++step) {
       const Volume before = volume;
       // One grid's rays in a rectangle become wild, or what they were at first.
-      Grid& grid = volume.grids()[static_cast<std::size_t>(dice.whole(0, static_cast<int>(volume.grids().size()) - 1))];
-      const int i0 = dice.whole(0, grid.nu() - 1), j0 = dice.whole(0, grid.nv() - 1);
-      const int i1 = std::min(grid.nu() - 1, i0 + dice.whole(0, 12)),
-                j1 = std::min(grid.nv() - 1, j0 + dice.whole(0, 12));
-      change_rays(grid, i0, i1, j0, j1, [&] { return wild_cuts(dice, grid, 0.8, true); });
+      Grid& grid = volume.grids()[static_cast<std::size_t>(random.below(static_cast<int>(volume.grids().size())))];
+      const int i0 = random.below(grid.nu()), j0 = random.below(grid.nv());
+      const int i1 = std::min(grid.nu() - 1, i0 + random.below(13)),
+                j1 = std::min(grid.nv() - 1, j0 + random.below(13));
+      change_rays(grid, i0, i1, j0, j1, [&] { return spans_at_random(random, grid, 0.8, true); });
       volume.touch();
       patches.update(mesher, mesher.update(volume));
       expect_same(mesher, volume, what + ", step " + std::to_string(step));

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import Mesh, Tool, Volume
+from .. import Mesh, Tool
 from .._core import bench as core
 
 BLOCK = ([0.0, 0.0, 0.0], [100.0, 60.0, 30.0])
@@ -122,67 +122,8 @@ def spiral(steps: int, step: float, middle: tuple[float, float], turning: bool) 
     return np.concatenate([centres - 10 * axes, axes], 1)
 
 
-# ---- random volumes
-
-
 def box_mesh(lower, upper) -> Mesh:
     corners = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)], float)
     vertices = np.asarray(lower) + corners * (np.asarray(upper) - np.asarray(lower))
     quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     return Mesh(vertices, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
-
-
-def random_tool(rng) -> Tool:
-    d = float(rng.uniform(1.5, 6))
-    return [
-        lambda: Tool.ball(d, 20),
-        lambda: Tool.flat(d, 20),
-        lambda: Tool.fillet(d, d / 5, 20),
-        lambda: Tool.taper(d / 6, 0.3, d, 30),
-        lambda: Tool.cone_end(0.9, d / 8, 0.4, d, 30),
-    ][rng.integers(5)]()
-
-
-def random_poses(rng, lower, size, pitch, snapped: bool) -> np.ndarray:
-    """Two or three poses about the box; on its lattice and axes where `snapped`."""
-    poses = []
-    for _ in range(rng.integers(2, 4)):
-        tip = lower + rng.uniform(-0.15, 1.15, 3) * size
-        axis = rng.normal(size=3)
-        if snapped:
-            tip = lower + np.round((tip - lower) / pitch) * pitch
-            axis = np.eye(3)[rng.integers(3)] * rng.choice([-1.0, 1.0])
-            if poses:
-                axis = poses[0][3:]
-        elif poses and rng.random() < 0.5:
-            axis = poses[0][3:]
-        poses.append(np.concatenate([tip, axis / math.sqrt(axis @ axis)]))
-    return np.array(poses)
-
-
-def random_volume(seed: int, directions: str) -> Volume:
-    """Random cuts, thin walls, coincident and grid-aligned faces, isolated columns, cuts through the border."""
-    rng = np.random.default_rng(seed)
-    pitch = float(rng.choice([0.25, 0.5, 0.37]))
-    size = rng.integers(8, 40, 3) * pitch * rng.choice([1.0, 1.03])
-    lower = rng.choice([0.0, -7.3, 1000.0, 1e5]) * rng.uniform(-1, 1, 3)
-    volume = Volume.block(lower, lower + size, pitch, directions)
-    frame = {"pitch": pitch, "directions": directions, "lower": lower, "upper": lower + size}
-    for _ in range(rng.integers(1, 6)):
-        snapped = rng.random() < 0.4
-        kind = rng.random()
-        if kind < 0.55:
-            volume.carve(random_tool(rng), random_poses(rng, lower, size, pitch, snapped), tolerance=0.02)
-            continue
-        a, b = (lower + rng.uniform(-0.2, 1.2, 3) * size for _ in range(2))
-        if snapped:
-            a, b = (lower + np.round((p - lower) / pitch) * pitch for p in (a, b))
-        if kind > 0.9:  # a wall, thinner than the pitch as often as not
-            k = rng.integers(3)
-            b[k] = a[k] + pitch * rng.uniform(0.05, 2)
-        a, b = np.minimum(a, b), np.maximum(a, b)
-        if np.any(b - a <= 0) or np.any(a >= lower + size) or np.any(b <= lower):
-            continue
-        box = Volume.from_mesh(box_mesh(a, b), **frame)
-        getattr(volume, rng.choice(["subtract", "subtract", "add"]))(box)
-    return volume

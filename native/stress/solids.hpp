@@ -1,32 +1,31 @@
-// Volumes for the mesher's tests, filled ray by ray from exact solids or from random numbers.
+// Volumes filled ray by ray: from solids whose rays are computed exactly, or from whatever a function says.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
-#include <random>
 #include <utility>
 #include <vector>
 
 #include "dexel/volume.hpp"
+#include "stress/random.hpp"
 
-namespace riffler::testing {
+namespace riffler::stress {
 
 /// A span with its true normals, along a line p + s d.
-struct Cut {
+struct SolidSpan {
   double near, far;
   Vec3 near_normal, far_normal;
 };
-using Cuts = std::vector<Cut>;
+using SolidSpans = std::vector<SolidSpan>;
 /// Where a solid meets a line: origin, direction (unit) → sorted, disjoint cuts.
-using Solid = std::function<Cuts(const Vec3&, const Vec3&)>;
+using Solid = std::function<SolidSpans(const Vec3&, const Vec3&)>;
 
 constexpr double kFarAway = 1e9;
 
 /// The half-space n·p ≤ c.
 inline Solid half_space(const Vec3& n, double c) {
-  return [n, c](const Vec3& p, const Vec3& d) -> Cuts {
+  return [n, c](const Vec3& p, const Vec3& d) -> SolidSpans {
     const double slope = glm::dot(n, d), at = c - glm::dot(n, p);
     if (slope > 0) return {{-kFarAway, at / slope, -n, n}};
     if (slope < 0) return {{at / slope, kFarAway, n, -n}};
@@ -36,7 +35,7 @@ inline Solid half_space(const Vec3& n, double c) {
 }
 
 inline Solid sphere(const Vec3& centre, double radius) {
-  return [centre, radius](const Vec3& p, const Vec3& d) -> Cuts {
+  return [centre, radius](const Vec3& p, const Vec3& d) -> SolidSpans {
     const double middle = glm::dot(centre - p, d);
     const Vec3 off = p + middle * d - centre;
     const double rest = radius * radius - glm::dot(off, off);
@@ -49,7 +48,7 @@ inline Solid sphere(const Vec3& centre, double radius) {
 /// Combines two solids by a rule on (inside a, inside b).
 inline Solid combine(const Solid& a, const Solid& b, std::function<bool(bool, bool)> rule) {
   return [=](const Vec3& p, const Vec3& d) {
-    const Cuts cut[2] = {a(p, d), b(p, d)};
+    const SolidSpans cut[2] = {a(p, d), b(p, d)};
     struct Event {
       double at;
       int who;
@@ -58,10 +57,10 @@ inline Solid combine(const Solid& a, const Solid& b, std::function<bool(bool, bo
     };
     std::vector<Event> events;
     for (int w = 0; w < 2; ++w)
-      for (const Cut& c : cut[w])
+      for (const SolidSpan& c : cut[w])
         events.push_back({c.near, w, true, c.near_normal}), events.push_back({c.far, w, false, c.far_normal});
     std::stable_sort(events.begin(), events.end(), [](const Event& x, const Event& y) { return x.at < y.at; });
-    Cuts out;
+    SolidSpans out;
     bool in[2] = {false, false}, now = false;
     for (const Event& e : events) {
       in[e.who] = e.in;
@@ -76,7 +75,7 @@ inline Solid combine(const Solid& a, const Solid& b, std::function<bool(bool, bo
       else
         out.back().far = e.at, out.back().far_normal = normal;
     }
-    std::erase_if(out, [](const Cut& c) { return !(c.far > c.near); });
+    std::erase_if(out, [](const SolidSpan& c) { return !(c.far > c.near); });
     return out;
   };
 }
@@ -105,8 +104,15 @@ inline Solid box(const Vec3& lower, const Vec3& upper) {
   return turned_box((lower + upper) / 2.0, (upper - lower) / 2.0, Mat3(1.0));
 }
 
-/// Fills every grid of a volume: cuts(axis, i, j) gives each ray's, absolute along the ray.
-inline void fill(Volume& volume, const std::function<Cuts(const Grid&, int, int)>& cuts) {
+/// Any rotation.
+inline Mat3 random_turn(Random& random) {
+  const Vec3 a = random.direction(), b = random.square_to(a);
+  return Mat3(a, b, glm::cross(a, b));
+}
+
+/// Fills every grid of a volume: cuts(grid, i, j) gives each ray's, absolute along the ray; what sticks out of the box
+/// is cut off.
+inline void fill(Volume& volume, const std::function<SolidSpans(const Grid&, int, int)>& cuts) {
   for (Grid& grid : volume.grids())
     for (int a = 0; a < grid.tiles_u(); ++a)
       for (int b = 0; b < grid.tiles_v(); ++b) {
@@ -114,8 +120,12 @@ inline void fill(Volume& volume, const std::function<Cuts(const Grid&, int, int)
         for (int r = 0; r < kTileRays; ++r) {
           const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
           if (i < grid.nu() && j < grid.nv())
-            for (const Cut& c : cuts(grid, i, j))
-              builder.add({c.near, c.far}, {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)});
+            for (const SolidSpan& c : cuts(grid, i, j)) {
+              // Within the box to the last bit, which a solid's own arithmetic may miss.
+              const Span span{std::max(c.near, grid.box().lower.z), std::min(c.far, grid.box().upper.z)};
+              if (span.near < span.far)
+                builder.add(span, {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)});
+            }
           builder.next_ray();
         }
         grid.set_tile(grid.tile_index(a, b), builder.finish());
@@ -134,56 +144,8 @@ inline Volume solid_volume(const Frame& frame, const Solid& solid) {
   return volume;
 }
 
-/// Reproducible numbers, the same with every standard library.
-class Dice {
- public:
-  explicit Dice(unsigned seed) : engine_(seed) {}
-  double real(double from, double to) { return from + (to - from) * (static_cast<double>(engine_()) * 0x1p-32); }
-  int whole(int from, int to) { return from + static_cast<int>(engine_() % static_cast<unsigned>(to - from + 1)); }
-  bool chance(double p) { return real(0, 1) < p; }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 v{real(-1, 1), real(-1, 1), real(-1, 1)};
-      const double length = glm::length(v);
-      if (length > 0.1 && length < 1) return v / length;
-    }
-  }
-  Mat3 turn() {
-    const Vec3 a = direction();
-    Vec3 b = direction();
-    while (std::abs(glm::dot(a, b)) > 0.9) b = direction();
-    const Vec3 c = glm::normalize(glm::cross(a, b));
-    return Mat3(a, glm::cross(c, a), c);
-  }
-
- private:
-  std::mt19937 engine_;
-};
-
-/// Spans that know nothing of each other: ends anywhere, often on lattice planes or box faces, also outside the box.
-inline Cuts wild_cuts(Dice& dice, const Grid& grid, double fill, bool random_normals) {
-  const double h = grid.pitch(), low = grid.box().lower.z, high = grid.box().upper.z;
-  std::vector<double> ends;
-  for (int n = dice.chance(fill) ? dice.whole(1, 4) : 0; n > 0; --n)
-    for (int e = 0; e < 2; ++e) {
-      double at = dice.real(low - h, high + h);
-      if (dice.chance(0.3)) at = low + std::round((at - low) / (h / 2)) * (h / 2);
-      if (dice.chance(0.1)) at += dice.real(-2e-3, 2e-3) * h;
-      ends.push_back(at);
-    }
-  std::sort(ends.begin(), ends.end());
-  const Vec3 along = to_world(grid.axis(), Vec3(0, 0, 1));
-  Cuts cuts;
-  for (std::size_t n = 0; n + 1 < ends.size(); n += 2) {
-    if (!(ends[n] < ends[n + 1])) continue;
-    cuts.push_back(
-        {ends[n], ends[n + 1], random_normals ? dice.direction() : -along, random_normals ? dice.direction() : along});
-  }
-  return cuts;
-}
-
 /// Replaces the rays i0 … i1 × j0 … j1 of a grid.
-inline void change_rays(Grid& grid, int i0, int i1, int j0, int j1, const std::function<Cuts()>& cuts) {
+inline void change_rays(Grid& grid, int i0, int i1, int j0, int j1, const std::function<SolidSpans()>& cuts) {
   for (int a = i0 / kTileSide; a <= i1 / kTileSide; ++a)
     for (int b = j0 / kTileSide; b <= j1 / kTileSide; ++b) {
       const Tile& old = grid.tile(grid.tile_index(a, b));
@@ -191,7 +153,7 @@ inline void change_rays(Grid& grid, int i0, int i1, int j0, int j1, const std::f
       for (int r = 0; r < kTileRays; ++r) {
         const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
         if (i >= i0 && i <= i1 && j >= j0 && j <= j1)
-          for (const Cut& c : cuts())
+          for (const SolidSpan& c : cuts())
             builder.add({c.near, c.far}, {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)});
         else
           for (std::size_t n = 0; n < old.ray(r).size(); ++n)
@@ -202,4 +164,4 @@ inline void change_rays(Grid& grid, int i0, int i1, int j0, int j1, const std::f
     }
 }
 
-}  // namespace riffler::testing
+}  // namespace riffler::stress

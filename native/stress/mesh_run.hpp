@@ -1,0 +1,52 @@
+// The meshing stress run: volumes from the degenerate limits, each meshed and checked.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "stress/mesh_checks.hpp"
+#include "stress/mesh_scenes.hpp"
+
+namespace riffler::stress {
+
+struct MeshOptions {
+  std::uint64_t seed = 1;
+  int threads_every = 16;  ///< volumes until one is meshed with 1 and with 4 threads
+};
+
+/// A failed check, and what to draw again.
+struct MeshFailure {
+  std::uint64_t seed, number;
+  MeshScene scene;
+  Problem problem;
+};
+
+struct MeshTally {
+  long volumes = 0, empty = 0, triangles = 0, failures = 0;
+};
+
+struct MeshResults {
+  std::array<MeshTally, static_cast<std::size_t>(MeshScene::kCount)> scenes;
+  long thread_checks = 0;
+  std::vector<MeshFailure> failures;  ///< the first of them
+  MeshTally total() const;
+};
+
+/// Volume number `number`, which depends on nothing but the seed and the number.
+MeshScene mesh_scene(std::uint64_t number);
+Volume mesh_volume(std::uint64_t seed, std::uint64_t number);
+
+/// Adds volume `number` to the results.
+void run_volume(const MeshOptions& options, std::uint64_t number, MeshResults& out);
+
+/// Volumes 0 … `volumes` − 1. `progress`, called after every volume, may stop the run by returning false.
+MeshResults run_meshes(const MeshOptions& options, std::uint64_t volumes,
+                       const std::function<bool(const MeshResults&)>& progress = {});
+
+/// The command that draws the failed volume alone, and writes the least of it that fails.
+std::string reproducer(const MeshFailure& failure);
+
+}  // namespace riffler::stress
