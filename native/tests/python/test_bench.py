@@ -1,5 +1,6 @@
 """`riffler bench`: that a short run of everything works, that its figures are what they say, and that it can fail."""
 
+import itertools
 import json
 import math
 import os
@@ -12,7 +13,7 @@ import pytest
 import riffler
 from riffler import cli
 from riffler._core import bench as core
-from riffler.bench import errors, exact, measure, report, scenes
+from riffler.bench import errors, exact, measure, parts, report, scenes
 from riffler.bench.jobs import JOBS, b5x, force
 from riffler.command import bench as command
 
@@ -84,6 +85,32 @@ def test_meshes_of_b200_are_clean_and_their_error_falls(quick):
     boxes = {row["engine"]: row for row in rows(quick, "mesh", "edges")}
     assert 0 < boxes["Riffler tri-dexel"]["edges_largest_mm"] < 0.02 < boxes["Riffler z"]["edges_largest_mm"]
     assert all(row["peak_bytes"] > 1e6 for row in rows(quick, "mesh", "memory") if "mesh_s" in row)
+
+
+def test_parts_become_volumes_and_fewer_triangles(quick):
+    table = rows(quick, "stl", "rays")
+    mine = {row["part"]: row for row in table if row["engine"] == "Riffler"}
+    assert len(mine) == 2 and all(abs(row["difference"]) < 0.02 and row["rate"] > 0 for row in mine.values())
+    assert sum("left out" in row["engine"] for row in table) == 3 * len(mine)
+    table = rows(quick, "decimate", "parts")
+    mine = {row["part"]: row for row in table if row["engine"] == "Riffler"}
+    assert set(mine) == {"organic", "sharp"} and all(row["bad"] == 0 for row in mine.values())
+    assert 0.05 < mine["organic"]["max_mm"] < 5 and mine["sharp"]["max_mm"] < 1e-6
+    assert sum("left out" in row["engine"] for row in table) == 6
+
+
+def test_parts_made_in_code_are_closed_and_have_the_volume_of_their_shape():
+    star = parts.sharp(5_000)
+    outline = [(34 if k % 2 else 50) * np.exp(2j * np.pi * k / 16) for k in range(17)]
+    area = sum((a.conjugate() * b).imag for a, b in itertools.pairwise(outline)) / 2
+    layers = round((len(star.triangles) / 12) ** 0.5)
+    heights = [(layers // 3), (2 * layers // 3 - layers // 3 - 1), (layers - 2 * layers // 3 - 1)]
+    stacked = sum(h * s * s for h, s in zip(heights, (1, 0.8, 0.55), strict=True)) * 60 / (layers - 2)
+    assert star.volume == pytest.approx(area * stacked, rel=1e-12)
+    for part in (star, parts.organic(5_000)):
+        audit = part.audit()
+        assert audit["components"] == 1 and audit["volume"] > 0
+        assert not any(audit[name] for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds"))
 
 
 def test_the_exact_part_is_what_it_is_described_as():

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import Tool, Volume
+from .. import Mesh, Tool, Volume
 from . import scenes
 from .rivals import clock
 
@@ -57,6 +57,26 @@ def mesh(pitch: float, directions: str, repeats: int, path: str) -> dict[str, An
     return {**times, "triangles": len(made.triangles)}
 
 
+def rays(path: str, side: int, repeats: int) -> dict[str, Any]:
+    """A part to side² rays along z: median times, and the volume."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    low, high = np.asarray(part.bounds)
+    pitch = (high - low)[:2].max() / side
+    middle, half = (low + high) / 2, np.array([pitch * side / 2, pitch * side / 2, (high - low)[2] / 2 + pitch])
+    box = {"lower": middle - half, "upper": middle + half}
+    volume, times = clock.timed(lambda: Volume.from_mesh(part, pitch, "z", **box), repeats)
+    return {**times, "volume": volume.volume}
+
+
+def decimate(path: str, wanted: int, repeats: int) -> dict[str, Any]:
+    """A part to `wanted` triangles: median times; the result beside it."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    less, times = clock.timed(lambda: part.decimate(triangles=wanted), repeats)
+    np.save(f"{path}.out.vertices.npy", less.vertices)
+    np.save(f"{path}.out.triangles.npy", less.triangles)
+    return {**times, "triangles": len(less.triangles)}
+
+
 def streamed(moves: int, calls: int) -> dict[str, Any]:
     """The ramping path again and again, each time 0.8 mm deeper, a call each: memory is that of one."""
     volume, poses, tool = Volume.block(*scenes.S500K_BLOCK, 0.5), scenes.s500k(moves, True), Tool.flat(6, 30)
@@ -97,7 +117,15 @@ def files(folder: str) -> dict[str, Any]:
     return {}
 
 
-WORK = {"b200": b200, "mesh": mesh, "s500k": s500k, "streamed": streamed, "files": files}
+WORK = {
+    "b200": b200,
+    "mesh": mesh,
+    "rays": rays,
+    "decimate": decimate,
+    "s500k": s500k,
+    "streamed": streamed,
+    "files": files,
+}
 
 if __name__ == "__main__":
     result = WORK[sys.argv[1]](**json.loads(sys.argv[2]))

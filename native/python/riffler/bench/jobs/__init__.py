@@ -1,6 +1,6 @@
 """The jobs by name; each is a module with ``run(settings, progress) -> Report``."""
 
-from . import b5x, b200, force, haptic, mesh, models, pitch, random, s500k, threads
+from . import b5x, b200, decimate, force, haptic, mesh, pitch, random, s500k, stl, threads
 
 JOBS = {
     "b200": b200,
@@ -11,6 +11,7 @@ JOBS = {
     "pitch": pitch,
     "mesh": mesh,
     "random": random,
-    "models": models,
+    "stl": stl,
+    "decimate": decimate,
     "threads": threads,
 }

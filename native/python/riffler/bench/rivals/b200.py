@@ -108,8 +108,8 @@ def openvdb(settings: Settings) -> Iterator[dict[str, Any]]:
         try:
             r = program(settings, "riffler_openvdb_csg", pitch)
         except LeftOutError as why:
-            yield left_out(f"OpenVDB, h = {pitch}", why)
-            continue
+            yield left_out("OpenVDB", why)
+            return
         yield {
             "engine": f"OpenVDB {r['version']} CSG, static balls, h = {pitch:g}",
             "us_per_move": 1e6 * r["median"],
