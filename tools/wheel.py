@@ -10,7 +10,7 @@ from shell import PYTHON, ROOT, StepError, digest, is_stamped, run, say, tool_en
 
 FOLDER = ROOT / "build" / "wheel"
 # Folders of native/ that do not go into the wheel.
-NOT_SHIPPED = {"tests", "stress", "fuzz"}
+NOT_SHIPPED = {"tests", "fuzz"}
 
 
 def sources() -> list[Path]:

@@ -10,7 +10,9 @@
 #include "mesh/closest.hpp"
 #include "mesh/decimate.hpp"
 #include "mesh/io.hpp"
+#include "mesh/scan.hpp"
 #include "mesh/smooth.hpp"
+#include "mesh/weld.hpp"
 
 namespace riffler {
 
@@ -77,6 +79,38 @@ MeshPtr make(const py::object& vertices, const py::object& triangles) {
   auto mesh = std::make_shared<Mesh>(Mesh{to_vertices(vertices), to_triangles(triangles)});
   validate(*mesh);
   return mesh;
+}
+
+/// What `riffler.threemf` reads, as files are read: equal vertices become one.
+MeshPtr read_3mf(const std::filesystem::path& path) {
+  const py::tuple found = py::module_::import("riffler.threemf").attr("read")(path);
+  const MeshPtr mesh = make(found[0], found[1]);
+  Welder<Vec3> welder(mesh->vertices.size());
+  std::vector<int> places(mesh->vertices.size());
+  welder.add(mesh->vertices, places.data());
+  mesh->vertices.assign(welder.points().begin(), welder.points().end());
+  for (Vec3i& t : mesh->triangles) t = {places[t.x], places[t.y], places[t.z]};
+  return mesh;
+}
+
+bool is_3mf(const std::filesystem::path& path) {
+  return equal_ignoring_case(path.extension().string(), ".3mf");
+}
+
+MeshPtr read(const std::filesystem::path& path) {
+  if (is_3mf(path)) return read_3mf(path);
+  const NoGil no_gil;
+  return std::make_shared<Mesh>(read_mesh(path));
+}
+
+void write(const py::object& self, const std::filesystem::path& path) {
+  if (is_3mf(path)) {
+    py::module_::import("riffler.threemf").attr("write")(path, self.attr("vertices"), self.attr("triangles"));
+    return;
+  }
+  const auto& mesh = self.cast<const Mesh&>();
+  const NoGil no_gil;
+  write_mesh(mesh, path);
 }
 
 py::dict audit_dict(const Mesh& mesh, const py::object& progress) {
@@ -147,15 +181,14 @@ ValueError naming the argument and the row for a wrong shape, a vertex that is n
 range. Vertices are not welded; files are, when they are read.)");
   mesh.def(py::init(&make), "vertices"_a, "triangles"_a);
   mesh.def_static(
-      "read", [](const std::filesystem::path& path) { return std::make_shared<Mesh>(read_mesh(path)); }, "path"_a,
-      py::call_guard<NoGil>(),
-      "The mesh in a .stl (binary or ASCII), .obj or .ply file; equal vertices become one. FormatError naming the byte "
-      "or "
-      "line for a bad file, among them those with no triangle; ValueError for another extension.");
+      "read", &read, "path"_a,
+      R"(The mesh in a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one. A .3mf file gives
+all that it says to build, placed, in mm whatever its unit; it needs the package lib3mf. FormatError naming the byte or
+line for a bad file (for .3mf what was expected), among them those with no triangle; ValueError for another extension.)");
   mesh.def(
-      "write", [](const Mesh& self, const std::filesystem::path& path) { write_mesh(self, path); }, "path"_a,
-      py::call_guard<NoGil>(),
-      "Writes .stl (binary, coordinates rounded to float32), .obj or .ply (binary), whole or not at all.");
+      "write", &write, "path"_a,
+      R"(Writes .stl (binary, coordinates rounded to float32), .obj, .ply (binary) or .3mf (mm, float32 to its last step; needs the package
+lib3mf), whole or not at all.)");
   mesh.def_property_readonly(
       "vertices", [](const py::object& self) { return view<double>(self.cast<const Mesh&>().vertices, self); },
       "(n, 3) float64, read-only, no copy.");

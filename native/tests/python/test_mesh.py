@@ -141,8 +141,8 @@ def test_an_empty_mesh_writes_a_valid_empty_stl(tmp_path):
 
 
 def test_files_that_cannot_be_read(tmp_path):
-    with pytest.raises(ValueError, match=r"ends in \.stl, \.obj or \.ply, not in '\.3mf'"):
-        riffler.Mesh.read(tmp_path / "part.3mf")
+    with pytest.raises(ValueError, match=r"ends in \.stl, \.obj or \.ply \(from Python also \.3mf\), not in '\.amf'"):
+        riffler.Mesh.read(tmp_path / "part.amf")
     with pytest.raises(ValueError, match=r"ends in \.stl, \.obj or \.ply"):
         box().write(tmp_path / "part")
     with pytest.raises(riffler.FormatError, match=r"none\.stl"):

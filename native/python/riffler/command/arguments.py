@@ -7,7 +7,7 @@ import math
 import os
 from pathlib import Path
 
-MESHES = (".stl", ".obj", ".ply")
+MESHES = (".stl", ".obj", ".ply", ".3mf")
 VOLUMES = (".rvol",)
 ORIGINS = ("corner", "top-centre", "bottom-centre")
 

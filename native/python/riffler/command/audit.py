@@ -20,7 +20,7 @@ DEFECTS = ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "duplicate
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("mesh", metavar="FILE", help=".stl, .obj or .ply")
+    parser.add_argument("mesh", metavar="FILE", help=".stl, .obj, .ply or .3mf")
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:

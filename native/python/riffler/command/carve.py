@@ -22,7 +22,10 @@ __doc__ += "\n" + tools.FORMS
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--stock", required=True, metavar="WxDxH|FILE", help="a block's sizes, or a .stl, .obj, .ply or .rvol file"
+        "--stock",
+        required=True,
+        metavar="WxDxH|FILE",
+        help="a block's sizes, or a .stl, .obj, .ply, .3mf or .rvol file",
     )
     add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
     add_directions(parser)
@@ -33,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274")
     parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
-    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply or .rvol")
+    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply, .3mf or .rvol")
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:

@@ -15,7 +15,7 @@ HELP = "turn a mesh into a dexel volume"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("mesh", metavar="FILE", help=".stl, .obj or .ply")
+    parser.add_argument("mesh", metavar="FILE", help=".stl, .obj, .ply or .3mf")
     add_pitch(parser, required=True)
     add_directions(parser)
     parser.add_argument("--out", required=True, metavar="FILE", help=".rvol")

@@ -17,7 +17,7 @@ HELP = "turn a dexel volume into a closed mesh"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("volume", metavar="FILE", help=".rvol")
-    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj or .ply")
+    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply or .3mf")
     parser.add_argument("--decimate", metavar="MM", help="leave out triangles as long as the surface moves no further")
 
 

@@ -1,0 +1,175 @@
+"""3MF files, by the 3MF Consortium's lib3mf. ``Mesh.read`` and ``Mesh.write`` come here for ``.3mf``.
+
+lib3mf keeps coordinates in float32, and writes them as decimals that may be off by one step of float32. Its calls for
+whole arrays are taken from its C interface with numpy's storage: its Python classes would make an object of every
+vertex.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import locale
+import os
+import tempfile
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ._core import FormatError
+
+# mm in one unit of a file; 3MF has no others.
+UNITS = {"MicroMeter": 0.001, "MilliMeter": 1.0, "CentiMeter": 10.0, "Inch": 25.4, "Foot": 304.8, "Meter": 1000.0}
+DEEPEST = 64  # components within components
+LARGEST = 1e30
+DECIMALS = 9  # 3MF is text; lib3mf's usual six would make one of two float32 values that are neighbours
+NAMES = uuid.UUID("5b0e7a3e-6f0b-5d0c-9c53-2a4f8b7d1e66")
+
+
+def library() -> Any:
+    """lib3mf, or ValueError where its package is missing."""
+    try:
+        import lib3mf
+    except ImportError as error:
+        raise ValueError("a .3mf file needs the package lib3mf (pip install riffler[3mf])") from error
+    return lib3mf
+
+
+@contextmanager
+def locale_kept() -> Iterator[None]:
+    """lib3mf leaves the whole process in the locale "C" when it writes: text in other languages would no longer be read
+    as what it is."""
+    before = locale.setlocale(locale.LC_ALL)
+    try:
+        yield
+    finally:
+        locale.setlocale(locale.LC_ALL, before)
+
+
+def read(path: str) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (n, 3) in mm and triangles (k, 3) of everything that the file says to build, in one.
+
+    Items and components stand where their transforms put them; those that are support are left out.
+    """
+    lib, name = library(), Path(path).name
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise FormatError(f"{name}: {error.strerror}") from error
+    try:
+        model = lib.get_wrapper().CreateModel()
+        reader = model.QueryReader("3mf")
+        with locale_kept():
+            reader.ReadFromBuffer((ctypes.c_uint8 * len(data)).from_buffer_copy(data) if data else [])
+        # lib3mf goes on without what it does not know: a misspelt triangle would be missing, a misspelt unit be mm.
+        # What stands in a namespace of its own, as slicers' additions do, is no reason to warn.
+        if reader.GetWarningCount():
+            raise FormatError(f"{name}: {reader.GetWarning(0)[1]} Expected what 3MF's core specification has")
+        pieces = list(items(lib, model, name))
+        scale = UNITS[model.GetUnit().name]
+    except lib.ELib3MFException as error:
+        raise FormatError(f"{name}: expected a 3MF package with a model: {said(error)}") from error
+    vertices = [vertices for vertices, _ in pieces]
+    starts = np.cumsum([0, *(len(v) for v in vertices)])
+    triangles = [triangles + start for (_, triangles), start in zip(pieces, starts[:-1], strict=True)]
+    if not any(len(t) for t in triangles):
+        raise FormatError(f"{name}: zero triangles; expected a build item with a mesh")
+    placed = scale * np.concatenate(vertices)
+    if not (abs(placed) <= LARGEST).all():
+        row = int(np.flatnonzero(~(abs(placed) <= LARGEST).all(1))[0])
+        raise FormatError(f"{name}: vertex {row} is not finite or beyond 1e30; expected coordinates in mm")
+    return placed, np.concatenate(triangles)
+
+
+def items(lib: Any, model: Any, name: str):
+    """Vertices and triangles of every mesh that is to be built, placed, in the file's unit."""
+    iterator = model.GetBuildItems()
+    while iterator.MoveNext():
+        item = iterator.GetCurrent()
+        place = matrix(item.GetObjectTransform()) if item.HasObjectTransform() else np.eye(4, 3)
+        yield from placed(lib, model, item.GetObjectResource(), place, 0, name)
+
+
+def placed(lib: Any, model: Any, thing: Any, place: np.ndarray, depth: int, name: str):
+    if depth > DEEPEST:
+        raise FormatError(f"{name}: components within components, more than {DEEPEST} deep; expected no loop")
+    if thing.GetType() in (lib.ObjectType.Support, lib.ObjectType.SolidSupport):
+        return
+    if thing.IsMeshObject():
+        vertices, triangles = geometry(lib, model.GetMeshObjectByID(thing.GetResourceID()))
+        if np.linalg.det(place[:3]) < 0:  # mirrored: seen from outside the other way round
+            triangles = triangles[:, ::-1]
+        yield vertices @ place[:3] + place[3], triangles
+    elif thing.IsComponentsObject():
+        parts = model.GetComponentsObjectByID(thing.GetResourceID())
+        for k in range(parts.GetComponentCount()):
+            part = parts.GetComponent(k)
+            inner = matrix(part.GetTransform()) if part.HasTransform() else np.eye(4, 3)
+            together = np.concatenate([inner[:3] @ place[:3], inner[3:] @ place[:3] + place[3]])
+            yield from placed(lib, model, part.GetObjectResource(), together, depth + 1, name)
+
+
+def matrix(transform: Any) -> np.ndarray:
+    """(4, 3): a row times it, with a 1 behind, is what 3MF means."""
+    return np.array([list(row) for row in transform.Fields], float)
+
+
+def geometry(lib: Any, mesh: Any) -> tuple[np.ndarray, np.ndarray]:
+    vertices = (lib.Position * mesh.GetVertexCount())()
+    triangles = (lib.Triangle * mesh.GetTriangleCount())()
+    for call, items in (
+        (mesh._wrapper.lib.lib3mf_meshobject_getvertices, vertices),
+        (mesh._wrapper.lib.lib3mf_meshobject_gettriangleindices, triangles),
+    ):
+        needed = ctypes.c_uint64(0)
+        mesh._wrapper.checkError(mesh, call(mesh._handle, ctypes.c_uint64(len(items)), needed, items))
+    points = np.frombuffer(vertices, np.float32).reshape(-1, 3).astype(float)
+    indices = np.frombuffer(triangles, np.uint32).reshape(-1, 3).astype(np.int64)
+    return points, indices
+
+
+def write(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    """One object, one build item, in mm; beside its target and renamed, so whole or not at all."""
+    lib, target = library(), Path(path)
+    model = lib.get_wrapper().CreateModel()
+    model.SetUnit(lib.ModelUnit.MilliMeter)
+    if len(triangles):
+        mesh = model.AddMeshObject()
+        points = np.array(vertices, np.float32, order="C")
+        indices = np.array(triangles, np.uint32, order="C")
+        buffers = (lib.Position * len(points)).from_buffer(points), (lib.Triangle * len(indices)).from_buffer(indices)
+        counts = [ctypes.c_uint64(len(buffer)) for buffer in buffers]
+        set_geometry = mesh._wrapper.lib.lib3mf_meshobject_setgeometry
+        mesh._wrapper.checkError(mesh, set_geometry(mesh._handle, counts[0], buffers[0], counts[1], buffers[1]))
+        item = model.AddBuildItem(mesh, lib.get_wrapper().GetIdentityTransform())
+        # Otherwise drawn at random: the same mesh is to be the same file, but for the time in the archive.
+        for name, thing in (("object", mesh.SetUUID), ("item", item.SetUUID), ("build", model.SetBuildUUID)):
+            thing(str(uuid.uuid5(NAMES, f"{name} {hashlib.sha256(points.tobytes() + indices.tobytes()).hexdigest()}")))
+    beside: str | None = None
+    try:
+        handle, beside = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+        os.close(handle)
+        writer = model.QueryWriter("3mf")
+        writer.SetDecimalPrecision(DECIMALS)
+        with locale_kept():
+            writer.WriteToFile(beside)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(beside, 0o666 & ~mask)
+        os.replace(beside, target)
+        beside = None
+    except (OSError, lib.ELib3MFException) as error:
+        reason = error.strerror if isinstance(error, OSError) else said(error)
+        raise RuntimeError(f"cannot write {target}: {reason}") from error
+    finally:
+        if beside is not None:
+            os.unlink(beside)
+
+
+def said(error: Exception) -> str:
+    """What went wrong, without the number that lib3mf puts around it."""
+    return str(error).strip() or type(error).__name__
