@@ -16,7 +16,7 @@ BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
     "reference": (["geom", "tool"], []),
     "bench": (None, ["reference"]),
     "stress": (None, ["reference"]),
-    "bindings": (None, ["bench"]),
+    "bindings": (None, ["bench", "stress"]),
 }
 IMPORTS_BLENDER = re.compile(r"^\s*(?:import|from)\s+(?:bpy|bmesh|gpu|mathutils|blf|bl_\w+)\b")
 

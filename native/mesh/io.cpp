@@ -25,7 +25,8 @@ const Format& format_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   for (const Format& format : kFormats)
     if (equal_ignoring_case(extension, format.extension)) return format;
-  throw std::invalid_argument(path.filename().string() + ": a mesh file ends in .stl, .obj or .ply (from Python also .3mf), not in " +
+  throw std::invalid_argument(path.filename().string() +
+                              ": a mesh file ends in .stl, .obj or .ply (from Python also .3mf), not in " +
                               in_quotes(extension));
 }
 
