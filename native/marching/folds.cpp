@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFolded = -0.999985;  // cosine between the normals of two triangles at an edge; 0.3° off a fold
 constexpr int kRounds = 16;            // the pull reaches the anchors after six
+constexpr int kPatient = 3;            // rounds in which only the ends of a fold are pulled
 
 Vec3 normal(const Mesh& mesh, const Vec3i& t) {
   const Vec3 &a = mesh.vertices[t.x], &b = mesh.vertices[t.y], &c = mesh.vertices[t.z];
@@ -76,7 +77,17 @@ struct Folds {
   }
 };
 
-void look_at(const Surface& surface, const QuadRef& ref, bool note, Folds& out) {
+/// The corners of one of a quad's triangles.
+void add_corners(const Surface& surface, const QuadRef& ref, std::uint32_t triangle, Folds& out) {
+  const Vec3i& t = surface.mesh.triangles[triangle];
+  for (int n = 0; n < 4; ++n)
+    if (const CellVertex v = corner(surface, ref, n); v.vertex == t.x || v.vertex == t.y || v.vertex == t.z)
+      out.ends.push_back(v);
+}
+
+/// `whole`: of two triangles that fold, all corners, not only the two that they share. Where the other two lie in one
+/// place it is these that have to part.
+void look_at(const Surface& surface, const QuadRef& ref, bool whole, bool note, Folds& out) {
   const auto see = [&](const QuadRef& quad) {
     for (int n = 0; note && n < 4; ++n) out.seen.push_back(surface.bricks.index_of(corner_cell(quad.edge, n)));
   };
@@ -86,18 +97,24 @@ void look_at(const Surface& surface, const QuadRef& ref, bool note, Folds& out) 
   for (int s = 0; s < 4; ++s) {
     const SideRef beyond = across(surface, ref, s);
     see(beyond.quad);
-    if (folded(surface.mesh, surface.triangle_at(ref.quad, s), surface.triangle_at(beyond.quad.quad, beyond.side)))
+    const std::uint32_t here = surface.triangle_at(ref.quad, s),
+                        there = surface.triangle_at(beyond.quad.quad, beyond.side);
+    if (!folded(surface.mesh, here, there)) continue;
+    if (whole)
+      add_corners(surface, ref, here, out), add_corners(surface, beyond.quad, there, out);
+    else
       out.ends.push_back(corner(surface, ref, s)), out.ends.push_back(corner(surface, ref, (s + 1) & 3));
   }
 }
 
-/// Ends of the edges at which a triangle of these quads folds onto its neighbour; ascending.
-std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vector<QuadRef>& quads, Region& region) {
+/// Ends of the edges at which a triangle of these quads folds onto its neighbour, or all corners of the two; ascending.
+std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vector<QuadRef>& quads, bool whole,
+                                        Region& region) {
   constexpr std::size_t chunk = 1024;
   const bool note = !region.bricks.empty();
   std::vector<Folds> parts((quads.size() + chunk - 1) / chunk);
   parallel_for(quads.size(), chunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t q = begin; q < end; ++q) look_at(surface, quads[q], note, parts[begin / chunk]);
+    for (std::size_t q = begin; q < end; ++q) look_at(surface, quads[q], whole, note, parts[begin / chunk]);
     parts[begin / chunk].tidy();
   });
   Folds all;
@@ -173,14 +190,15 @@ void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<V
 }  // namespace
 
 void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region, const Progress& progress) {
-  std::vector<CellVertex> moved = folded_vertices(surface, quads, region);
+  std::vector<CellVertex> moved = folded_vertices(surface, quads, false, region);
   double share = 0.04;
   for (int round = 0; round < kRounds && !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
     report(progress, static_cast<double>(round) / kRounds);
     for (const CellVertex& v : moved) pull(surface, v, share, region);
     std::vector<Vec3i> cells;
     split_again(surface, moved, cells, region);
-    std::vector<CellVertex> next = folded_vertices(surface, quads_near(surface, cells, kMoved), region);
+    std::vector<CellVertex> next =
+        folded_vertices(surface, quads_near(surface, cells, kMoved), round >= kPatient, region);
     for (const CellVertex& v : moved) surface.marks[v.vertex] &= static_cast<std::uint8_t>(~kMoved);
     moved = std::move(next);
   }

@@ -8,7 +8,9 @@ namespace riffler::marching {
 
 namespace {
 
-constexpr double kReach = 0.5;  // how far outside its edge an end may lie, pitches
+// How far outside its edge an end may lie, pitches. A floor that one direction alone keeps may lie beyond the last
+// point of its ray, by half a pitch where it is nearest to it and by half a pitch more where the box ends.
+constexpr double kReach = 0.5, kReachOfFloor = 1;
 
 double place_of(const Span& s, bool far) {
   return far ? s.far : s.near;
@@ -58,10 +60,10 @@ Hit HitFinder::operator()(const LatticeEdge& edge) {
   const std::span<const Span> spans = tile.ray(ray);
   const double low = lattice_->at(edge.axis, place[edge.axis]), high = lattice_->at(edge.axis, place[edge.axis] + 1),
                h = lattice_->pitch();
-  const int n = nearest_end(spans, low, high, kReach * h, !edge.rising);
+  const int n = nearest_end(spans, low, high, (grid->has_normals() ? kReach : kReachOfFloor) * h, !edge.rising);
   if (n < 0) return axis_hit(0.5, edge, true);
   const double t = (place_of(spans[n], !edge.rising) - low) / h;
-  if (!grid->has_normals()) return axis_hit(t, edge, false);
+  if (!grid->has_normals()) return axis_hit(std::clamp(t, -kReach, 1 + kReach), edge, false);
   const SpanNormals& normals = tile.ray_normals(ray)[n];
   const PackedNormal packed = edge.rising ? normals.near : normals.far;
   if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();  // flat faces have one for all
