@@ -394,12 +394,13 @@ def mesh(data: Data) -> Figure:
     for axis in (left, right):
         logarithmic(axis.xaxis)
         logarithmic(axis.yaxis)
-        axis.legend(loc="best")
+    left.legend(loc="lower left")
     left.invert_xaxis()
     left.set_xticks(h, [f"{x:g}" for x in h])
     left.xaxis.minorticks_off()
     title(figure, data, "B200 to a mesh: error against pitch and against time")
-    figure.tight_layout(rect=(0, 0.02, 1, 0.97))
+    figure.tight_layout(rect=(0, 0.1, 1, 0.97))
+    figure.legend(*right.get_legend_handles_labels(), loc="lower right", ncols=4, bbox_to_anchor=(1.0, 0.0))
     return figure
 
 
