@@ -56,7 +56,7 @@ bench:  ## Measure run time and error, of rivals too: out/bench (JOBS="b5x force
 	@$(ready) bench
 	$(python) tools/preset.py bench
 	mkdir -p out/bench
-	RIFFLER_THREADS=1 build/bench/native/bench/riffler_bench --benchmark_filter='whole|stage' \
+	RIFFLER_THREADS=1 build/bench/native/bench/riffler_bench --benchmark_filter='whole|follow' \
 	  --benchmark_out=out/bench/native.json
 	.venv/bin/riffler bench $(JOBS) --out out/bench $(if $(RIFFLER_MODELS),--models $(RIFFLER_MODELS)) \
 	  --programs build/bench/native/bench --rivals .envs/rivals/bin/python --blender .envs/bpy-4.5/bin/python

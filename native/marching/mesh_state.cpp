@@ -161,20 +161,19 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
       if (bricks.active(n)) changed.push_back(n), fresh.push_back(n);
     }
     give_room();
-    // Vertices near these that had a choice, or that were pulled, begin again as well.
-    std::vector<std::size_t> unsettled;
-    for (const std::size_t n : around(changes.mesh_bricks, -1, 1))
-      if (!changes.meshes[n] && !settled(n)) unsettled.push_back(n);
-    fresh.insert(fresh.end(), unsettled.begin(), unsettled.end());
-    each_once(fresh);
     mesh_bricks(surface, fresh, {});
-    const std::vector<std::size_t> linked = without(around(changes.mesh_bricks, 0, 1), fresh);
-    link_bricks(surface, linked);
-    choose_again(fresh);
-    const std::vector<std::size_t> unfolded = unfold_again(fresh);
-    std::vector<std::size_t> others = around(unsettled, 0, 1);
-    changed.insert(changed.end(), others.begin(), others.end());
-    others = around(unfolded, 0, 1);
+    link_bricks(surface, without(around(changes.mesh_bricks, 0, 1), fresh));
+    // Vertices near these that had a choice, or that were pulled, begin again as well.
+    std::vector<Unsettled> unsettled;
+    for (const std::size_t n : around(changes.mesh_bricks, -1, 1))
+      if (!changes.meshes[n] && !settled(n)) unsettled.push_back(unsettle(n)), fresh.push_back(n);
+    each_once(fresh);
+    choose_again(fresh, unsettled);
+    std::vector<std::size_t> others = unfold_again(fresh);
+    for (const Unsettled& u : unsettled)
+      if (moved(u)) others.push_back(u.brick);
+    each_once(others);
+    others = around(others, 0, 1);
     changed.insert(changed.end(), others.begin(), others.end());
     each_once(changed);
   }
@@ -229,9 +228,30 @@ bool MeshState::settled(std::size_t n) const {
          });
 }
 
+/// Puts a brick's vertices to where they were before they could choose, and before they were pulled.
+MeshState::Unsettled MeshState::unsettle(std::size_t n) {
+  Unsettled out{n, {}, {}};
+  const auto note = [&](const CellVertex& v) { out.places.emplace_back(v.vertex, surface.mesh.vertices[v.vertex]); };
+  for (const Pulled& p : bricks.active(n)->pulled) note(p.at), out.pulled.push_back(p.at.cell);
+  for (const Special* s : undecided(surface, {n})) note(s->at);
+  undo_unfold(surface, n);
+  for (const Special* s : undecided(surface, {n})) surface.mesh.vertices[s->at.vertex] = s->safe;
+  return out;
+}
+
+bool MeshState::moved(const Unsettled& was) const {
+  const auto elsewhere = [&](const auto& v) { return surface.mesh.vertices[v.first] != v.second; };
+  if (std::any_of(was.places.begin(), was.places.end(), elsewhere)) return true;
+  const auto noted = [&](const Pulled& p) {
+    return std::any_of(was.places.begin(), was.places.end(), [&](const auto& v) { return v.first == p.at.vertex; });
+  };
+  const std::vector<Pulled>& pulled = bricks.active(was.brick)->pulled;
+  return !std::all_of(pulled.begin(), pulled.end(), noted);
+}
+
 /// Candidates of fresh bricks. What those of the next bricks chose does not depend on the change: it is too far away
 /// (a choice reaches eight cells at most, one a group), but their turns come as they did.
-void MeshState::choose_again(const std::vector<std::size_t>& fresh) {
+void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::vector<Unsettled>& unsettled) {
   const std::vector<std::size_t> ring = without(around(fresh, -1, 1), fresh);
   const std::vector<Special*> known = undecided(surface, ring);
   std::vector<std::pair<std::int32_t, Vec3>> pulled;
@@ -245,9 +265,9 @@ void MeshState::choose_again(const std::vector<std::size_t>& fresh) {
   for (const Special* s : known) cells.push_back(s->at.cell);
   choose_candidates(surface, undecided(surface, fresh), known, {});
   for (const auto& [vertex, place] : pulled) surface.mesh.vertices[vertex] = place;
-  // Fresh quads took their corners for undecided ones.
-  HitFinder finder = surface.hits;
-  for (const QuadRef& ref : quads_near(surface, cells, kCandidate | kPulled)) surface.split(ref, finder);
+  // Fresh quads took their corners for undecided ones, and others lost what their diagonals were chosen for.
+  for (const Unsettled& u : unsettled) cells.insert(cells.end(), u.pulled.begin(), u.pulled.end());
+  for (const QuadRef& ref : quads_near(surface, cells, kAnyMark)) surface.split(ref, surface.hits);
 }
 
 /// Unfolds fresh bricks, and those whose folds are entangled with theirs, which it returns.

@@ -32,8 +32,16 @@ struct MeshState {
   void place_again(std::size_t brick);
   void give_room();
   std::vector<std::size_t> around(const std::vector<std::size_t>& list, int from, int to) const;
+  /// A brick beside changed ones, where its vertices were and the cells of those that were pulled.
+  struct Unsettled {
+    std::size_t brick;
+    std::vector<std::pair<std::int32_t, Vec3>> places;
+    std::vector<Vec3i> pulled;
+  };
   bool settled(std::size_t brick) const;
-  void choose_again(const std::vector<std::size_t>& fresh);
+  Unsettled unsettle(std::size_t brick);
+  bool moved(const Unsettled& was) const;
+  void choose_again(const std::vector<std::size_t>& fresh, const std::vector<Unsettled>& unsettled);
   std::vector<std::size_t> unfold_again(const std::vector<std::size_t>& fresh);
   std::vector<QuadRef> quads_to_look_at(const std::vector<std::size_t>& list);
 

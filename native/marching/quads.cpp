@@ -50,7 +50,7 @@ void add_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std
           const std::uint32_t quad = bricks.quad_of(edge);
           const auto c = surface.corners(quad);
           const BulkVector<std::uint8_t>& m = surface.marks;
-          if ((m[c[0]] | m[c[1]] | m[c[2]] | m[c[3]]) & mark) out.push_back({quad, edge});
+          if (mark == kAnyMark || (m[c[0]] | m[c[1]] | m[c[2]] | m[c[3]]) & mark) out.push_back({quad, edge});
         }
       }
   }

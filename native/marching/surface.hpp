@@ -19,6 +19,7 @@ enum VertexMark : std::uint8_t {
   kSharp = 4,      // its hits' normals differ: triangles round it may fold
   kMoved = 8,      // moved in the last round of `unfold`
   kPulled = 16,    // its brick has a Pulled for it
+  kAnyMark = 255,  // for quads_near: all quads
 };
 
 struct Surface {
@@ -62,7 +63,7 @@ struct Surface {
 /// The cell whose vertex is corner n of the quad that stands for an edge.
 Vec3i corner_cell(const LatticeEdge& edge, int n);
 
-/// Quads of the edges of these cells with a corner that has the mark; ascending.
+/// Quads of the edges of these cells with a corner that has the mark (kAnyMark: all); ascending.
 std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark);
 
 /// What a brick has of edges and vertices; null where no cell of it has both signs.

@@ -17,7 +17,7 @@ from typing import Any
 from .console import Console
 
 HELP = "measure run time, error and memory"
-NAMES = "b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "random", "stl", "decimate", "threads"
+NAMES = "b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "follow", "random", "stl", "decimate", "threads"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,6 +1,6 @@
 """The jobs by name; each is a module with ``run(settings, progress) -> Report``."""
 
-from . import b5x, b200, decimate, force, haptic, mesh, pitch, random, s500k, stl, threads
+from . import b5x, b200, decimate, follow, force, haptic, mesh, pitch, random, s500k, stl, threads
 
 JOBS = {
     "b200": b200,
@@ -10,6 +10,7 @@ JOBS = {
     "force": force,
     "pitch": pitch,
     "mesh": mesh,
+    "follow": follow,
     "random": random,
     "stl": stl,
     "decimate": decimate,
