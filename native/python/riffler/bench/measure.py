@@ -125,6 +125,7 @@ def child(work: str, threads: int | None = 1, **arguments: Any) -> dict[str, Any
     root = str(Path(__file__).resolve().parents[2])
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH")]))}
     environment.pop("RIFFLER_THREADS", None)
+    environment["OPENBLAS_NUM_THREADS"] = "1"  # numpy's threads spin for a while, and count as processor time
     if threads is not None:
         environment["RIFFLER_THREADS"] = str(threads)
     command = [sys.executable, "-m", "riffler.bench.children", work, json.dumps(arguments)]
