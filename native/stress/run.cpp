@@ -218,7 +218,7 @@ Journal session_journal(const Options& options, const std::string& cutter, std::
 Results run(const Options& options, const std::string& cutter, long moves,
             const std::function<bool(const Results&)>& progress) {
   Results out;
-  for (std::uint64_t session = 0; out.total().moves < moves; ++session) {
+  for (std::uint64_t session = options.first_session; out.total().moves < moves; ++session) {
     run_session(options, cutter, session, out);
     if (progress && !progress(out)) break;
   }
