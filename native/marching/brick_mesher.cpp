@@ -75,21 +75,23 @@ class BrickMesher {
 
   static int column(int i, int j) { return (i + 1) * kSide + j + 1; }
 
+  /// The edge along an axis whose lower end is bit `b` of a column's word.
+  LatticeEdge edge(int axis, int i, int j, int b) const {
+    return {axis, origin_.x + i, origin_.y + j, origin_.z + b - Neighbourhood::kLayers,
+            !(signs_->column(i, j) >> b & 1)};
+  }
+
   void find_hits() {
     hits_.clear();
     for (int i = -1; i <= kBrickSide; ++i)
       for (int j = -1; j <= kBrickSide; ++j) {
-        const std::uint64_t inside = signs_->column(i, j);
         for (int axis = 0; axis < 3; ++axis) {
           const bool within = axis == 2 || (axis == 0 ? i : j) < kBrickSide;
           const std::uint64_t crossed = within ? signs_->crossed(axis, i, j) & (axis == 2 ? kLower : kPoints) : 0;
           crossed_[axis][column(i, j)] = crossed;
           start_[axis][column(i, j)] = static_cast<std::uint32_t>(hits_.size());
           for (std::uint64_t rest = crossed; rest; rest &= rest - 1) {
-            const int b = std::countr_zero(rest);
-            const LatticeEdge edge{axis, origin_.x + i, origin_.y + j, origin_.z + b - Neighbourhood::kLayers,
-                                   !(inside >> b & 1)};
-            hits_.push_back(finder_(edge));
+            hits_.push_back(finder_(edge(axis, i, j, std::countr_zero(rest))));
           }
         }
       }
@@ -144,7 +146,7 @@ class BrickMesher {
       const CellEdge& shape = kEdges[entry.edge[n]];
       const std::uint32_t e = edge[entry.edge[n]];
       const bool rising = !(entry.code >> shape.low & 1);
-      corners_[e][rising ? (4 - shape.slot) & 3 : shape.slot] = local;
+      corners_[e][corner_at(shape.slot, rising)] = local;
       sides = static_cast<std::uint8_t>(sides | 1 << (2 * shape.axis + rising));
       sums.add(entry.edge[n], hits_[e]);
     }
@@ -179,21 +181,15 @@ class BrickMesher {
     for (int i = 0; i < kBrickSide; ++i)
       for (int j = 0; j < kBrickSide; ++j)
         for (int axis = 0; axis < 3; ++axis) {
-          const std::uint64_t crossed = crossed_[axis][column(i, j)], inside = signs_->column(i, j);
+          const std::uint64_t crossed = crossed_[axis][column(i, j)];
           std::uint32_t e = start_[axis][column(i, j)] +
-                            static_cast<std::uint32_t>(std::popcount(crossed & ~Neighbourhood::kOwn & kLower &
-                                                                     ((1U << Neighbourhood::kLayers) - 1)));
-          for (std::uint64_t rest = crossed & Neighbourhood::kOwn; rest; rest &= rest - 1, ++e, ++quad) {
-            const int b = std::countr_zero(rest);
-            split(quad, e,
-                  {axis, origin_.x + i, origin_.y + j, origin_.z + b - Neighbourhood::kLayers, !(inside >> b & 1)},
-                  tie);
-          }
+                            static_cast<std::uint32_t>(std::popcount(crossed & (Neighbourhood::kFirstOwn - 1)));
+          for (std::uint64_t rest = crossed & Neighbourhood::kOwn; rest; rest &= rest - 1, ++e, ++quad)
+            split(quad, e, edge(axis, i, j, std::countr_zero(rest)), tie);
         }
   }
 
   void split(std::size_t quad, std::uint32_t e, const LatticeEdge& edge, double tie) {
-    const Lattice& lattice = surface_.lattice;
     Quad shape{{}, edge.axis, edge.rising ? -1.0 : 1.0};
     std::array<std::int32_t, 4> numbers;
     int sides = 0;
@@ -202,9 +198,7 @@ class BrickMesher {
       shape.corner[n] = places_[corner], numbers[n] = numbers_[corner];
       sides |= sides_[corner];
     }
-    Vec3 hit{lattice.at(0, edge.i), lattice.at(1, edge.j), lattice.at(2, edge.k)};
-    (&hit.x)[edge.axis] += hits_[e].t() * lattice.pitch();
-    const int diagonal = choose_diagonal(shape, hit, tie);
+    const int diagonal = choose_diagonal(shape, surface_.place_of(edge, hits_[e]), tie);
     surface_.write(quad, numbers, diagonal);
     if (sides & kUneven && may_fold(shape, diagonal, sides))
       brick_->suspects.push_back({static_cast<std::uint32_t>(quad), edge});
@@ -244,7 +238,7 @@ class Linker {
       const Vec3i at = origin_ + from;
       const std::uint32_t quad = surface_.bricks.quad_of({shape.axis, at.x, at.y, at.z, rising});
       auto corners = surface_.corners(quad);
-      corners[rising ? (4 - shape.slot) & 3 : shape.slot] = ~number;
+      corners[corner_at(shape.slot, rising)] = ~number;
       surface_.write(quad, corners, surface_.diagonal(quad));
       linked_.push_back(quad);
     }

@@ -17,6 +17,14 @@ SignRows filled(std::uint32_t bits) {
 
 }  // namespace
 
+std::optional<bool> common_sign(const SignRows& rows) {
+  std::uint32_t any = 0, all = ~std::uint32_t{0};
+  for (const std::uint32_t row : rows) any |= row, all &= row;
+  if (any == 0) return false;
+  if (~all == 0) return true;
+  return std::nullopt;
+}
+
 const SignRows& Bricks::outside() {
   static const SignRows rows = filled(0);
   return rows;
@@ -38,12 +46,10 @@ Vec3i Bricks::place(std::size_t n) const {
 }
 
 void Bricks::set_signs(std::size_t n, const SignRows& rows) {
-  std::uint32_t any = 0, all = ~std::uint32_t{0};
-  for (const std::uint32_t row : rows) any |= row, all &= row;
   Brick& brick = bricks_[n];
-  if (any == 0 || ~all == 0) {
+  if (const std::optional<bool> sign = common_sign(rows)) {
     brick.own.reset();
-    brick.signs = any ? &inside() : &outside();
+    brick.signs = *sign ? &inside() : &outside();
     return;
   }
   if (!brick.own) brick.own = std::make_unique<SignRows>();

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "marching/lattice.hpp"
@@ -19,6 +20,8 @@ inline constexpr int kBrickColumns = kBrickSide * kBrickSide;
 
 /// Inside or outside for the lattice points of a brick: bit K of row 32 I + J.
 using SignRows = std::array<std::uint32_t, kBrickColumns>;
+/// The sign that all points of a brick have, if they have one.
+std::optional<bool> common_sign(const SignRows& rows);
 
 /// A crossed edge of the lattice, from (i, j, k) along `axis`.
 struct LatticeEdge {
@@ -30,6 +33,8 @@ struct LatticeEdge {
 struct QuadRef {
   std::uint32_t quad;
   LatticeEdge edge;
+  bool operator==(const QuadRef& o) const { return quad == o.quad; }
+  bool operator<(const QuadRef& o) const { return quad < o.quad; }
 };
 
 /// A vertex and the cell that it belongs to.
@@ -113,7 +118,6 @@ class Bricks {
   void set_active(std::size_t n, std::unique_ptr<ActiveBrick> brick) { bricks_[n].active = std::move(brick); }
   /// The active brick that owns a cell with both signs, or an edge that starts at such a point.
   ActiveBrick& owner(const Vec3i& cell) { return *bricks_[index_of(cell)].active; }
-  const ActiveBrick& owner(const Vec3i& cell) const { return const_cast<Bricks&>(*this).owner(cell); }
 
   /// Sign of a lattice point; of one beyond the lattice too.
   bool at(int i, int j, int k) const {

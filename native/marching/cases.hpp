@@ -38,6 +38,12 @@ inline constexpr std::array<CellEdge, 12> kEdges = [] {
   return edges;
 }();
 
+/// Which corner of an edge's quad the cell at a slot round the edge has, and which slot a corner. Quads are
+/// counter-clockwise seen from outside, so those of rising edges turn the other way.
+constexpr int corner_at(int slot, bool rising) {
+  return rising ? (4 - slot) & 3 : slot;
+}
+
 inline constexpr int kNoFace = 7;
 
 struct CellCase {

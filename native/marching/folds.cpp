@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geom/each_once.hpp"
 #include "geom/parallel.hpp"
 #include "marching/surface.hpp"
 
@@ -68,13 +69,7 @@ struct Folds {
   std::vector<CellVertex> ends;
   std::vector<std::size_t> seen;
 
-  void tidy() {
-    const auto each_once = [](auto& list) {
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-    };
-    each_once(ends), each_once(seen);
-  }
+  void tidy() { each_once(ends), each_once(seen); }
 };
 
 /// The corners of one of a quad's triangles.
@@ -204,14 +199,17 @@ void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region,
   }
 }
 
-void undo_unfold(Surface& surface, std::size_t brick) {
+std::vector<Vec3i> undo_unfold(Surface& surface, std::size_t brick) {
   ActiveBrick& active = *surface.bricks.active(brick);
+  std::vector<Vec3i> cells;
   for (const Pulled& p : active.pulled) {
+    cells.push_back(p.at.cell);
     surface.mesh.vertices[p.at.vertex] = p.before;
     surface.marks[p.at.vertex] &= static_cast<std::uint8_t>(~kPulled);
   }
   active.pulled.clear();
   for (Special& s : active.specials) s.fallback = s.safe;
+  return cells;
 }
 
 }  // namespace riffler::marching

@@ -4,22 +4,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "geom/each_once.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler::marching {
 
 namespace {
-
-/// Share of the whole call, from the share of one stage.
-Progress stage(const Progress& progress, double from, double to) {
-  if (!progress) return {};
-  return [&progress, from, to](double share) { return progress(from + share * (to - from)); };
-}
-
-void each_once(std::vector<std::size_t>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 std::vector<std::size_t> without(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b) {
   std::vector<std::size_t> out;
@@ -31,6 +21,7 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& a, const std::v
 
 MeshState::MeshState(const Volume& now, bool room, const Progress& progress)
     : volume(now), lattice(volume), bricks(lattice), surface(volume, lattice, bricks), reader_(lattice), room_(room) {
+  follow(now);
   build(progress);
 }
 
@@ -42,26 +33,21 @@ std::vector<std::size_t> MeshState::active_bricks() const {
 }
 
 void MeshState::build(const Progress& progress) {
-  reader_.follow(volume);
-  surface.hits = HitFinder(volume, lattice);
   vertices_ = {}, quads_ = {};
-  read_signs(reader_, bricks, stage(progress, 0, 0.2));
+  read_signs(reader_, bricks, part(progress, 0, 0.2));
   parallel_for(
       bricks.size(), 8,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) bricks.set_active(n, counted(bricks, n));
       },
-      stage(progress, 0.2, 0.3));
+      part(progress, 0.2, 0.3));
   const std::vector<std::size_t> all = active_bricks();
-  for (const std::size_t n : all) {
-    ActiveBrick& brick = *bricks.active(n);
-    brick.first_edge = quads_.take(brick.edges()), brick.first_vertex = vertices_.take(brick.vertices());
-  }
+  for (const std::size_t n : all) give_place(*bricks.active(n));
   give_room();
-  mesh_bricks(surface, all, stage(progress, 0.3, 0.9));
-  choose_candidates(surface, undecided(surface, all), {}, stage(progress, 0.9, 0.94));
+  mesh_bricks(surface, all, part(progress, 0.3, 0.9));
+  choose_candidates(surface, undecided(surface, all), {}, part(progress, 0.9, 0.94));
   Region everywhere;
-  unfold(surface, quads_to_look_at(all), everywhere, stage(progress, 0.94, 1));
+  unfold(surface, quads_to_look_at(all), everywhere, part(progress, 0.94, 1));
   report(progress, 1);
 }
 
@@ -138,46 +124,58 @@ Mesh MeshState::compact() const {
 std::vector<std::size_t> MeshState::update(const Volume& now) {
   if (!(now.frame() == volume.frame()))
     throw std::invalid_argument("a mesher follows volumes of one box, pitch and directions");
-  const std::vector<std::size_t> before = broken_ ? active_bricks() : std::vector<std::size_t>{};
+  std::vector<std::size_t> changed;
   if (broken_) {
+    changed = active_bricks();
     follow(now);
     build({});
-    broken_ = false;
-    std::vector<std::size_t> all = active_bricks();
-    all.insert(all.end(), before.begin(), before.end());
-    each_once(all);
-    return all;
-  }
-  const Changes changes = changes_between(volume, now, lattice, bricks);
-  broken_ = true;  // until all is well again
-  follow(now);
-  std::vector<std::size_t> changed;
-  if (!changes.empty()) {
-    read_signs_again(changes.sign_bricks);
-    std::vector<std::size_t> fresh;
-    for (const std::size_t n : changes.mesh_bricks) {
-      if (bricks.active(n)) changed.push_back(n);
-      place_again(n);
-      if (bricks.active(n)) changed.push_back(n), fresh.push_back(n);
-    }
-    give_room();
-    mesh_bricks(surface, fresh, {});
-    link_bricks(surface, without(around(changes.mesh_bricks, 0, 1), fresh));
-    // Vertices near these that had a choice, or that were pulled, begin again as well.
-    std::vector<Unsettled> unsettled;
-    for (const std::size_t n : around(changes.mesh_bricks, -1, 1))
-      if (!changes.meshes[n] && !settled(n)) unsettled.push_back(unsettle(n)), fresh.push_back(n);
-    each_once(fresh);
-    choose_again(fresh, unsettled);
-    std::vector<std::size_t> others = unfold_again(fresh);
-    for (const Unsettled& u : unsettled)
-      if (moved(u)) others.push_back(u.brick);
-    each_once(others);
-    others = around(others, 0, 1);
-    changed.insert(changed.end(), others.begin(), others.end());
-    each_once(changed);
+    const std::vector<std::size_t> all = active_bricks();
+    changed.insert(changed.end(), all.begin(), all.end());
+  } else {
+    const Changes changes = changes_between(volume, now, lattice, bricks);
+    broken_ = true;  // until all is well again
+    follow(now);
+    if (!changes.empty()) changed = mesh_again(changes);
   }
   broken_ = false;
+  each_once(changed);
+  return changed;
+}
+
+void MeshState::check_whole() const {
+  if (broken_)
+    throw std::runtime_error(
+        "the last update of this mesher failed half way; update it again before asking for its mesh");
+}
+
+std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
+  read_signs_again(changes.sign_bricks);
+  std::vector<std::size_t> changed, fresh;
+  for (const std::size_t n : changes.mesh_bricks) {
+    if (bricks.active(n)) changed.push_back(n);
+    place_again(n);
+    if (bricks.active(n)) changed.push_back(n), fresh.push_back(n);
+  }
+  give_room();
+  mesh_bricks(surface, fresh, {});
+  link_bricks(surface, without(around(changes.mesh_bricks, 0, 1), fresh));
+  // Vertices near these that had a choice, or that were pulled, begin again as well.
+  std::vector<Unsettled> unsettled;
+  for (const std::size_t n : around(changes.mesh_bricks, -1, 1)) {
+    if (changes.meshes[n]) continue;
+    Unsettled was = unsettle(n);
+    if (was.places.empty()) continue;
+    unsettled.push_back(std::move(was));
+    fresh.push_back(n);
+  }
+  each_once(fresh);
+  choose_again(fresh, unsettled);
+  std::vector<std::size_t> others = unfold_again(fresh);
+  for (const Unsettled& u : unsettled)
+    if (moved(u)) others.push_back(u.brick);
+  each_once(others);
+  others = around(others, 0, 1);
+  changed.insert(changed.end(), others.begin(), others.end());
   return changed;
 }
 
@@ -203,8 +201,11 @@ void MeshState::place_again(std::size_t n) {
     quads_.give_back(old->first_edge, old->edges());
   }
   bricks.set_active(n, counted(bricks, n));
-  if (ActiveBrick* const brick = bricks.active(n))
-    brick->first_edge = quads_.take(brick->edges()), brick->first_vertex = vertices_.take(brick->vertices());
+  if (ActiveBrick* const brick = bricks.active(n)) give_place(*brick);
+}
+
+void MeshState::give_place(ActiveBrick& brick) {
+  brick.first_edge = quads_.take(brick.edges()), brick.first_vertex = vertices_.take(brick.vertices());
 }
 
 /// Active bricks at these or at `from` … `to` of them along each axis; ascending.
@@ -221,21 +222,15 @@ std::vector<std::size_t> MeshState::around(const std::vector<std::size_t>& list,
   return out;
 }
 
-bool MeshState::settled(std::size_t n) const {
-  const ActiveBrick& brick = *bricks.active(n);
-  return brick.pulled.empty() && std::none_of(brick.specials.begin(), brick.specials.end(), [&](const Special& s) {
-           return surface.marks[s.at.vertex] & kCandidate;
-         });
-}
-
 /// Puts a brick's vertices to where they were before they could choose, and before they were pulled.
 MeshState::Unsettled MeshState::unsettle(std::size_t n) {
   Unsettled out{n, {}, {}};
   const auto note = [&](const CellVertex& v) { out.places.emplace_back(v.vertex, surface.mesh.vertices[v.vertex]); };
-  for (const Pulled& p : bricks.active(n)->pulled) note(p.at), out.pulled.push_back(p.at.cell);
-  for (const Special* s : undecided(surface, {n})) note(s->at);
-  undo_unfold(surface, n);
-  for (const Special* s : undecided(surface, {n})) surface.mesh.vertices[s->at.vertex] = s->safe;
+  const std::vector<Special*> open = undecided(surface, {n});
+  for (const Pulled& p : bricks.active(n)->pulled) note(p.at);
+  for (const Special* s : open) note(s->at);
+  out.pulled = undo_unfold(surface, n);
+  for (const Special* s : open) surface.mesh.vertices[s->at.vertex] = s->safe;
   return out;
 }
 
@@ -279,13 +274,10 @@ std::vector<std::size_t> MeshState::unfold_again(const std::vector<std::size_t>&
     for (const std::size_t n : bricks_in) region.bricks[n] = true;
     std::vector<Vec3i> cells;
     for (const std::size_t n : bricks_in) {
-      for (const Pulled& p : bricks.active(n)->pulled) cells.push_back(p.at.cell), surface.marks[p.at.vertex] |= kMoved;
-      undo_unfold(surface, n);
+      const std::vector<Vec3i> undone = undo_unfold(surface, n);
+      cells.insert(cells.end(), undone.begin(), undone.end());
     }
-    const std::vector<QuadRef> undone = quads_near(surface, cells, kMoved);
-    for (const QuadRef& ref : undone) surface.split(ref, surface.hits);
-    for (const QuadRef& ref : undone)
-      for (const std::int32_t v : surface.corners(ref.quad)) surface.marks[v] &= static_cast<std::uint8_t>(~kMoved);
+    for (const QuadRef& ref : quads_near(surface, cells, kAnyMark)) surface.split(ref, surface.hits);
     region.missing.clear();
     unfold(surface, quads_to_look_at(around(bricks_in, -1, 1)), region, {});
     if (region.missing.empty()) return without(bricks_in, fresh);

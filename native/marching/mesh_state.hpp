@@ -19,6 +19,8 @@ struct MeshState {
   /// `room`: for bricks that will grow; address space only, until it is used.
   MeshState(const Volume& volume, bool room, const Progress& progress);
   std::vector<std::size_t> update(const Volume& now);
+  /// Throws std::runtime_error after an update that threw: what is here then is no mesh.
+  void check_whole() const;
   std::vector<std::size_t> active_bricks() const;
   /// The mesh without the places between bricks, in the world frame.
   Mesh compact() const;
@@ -28,17 +30,19 @@ struct MeshState {
  private:
   void build(const Progress& progress);
   void follow(const Volume& now);
+  std::vector<std::size_t> mesh_again(const Changes& changes);
   void read_signs_again(const std::vector<std::size_t>& changed);
   void place_again(std::size_t brick);
+  void give_place(ActiveBrick& brick);
   void give_room();
   std::vector<std::size_t> around(const std::vector<std::size_t>& list, int from, int to) const;
-  /// A brick beside changed ones, where its vertices were and the cells of those that were pulled.
+  /// A brick beside changed ones, where its vertices were that had a choice or were pulled, and the cells of the
+  /// pulled.
   struct Unsettled {
     std::size_t brick;
     std::vector<std::pair<std::int32_t, Vec3>> places;
     std::vector<Vec3i> pulled;
   };
-  bool settled(std::size_t brick) const;
   Unsettled unsettle(std::size_t brick);
   bool moved(const Unsettled& was) const;
   void choose_again(const std::vector<std::size_t>& fresh, const std::vector<Unsettled>& unsettled);

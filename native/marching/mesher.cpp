@@ -1,11 +1,9 @@
 #include "marching/mesher.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
-#include "geom/parallel.hpp"
-#include "marching/changes.hpp"
+#include "geom/each_once.hpp"
 #include "marching/mesh_state.hpp"
 #include "marching/to_mesh.hpp"
 
@@ -13,12 +11,8 @@ namespace riffler {
 
 using namespace marching;
 
-struct Mesher::State : MeshState {
-  using MeshState::MeshState;
-};
-
 Mesher::Mesher(const Volume& volume, const Progress& progress)
-    : state_(std::make_unique<State>(volume, true, progress)) {}
+    : state_(std::make_unique<MeshState>(volume, true, progress)) {}
 Mesher::~Mesher() = default;
 Mesher::Mesher(Mesher&&) noexcept = default;
 Mesher& Mesher::operator=(Mesher&&) noexcept = default;
@@ -28,6 +22,7 @@ std::vector<std::size_t> Mesher::update(const Volume& volume) {
 }
 
 std::vector<std::size_t> Mesher::patches() const {
+  state_->check_whole();
   std::vector<std::size_t> out;
   for (const std::size_t n : state_->active_bricks())
     if (state_->bricks.active(n)->edges() > 0) out.push_back(n);
@@ -35,6 +30,7 @@ std::vector<std::size_t> Mesher::patches() const {
 }
 
 std::size_t Mesher::triangles() const {
+  state_->check_whole();
   std::size_t quads = 0;
   for (const std::size_t n : state_->active_bricks()) quads += state_->bricks.active(n)->edges();
   return 2 * quads;
@@ -44,6 +40,7 @@ MeshPatch Mesher::patch(std::size_t brick) const {
   if (brick >= state_->bricks.size())
     throw std::out_of_range("there is no brick " + std::to_string(brick) + ", only " +
                             std::to_string(state_->bricks.size()));
+  state_->check_whole();
   MeshPatch out;
   const ActiveBrick* const active = state_->bricks.active(brick);
   if (!active || active->edges() == 0) return out;
@@ -57,8 +54,7 @@ MeshPatch Mesher::patch(std::size_t brick) const {
   for (const Vec3i& t : out.triangles)
     for (const std::int32_t v : {t.x, t.y, t.z})
       if (v < first || v >= end) foreign.push_back(v);
-  std::sort(foreign.begin(), foreign.end());
-  foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
+  each_once(foreign);
   const auto local = [&](std::int32_t v) {
     if (v >= first && v < end) return v - first;
     const auto place = std::lower_bound(foreign.begin(), foreign.end(), v) - foreign.begin();
@@ -73,6 +69,7 @@ MeshPatch Mesher::patch(std::size_t brick) const {
 }
 
 Mesh Mesher::mesh() const {
+  state_->check_whole();
   return state_->compact();
 }
 

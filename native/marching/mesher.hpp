@@ -10,6 +10,10 @@
 
 namespace riffler {
 
+namespace marching {
+struct MeshState;
+}
+
 /// The part of a mesh in one brick of 32 × 32 × 32 cells: its own vertices, then those of its neighbours that its
 /// triangles touch. World frame. What two patches share has the same coordinates in both, bit for bit, and no other
 /// vertices of a mesh have.
@@ -31,7 +35,8 @@ class Mesher {
 
   /// Meshes what is not as it was, and returns the numbers of the bricks whose patches are others now, ascending. What
   /// it costs depends on what changed and on the number of tiles, not on the size of the mesh. Throws
-  /// std::invalid_argument for a volume of another frame.
+  /// std::invalid_argument for a volume of another frame. If it fails for another reason (memory, more than 2³¹
+  /// triangles) there is no mesh, and asking for it throws std::runtime_error, until an update succeeds.
   std::vector<std::size_t> update(const Volume& volume);
 
   /// Numbers of the bricks that have triangles, ascending.
@@ -43,8 +48,7 @@ class Mesher {
   std::size_t triangles() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<marching::MeshState> state_;
 };
 
 }  // namespace riffler

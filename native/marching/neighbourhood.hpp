@@ -13,8 +13,8 @@ namespace riffler::marching {
 class Neighbourhood {
  public:
   static constexpr int kLayers = 2, kSide = kBrickSide + 2 * kLayers;
-  /// Bits of the brick's own points.
-  static constexpr std::uint64_t kOwn = std::uint64_t{0xffffffff} << kLayers;
+  /// Bits of the brick's own points, and the first of them.
+  static constexpr std::uint64_t kOwn = std::uint64_t{0xffffffff} << kLayers, kFirstOwn = 1U << kLayers;
 
   Neighbourhood(const Bricks& bricks, const Vec3i& brick);
 

@@ -8,7 +8,6 @@ namespace riffler::marching {
 
 namespace {
 
-constexpr double kSmooth = 0.985;  // |mean normal|² above which the surface is taken for smooth
 constexpr double kDamping = 0.01;  // λ of the stepwise solution: directions that no plane fixes stay near the mean
 constexpr double kAnchor = 1e-2;   // weight of the distance to the mean in the box
 

@@ -8,6 +8,9 @@
 
 namespace riffler::marching {
 
+/// Squared length of the mean of unit normals above which a surface is taken for smooth.
+inline constexpr double kSmooth = 0.985;
+
 /// The hits of one cycle: points and unit normals.
 struct Tangents {
   int count = 0;

@@ -1,12 +1,15 @@
 #include <algorithm>
+#include <bit>
 
+#include "geom/each_once.hpp"
 #include "geom/parallel.hpp"
+#include "marching/cases.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {
 
 Vec3i corner_cell(const LatticeEdge& edge, int n) {
-  const int slot = edge.rising ? (4 - n) & 3 : n;
+  const int slot = corner_at(n, edge.rising);
   // The other way round from make_edge: cells below the edge have it on their upper sides.
   Vec3i cell{edge.i, edge.j, edge.k};
   if (slot == 3 || slot == 0) --cell[(edge.axis + 1) % 3];
@@ -22,10 +25,7 @@ Quad Surface::quad(const QuadRef& ref) const {
 }
 
 bool Surface::split(const QuadRef& ref, HitFinder& finder) {
-  const LatticeEdge& edge = ref.edge;
-  Vec3 hit{lattice.at(0, edge.i), lattice.at(1, edge.j), lattice.at(2, edge.k)};
-  hit[edge.axis] += finder(edge).t() * lattice.pitch();
-  const int diagonal = choose_diagonal(quad(ref), hit, diagonal_tie(lattice));
+  const int diagonal = choose_diagonal(quad(ref), place_of(ref.edge, finder(ref.edge)), diagonal_tie(lattice));
   write(ref.quad, corners(ref.quad), diagonal);
   return diagonal >= 0;
 }
@@ -61,20 +61,14 @@ void add_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std
 std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark) {
   constexpr std::size_t chunk = 1024;
   std::vector<std::vector<QuadRef>> parts((cells.size() + chunk - 1) / chunk);
-  const auto by_quad = [](const QuadRef& a, const QuadRef& b) { return a.quad < b.quad; };
-  const auto tidy = [&](std::vector<QuadRef>& quads) {
-    std::sort(quads.begin(), quads.end(), by_quad);
-    quads.erase(std::unique(quads.begin(), quads.end(), [](const auto& a, const auto& b) { return a.quad == b.quad; }),
-                quads.end());
-  };
   parallel_for(cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
     std::vector<QuadRef>& found = parts[begin / chunk];
     for (std::size_t n = begin; n < end; ++n) add_quads(surface, cells[n], mark, found);
-    tidy(found);
+    each_once(found);
   });
   std::vector<QuadRef> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  if (parts.size() > 1) tidy(all);
+  if (parts.size() > 1) each_once(all);
   return all;
 }
 

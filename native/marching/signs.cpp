@@ -88,10 +88,8 @@ void SignReader::read(Bricks& bricks, int a, int b, int c0, int c1) const {
   for (int c = c0; c <= c1; ++c) {
     SignRows& z = rows[static_cast<std::size_t>(c - c0)];
     if (y_) {
-      std::uint32_t any = 0, all = ~std::uint32_t{0};
-      for (const std::uint32_t row : z) any |= row, all &= row;
-      const bool uniform = any == 0 || ~all == 0;
-      if (!uniform || !agree({a, b, c}, any != 0)) {
+      const std::optional<bool> sign = common_sign(z);
+      if (!sign || !agree({a, b, c}, *sign)) {
         SignRows y;
         read_y({a, b, c}, y);
         vote({a, b, c}, y, z);

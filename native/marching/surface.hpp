@@ -15,7 +15,7 @@ namespace riffler::marching {
 
 enum VertexMark : std::uint8_t {
   kSpecial = 1,    // its brick has a Special for it
-  kCandidate = 2,  // has a candidate that is not decided yet
+  kCandidate = 2,  // may stand at another place than its safe one
   kSharp = 4,      // its hits' normals differ: triangles round it may fold
   kMoved = 8,      // moved in the last round of `unfold`
   kPulled = 16,    // its brick has a Pulled for it
@@ -54,6 +54,12 @@ struct Surface {
       a = {c[0], c[1], c[2]}, b = {c[0], c[2], c[3]};
   }
   Quad quad(const QuadRef& ref) const;
+  /// Where an edge's hit lies.
+  Vec3 place_of(const LatticeEdge& edge, const Hit& hit) const {
+    Vec3 place{lattice.at(0, edge.i), lattice.at(1, edge.j), lattice.at(2, edge.k)};
+    (&place.x)[edge.axis] += hit.t() * lattice.pitch();
+    return place;
+  }
   /// Writes the quad's two triangles along its best diagonal; false if none is valid.
   bool split(const QuadRef& ref, HitFinder& finder);
   /// The special of a vertex marked kSpecial.
@@ -95,9 +101,10 @@ struct Region {
 };
 
 /// Pulls vertices towards the middle of their cells where triangles fold onto each other. `quads` are those to be
-/// looked at first. Stops, with something to be done again, where `region.missing` is not empty.
+/// looked at first. If `region.missing` is not empty after it, all is to be done again with those bricks in the region.
 void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region, const Progress& progress);
-/// Puts a brick's vertices back to where they were before `unfold`.
-void undo_unfold(Surface& surface, std::size_t brick);
+/// Puts a brick's vertices back to where they were before `unfold`. Returns their cells: the quads round them are to be
+/// split again.
+std::vector<Vec3i> undo_unfold(Surface& surface, std::size_t brick);
 
 }  // namespace riffler::marching

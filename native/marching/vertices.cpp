@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "marching/qef.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {

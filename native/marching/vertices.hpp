@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "marching/bricks.hpp"
 #include "marching/cases.hpp"
 #include "marching/float_grid.hpp"
 #include "marching/hits.hpp"
+#include "marching/qef.hpp"
 
 namespace riffler::marching {
 
@@ -39,13 +39,13 @@ class CycleSums {
   /// hit of the entry's n-th edge.
   template <class HitAt>
   bool smooth(const CellCase& entry, int c, HitAt&& hit, Vec3& x) const {
-    constexpr double flat = 0.9999, smooth = 0.985;  // |mean normal|²
+    constexpr double flat = 0.9999;  // |mean normal|²
     const double count = entry.begin[c + 1] - entry.begin[c], most = count * count;
     const Vec3 normal(normal_[0], normal_[1], normal_[2]);
     const double agreement = glm::dot(normal, normal);
     // At most four edges an axis, places from −½ to 1½: only a weak one makes a sum so small.
     const bool weak = std::min({place_[0], place_[1], place_[2]}) < -Hit::kWeak / 2;
-    if (weak || !(agreement > smooth * most)) return false;
+    if (weak || !(agreement > kSmooth * most)) return false;
     const auto& from = entry.from[c];
     x = Vec3(place_[0] + static_cast<float>(from[0]), place_[1] + static_cast<float>(from[1]),
              place_[2] + static_cast<float>(from[2])) *
