@@ -71,18 +71,11 @@ Volume carved_block(double pitch, const char* directions) {
   Volume volume = Volume::block({{Vec3(0.0), bench::kBlock}, pitch, directions});
   for (Grid& grid : volume.grids())
     parallel_for(grid.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const int a = static_cast<int>(t) / grid.tiles_v(), b = static_cast<int>(t) % grid.tiles_v();
-        TileBuilder builder(grid.has_normals());
-        for (int r = 0; r < kTileRays; ++r) {
-          const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
-          if (i < grid.nu() && j < grid.nv())
-            cut_ray(to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0)), to_world(grid.axis(), Vec3(0, 0, 1)),
-                    {grid.box().lower.z, grid.box().upper.z}, builder);
-          builder.next_ray();
-        }
-        grid.set_tile(t, builder.finish());
-      }
+      for (std::size_t t = begin; t < end; ++t)
+        grid.fill_tile(t, [&](int i, int j, TileBuilder& builder) {
+          cut_ray(to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0)), to_world(grid.axis(), Vec3(0, 0, 1)),
+                  {grid.box().lower.z, grid.box().upper.z}, builder);
+        });
     });
   volume.touch();
   return volume;

@@ -40,6 +40,18 @@ class Grid {
   const Tile& tile(std::size_t index) const { return *tiles_[index]; }
   const std::shared_ptr<const Tile>& shared_tile(std::size_t index) const { return tiles_[index]; }
   void set_tile(std::size_t index, std::shared_ptr<const Tile> tile) { tiles_[index] = std::move(tile); }
+  /// Makes a tile anew: add(i, j, builder) adds the spans of ray (i, j), for each ray of the grid that the tile has.
+  template <class Add>
+  void fill_tile(std::size_t index, Add&& add) {
+    const int i0 = static_cast<int>(index) / tiles_v_ * kTileSide, j0 = static_cast<int>(index) % tiles_v_ * kTileSide;
+    TileBuilder builder(with_normals_);
+    for (int i = i0; i < i0 + kTileSide; ++i)
+      for (int j = j0; j < j0 + kTileSide; ++j) {
+        if (i < nu_ && j < nv_) add(i, j, builder);
+        builder.next_ray();
+      }
+    set_tile(index, builder.finish());
+  }
   /// The tile for writing: copied first where a snapshot, another volume or another place of this grid holds it too.
   /// The caller gives it a fresh revision. Different tiles may be written by different threads.
   Tile& writable(std::size_t index);

@@ -76,31 +76,22 @@ Volume::Volume(const Frame& frame) : frame_(frame), revision_(next_revision()) {
 
 namespace {
 
-/// A tile whose first `rows` × `columns` rays are full.
-std::shared_ptr<const Tile> full_tile(const Grid& grid, int rows, int columns) {
+void fill(Grid& grid) {
   const Span span{grid.box().lower.z, grid.box().upper.z};
   const Vec3 along = to_world(grid.axis(), Vec3(0, 0, 1));
   const SpanNormals normals{PackedNormal::pack(-along), PackedNormal::pack(along)};
-  TileBuilder builder(grid.has_normals());
-  for (int a = 0; a < rows; ++a)
-    for (int b = 0; b < kTileSide; ++b) {
-      if (b < columns) builder.add(span, normals);
-      builder.next_ray();
-    }
-  return builder.finish();
-}
-
-void fill(Grid& grid) {
   // Tiles of equal shape are one tile until they are cut: inner, last row, last column, corner.
   std::shared_ptr<const Tile> shared[2][2];
   for (int a = 0; a < grid.tiles_u(); ++a)
     for (int b = 0; b < grid.tiles_v(); ++b) {
-      const bool last_u = a == grid.tiles_u() - 1, last_v = b == grid.tiles_v() - 1;
-      auto& tile = shared[last_u][last_v];
-      if (!tile)
-        tile = full_tile(grid, last_u ? grid.nu() - a * kTileSide : kTileSide,
-                         last_v ? grid.nv() - b * kTileSide : kTileSide);
-      grid.set_tile(grid.tile_index(a, b), tile);
+      const std::size_t t = grid.tile_index(a, b);
+      auto& tile = shared[a == grid.tiles_u() - 1][b == grid.tiles_v() - 1];
+      if (tile) {
+        grid.set_tile(t, tile);
+        continue;
+      }
+      grid.fill_tile(t, [&](int, int, TileBuilder& builder) { builder.add(span, normals); });
+      tile = grid.shared_tile(t);
     }
 }
 

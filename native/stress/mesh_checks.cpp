@@ -115,17 +115,10 @@ Volume built(const Frame& frame, const std::vector<Piece>& pieces) {
     std::vector<std::vector<const Piece*>> rays(static_cast<std::size_t>(grid.nu()) * grid.nv());
     for (const Piece& p : pieces)
       if (p.grid == g) rays[static_cast<std::size_t>(p.i) * grid.nv() + p.j].push_back(&p);
-    for (int a = 0; a < grid.tiles_u(); ++a)
-      for (int b = 0; b < grid.tiles_v(); ++b) {
-        TileBuilder builder(grid.has_normals());
-        for (int r = 0; r < kTileRays; ++r) {
-          const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
-          if (i < grid.nu() && j < grid.nv())
-            for (const Piece* p : rays[static_cast<std::size_t>(i) * grid.nv() + j]) builder.add(p->span, p->normals);
-          builder.next_ray();
-        }
-        grid.set_tile(grid.tile_index(a, b), builder.finish());
-      }
+    for (std::size_t t = 0; t < grid.tile_count(); ++t)
+      grid.fill_tile(t, [&](int i, int j, TileBuilder& builder) {
+        for (const Piece* p : rays[static_cast<std::size_t>(i) * grid.nv() + j]) builder.add(p->span, p->normals);
+      });
   }
   volume.touch();
   return volume;

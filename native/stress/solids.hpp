@@ -110,26 +110,22 @@ inline Mat3 random_turn(Random& random) {
   return Mat3(a, b, glm::cross(a, b));
 }
 
+inline SpanNormals packed(const SolidSpan& c) {
+  return {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)};
+}
+
 /// Fills every grid of a volume: cuts(grid, i, j) gives each ray's, absolute along the ray; what sticks out of the box
 /// is cut off.
 inline void fill(Volume& volume, const std::function<SolidSpans(const Grid&, int, int)>& cuts) {
   for (Grid& grid : volume.grids())
-    for (int a = 0; a < grid.tiles_u(); ++a)
-      for (int b = 0; b < grid.tiles_v(); ++b) {
-        TileBuilder builder(grid.has_normals());
-        for (int r = 0; r < kTileRays; ++r) {
-          const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
-          if (i < grid.nu() && j < grid.nv())
-            for (const SolidSpan& c : cuts(grid, i, j)) {
-              // Within the box to the last bit, which a solid's own arithmetic may miss.
-              const Span span{std::max(c.near, grid.box().lower.z), std::min(c.far, grid.box().upper.z)};
-              if (span.near < span.far)
-                builder.add(span, {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)});
-            }
-          builder.next_ray();
+    for (std::size_t t = 0; t < grid.tile_count(); ++t)
+      grid.fill_tile(t, [&](int i, int j, TileBuilder& builder) {
+        for (const SolidSpan& c : cuts(grid, i, j)) {
+          // Within the box to the last bit, which a solid's own arithmetic may miss.
+          const Span span{std::max(c.near, grid.box().lower.z), std::min(c.far, grid.box().upper.z)};
+          if (span.near < span.far) builder.add(span, packed(c));
         }
-        grid.set_tile(grid.tile_index(a, b), builder.finish());
-      }
+      });
   volume.touch();
 }
 
@@ -148,19 +144,15 @@ inline Volume solid_volume(const Frame& frame, const Solid& solid) {
 inline void change_rays(Grid& grid, int i0, int i1, int j0, int j1, const std::function<SolidSpans()>& cuts) {
   for (int a = i0 / kTileSide; a <= i1 / kTileSide; ++a)
     for (int b = j0 / kTileSide; b <= j1 / kTileSide; ++b) {
-      const Tile& old = grid.tile(grid.tile_index(a, b));
-      TileBuilder builder(grid.has_normals());
-      for (int r = 0; r < kTileRays; ++r) {
-        const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
+      const auto old = grid.shared_tile(grid.tile_index(a, b));
+      grid.fill_tile(grid.tile_index(a, b), [&](int i, int j, TileBuilder& builder) {
+        const int r = Grid::ray_index(i, j);
         if (i >= i0 && i <= i1 && j >= j0 && j <= j1)
-          for (const SolidSpan& c : cuts())
-            builder.add({c.near, c.far}, {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)});
+          for (const SolidSpan& c : cuts()) builder.add({c.near, c.far}, packed(c));
         else
-          for (std::size_t n = 0; n < old.ray(r).size(); ++n)
-            builder.add(old.ray(r)[n], old.normals.empty() ? SpanNormals{} : old.ray_normals(r)[n]);
-        builder.next_ray();
-      }
-      grid.set_tile(grid.tile_index(a, b), builder.finish());
+          for (std::size_t n = 0; n < old->ray(r).size(); ++n)
+            builder.add(old->ray(r)[n], old->normals.empty() ? SpanNormals{} : old->ray_normals(r)[n]);
+      });
     }
 }
 

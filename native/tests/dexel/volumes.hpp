@@ -27,7 +27,7 @@ inline PackedNormal tag(std::mt19937& random) {
   return PackedNormal::pack({d(random), d(random), d(random)});
 }
 
-/// The cells of one ray as a tile builder's current ray.
+/// The cells of a ray as spans.
 inline void add_cells(TileBuilder& builder, const Cells& cells, std::mt19937& random) {
   for (int k = 0; k < kCells;) {
     if (!cells[k]) {
@@ -39,7 +39,6 @@ inline void add_cells(TileBuilder& builder, const Cells& cells, std::mt19937& ra
     builder.add({double(k), double(end)}, {tag(random), tag(random)});
     k = end;
   }
-  builder.next_ray();
 }
 
 inline Cells random_cells(std::mt19937& random) {
@@ -73,12 +72,7 @@ inline Volume random_volume(const Frame& frame, unsigned seed) {
           grid.set_tile(t, block.grids()[g].shared_tile(t));
           continue;
         }
-        TileBuilder builder(grid.has_normals());
-        for (int r = 0; r < kTileRays; ++r) {
-          const bool on = a * kTileSide + r / kTileSide < grid.nu() && b * kTileSide + r % kTileSide < grid.nv();
-          add_cells(builder, on ? random_cells(random) : Cells(), random);
-        }
-        grid.set_tile(t, builder.finish());
+        grid.fill_tile(t, [&](int, int, TileBuilder& builder) { add_cells(builder, random_cells(random), random); });
       }
   }
   volume.touch();
@@ -130,24 +124,18 @@ inline Volume wavy_volume(const Frame& frame) {
     for (int a = 0; a < grid.tiles_u(); ++a)
       for (int b = 0; b < grid.tiles_v(); ++b) {
         if ((a + b) % 3 == 0) continue;  // a third stays as it was
-        TileBuilder builder(grid.has_normals());
-        for (int r = 0; r < kTileRays; ++r) {
-          const int i = a * kTileSide + r / kTileSide, j = b * kTileSide + r % kTileSide;
-          if (i < grid.nu() && j < grid.nv()) {
-            const double x = (grid.u(i) - lower.x) / size.x, y = (grid.v(j) - lower.y) / size.y;
-            const double top = lower.z + size.z * (0.7 + 0.2 * std::sin(9 * x) * std::cos(7 * y));
-            const PackedNormal n = PackedNormal::pack({std::cos(9 * x), std::sin(7 * y), 1});
-            const double groove = lower.z + size.z * (0.3 + 0.1 * std::sin(11 * x * y));
-            if (std::sin(40 * x) > 0.8) {
-              builder.add({lower.z, groove}, {{}, n});
-              builder.add({groove + 0.05 * size.z, top}, {n, n});
-            } else {
-              builder.add({lower.z, top}, {{}, n});
-            }
+        grid.fill_tile(grid.tile_index(a, b), [&](int i, int j, TileBuilder& builder) {
+          const double x = (grid.u(i) - lower.x) / size.x, y = (grid.v(j) - lower.y) / size.y;
+          const double top = lower.z + size.z * (0.7 + 0.2 * std::sin(9 * x) * std::cos(7 * y));
+          const PackedNormal n = PackedNormal::pack({std::cos(9 * x), std::sin(7 * y), 1});
+          const double groove = lower.z + size.z * (0.3 + 0.1 * std::sin(11 * x * y));
+          if (std::sin(40 * x) > 0.8) {
+            builder.add({lower.z, groove}, {{}, n});
+            builder.add({groove + 0.05 * size.z, top}, {n, n});
+          } else {
+            builder.add({lower.z, top}, {{}, n});
           }
-          builder.next_ray();
-        }
-        grid.set_tile(grid.tile_index(a, b), builder.finish());
+        });
       }
   }
   volume.touch();

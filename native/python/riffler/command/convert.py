@@ -62,6 +62,9 @@ def defects(report: dict[str, float]) -> Rows:
         percent = 100 * report[name]
         return f"{percent:.3g} %" if percent >= 0.01 else "less than 0.01 %"
 
+    def listed(**words: str) -> str:
+        return ", ".join(count(name, word) for name, word in words.items() if report[name])
+
     rows: Rows = []
     if report["openings"]:
         text = f"{count('openings', 'opening')}, {count('open_edges', 'open edge')}"
@@ -70,23 +73,13 @@ def defects(report: dict[str, float]) -> Rows:
         rows.append(("open", text))
     elif report["open_edges"]:
         rows.append(("open", f"{count('open_edges', 'open edge')} that cancel: the volume is not in doubt"))
-    edges = [
-        count(name, f"{word} edge")
-        for name, word in (("nonmanifold_edges", "non-manifold"), ("inconsistent_edges", "inconsistently oriented"))
-        if report[name]
-    ]
-    if edges:
-        rows.append(("edges", ", ".join(edges)))
+    if edges := listed(nonmanifold_edges="non-manifold edge", inconsistent_edges="inconsistently oriented edge"):
+        rows.append(("edges", edges))
     if report["flipped_shells"]:
         shells = count("flipped_shells", "shell is", "shells are")
         rows.append(("inside out", f"{shells} inside out, {share('inside_out')} of the volume; taken as solid"))
     if report["overlap"]:
         rows.append(("overlap", f"{share('overlap')} of the volume is enclosed more than once; taken once"))
-    triangles = [
-        count(name, f"{word} triangle")
-        for name, word in (("duplicates", "doubled"), ("degenerate", "flat"))
-        if report[name]
-    ]
-    if triangles:
-        rows.append(("triangles", ", ".join(triangles)))
+    if triangles := listed(duplicates="doubled triangle", degenerate="flat triangle"):
+        rows.append(("triangles", triangles))
     return rows
