@@ -125,6 +125,7 @@ class StraightLanes {
     add_near(both(near, on_side(p, z)), s, way);
     M own = near;
     if (p.cut0) own = both(own, hn::Ge(z, set(p.z0)));
+    if (p.cut1) own = both(own, hn::Le(z, set(p.z1)));
     if (k + 1 < b_.count) own = both(own, hn::Le(z, set(b_.pieces[k + 1].z0)));
     if (none(own)) return near;
     M held = no_lane();

@@ -58,6 +58,9 @@ std::vector<Path> straight_paths() {
           {"axis level, along it", {{4, 9.3, 6}, flat}, {{9, 9.3, 6}, flat}},
           {"axis level, in its plane", {{4, 9.3, 6}, flat}, {{7, 9.3, 11}, flat}},
           {"spindle below", {{9, 9.3, 6}, down}, {{12, 9, 9}, down}},
+          // So near to the floor that of some cutters only the lowest piece is in the stock.
+          {"spindle below, shallow", {{6, 9.3, 4}, down}, {{15, 11, 5}, down}},
+          {"upside down, shallow", {{6, 9.3, 5}, -up}, {{15, 11, 5}, -up}},
           {"tiny", {{10, 9, 4}, tilted}, {{10 + 1e-12, 9, 4}, tilted}}};
 }
 
