@@ -131,7 +131,7 @@ class BrickMesher {
                                       cursor[7]};
       const bool own = i >= 0 && j >= 0 && k >= 0;
       const std::int32_t number = numbers.take(k, entry.cycles);
-      siblings_.clear();
+      siblings_.places.clear(), siblings_.left = false;
       for (int c = 0; c < entry.cycles; ++c) place_cycle(origin_ + Vec3i(i, j, k), entry, c, edge, number + c, own);
       for (int n = 0; n < 8; ++n) cursor[n] += static_cast<std::uint32_t>(crossed >> lower[n] & 1);
     }
@@ -163,7 +163,7 @@ class BrickMesher {
     surface_.marks[number] = placed.marks;
     if (placed.marks & kSpecial) {
       const Vec3& safe = placed.place;
-      brick_->specials.push_back({{number, cell}, safe, placed.other, placed.anchor, safe, safe});
+      brick_->specials.push_back({{number, cell}, safe, placed.other, placed.anchor, safe, safe, entry.cycles == 1});
     }
   }
 
@@ -171,7 +171,8 @@ class BrickMesher {
     Cycle cycle{cell, entry, c, {}};
     for (int n = entry.begin[c], m = 0; n < entry.begin[c + 1]; ++n, ++m) cycle.hits[m] = &hits_[edge[entry.edge[n]]];
     const Placed placed = place_vertex(surface_.grid, cycle, siblings_);
-    if (entry.cycles > 1) siblings_.push_back(placed.place);
+    if (entry.cycles > 1) siblings_.places.push_back(placed.place);
+    siblings_.left |= (placed.marks & kCandidate) != 0;
     return placed;
   }
 
@@ -218,7 +219,7 @@ class BrickMesher {
   std::vector<Vec3> places_;
   std::vector<std::int32_t> numbers_;
   std::vector<std::uint8_t> sides_;  // that the cycle's edges look to; kUneven where triangles may fold
-  std::vector<Vec3> siblings_;
+  Siblings siblings_;
 };
 
 /// Enters new numbers of vertices into the quads of a brick. Until all are entered they stand there negated: which

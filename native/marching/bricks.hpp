@@ -53,6 +53,7 @@ struct Special {
   Vec3 anchor;     // where it is pulled to when triangles fold, cell units
   Vec3 chosen;     // between the two
   Vec3 fallback;   // while triangles are unfolded: `safe`, pulled
+  bool alone;      // no other vertex belongs to its cell
 };
 
 /// A vertex that was moved to unfold triangles, and where it was before.

@@ -41,7 +41,10 @@ void advance(Surface& surface, const Surroundings& around, Special& special) {
   Vec3& place = surface.mesh.vertices[special.at.vertex];
   const Vec3 from = grid.to_cell(cell, special.safe), to = grid.to_cell(cell, special.candidate);
   for (double share = 1; share > 0; share -= 0.125) {
-    place = share == 1 ? special.candidate : grid.near(cell, from + share * (to - from));
+    const Vec3 part = from + share * (to - from);
+    // On the way out of a cell with other vertices it might stand on one of them.
+    if (!special.alone && FloatGrid::in_cell(part)) break;
+    place = share == 1 ? special.candidate : grid.near(cell, part);
     if (around.valid(surface, special.at.vertex)) break;
     place = special.safe;
   }

@@ -16,7 +16,9 @@ double round_to_class(double x, int rest, int modulus) {
 
 FloatGrid::FloatGrid(const Lattice& lattice)
     : step_(lattice.step()), steps_per_cell_(lattice.pitch() / lattice.step()) {
-  opening_ = std::clamp(0.5 - 6 / steps_per_cell_, 0.0, 0.49);
+  // Less than a cell, by more than `outside` rounds: vertices of cells three apart, whose places are of one class, then
+  // stay apart.
+  opening_ = std::clamp(1 - 8 / steps_per_cell_, 0.0, 0.95);
   for (int a = 0; a < 3; ++a) {
     range_[a].resize(lattice.cells(a));
     for (int n = 0; n < lattice.cells(a); ++n) {
@@ -35,15 +37,14 @@ Vec3 FloatGrid::outside(const Vec3i& cell, const Vec3& p, int opened) const {
     double q = r.base + p[a] * steps_per_cell_;
     if (!(opened >> (2 * a) & 1)) q = std::max(q, r.low + 4);
     if (!(opened >> (2 * a + 1) & 1)) q = std::min(q, r.high - 4);
-    const int odd = cell[a] & 1;
-    out[a] = a == 0 ? round_to_class(q, 2 * odd + 1, 4) : round_to_class(q, odd, 2);
+    const int rest = cell[a] % 3;
+    out[a] = a == 0 ? round_to_class(q, 2 * rest + 1, 6) : round_to_class(q, rest, 3);
   }
   return out * step_;
 }
 
 Vec3 FloatGrid::near(const Vec3i& cell, const Vec3& p) const {
-  const bool in = p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1 && p.z >= 0 && p.z <= 1;
-  return in ? inside(cell, p) : outside(cell, p, 63);
+  return in_cell(p) ? inside(cell, p) : outside(cell, p, 63);
 }
 
 Vec3 FloatGrid::to_cell(const Vec3i& cell, const Vec3& v) const {

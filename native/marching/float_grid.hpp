@@ -1,7 +1,8 @@
 // Places that vertices may take: multiples of the float32 step u, chosen so that no two vertices ever share one.
 //
-// A vertex inside its cell keeps off the cell's walls and has an even x; a vertex outside has an odd x and parities
-// that say which cell it came from. Vertices of different cells therefore differ, as do the floats written to a file.
+// A vertex inside its cell keeps off the cell's walls and has an even x; a vertex outside has an odd x and remainders
+// by 3 that say which cell it came from. Vertices of different cells therefore differ, as do the floats written to a
+// file.
 #pragma once
 
 #include <algorithm>
@@ -32,6 +33,8 @@ class FloatGrid {
   /// Nearest place for a vertex outside its cell: at least four steps off each wall whose bit in `opened` (2 axis +
   /// side) is not set, no limit at the others.
   Vec3 outside(const Vec3i& cell, const Vec3& p, int opened) const;
+  /// Whether `p`, in cell units, lies in the cell.
+  static bool in_cell(const Vec3& p) { return p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1 && p.z >= 0 && p.z <= 1; }
   /// `inside` or, for a point outside the cell, `outside` without walls.
   Vec3 near(const Vec3i& cell, const Vec3& p) const;
   /// The place nearest to `v`, which lies inside `cell`, that is not taken: a cell's vertices give way to each other in

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "geom/each_once.hpp"
 #include "geom/parallel.hpp"
@@ -11,7 +12,6 @@ namespace riffler::marching {
 namespace {
 
 constexpr double kFolded = -0.999985;  // cosine between the normals of two triangles at an edge; 0.3° off a fold
-constexpr int kRounds = 16;            // the pull reaches the anchors after six
 constexpr int kPatient = 3;            // rounds in which only the ends of a fold are pulled
 
 Vec3 normal(const Mesh& mesh, const Vec3i& t) {
@@ -123,14 +123,14 @@ std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vecto
   return std::move(all.ends);
 }
 
-/// Moves a vertex, and remembers where it was first.
-void move(Surface& surface, const CellVertex& v, const Vec3& place, Region& region) {
+/// Moves a vertex, and remembers where it was first. False if it was there already.
+bool move(Surface& surface, const CellVertex& v, const Vec3& place, Region& region) {
   const std::size_t brick = surface.bricks.index_of(v.cell);
   if (!region.has(brick)) region.missing.push_back(brick);
   Vec3& now = surface.mesh.vertices[v.vertex];
   if (!(surface.marks[v.vertex] & kPulled)) surface.bricks.active(brick)->pulled.push_back({v, now});
   surface.marks[v.vertex] |= kPulled;
-  now = place;
+  return std::exchange(now, place) != place;
 }
 
 /// Siblings have neighbouring numbers, and only siblings can coincide.
@@ -142,22 +142,24 @@ bool coincides(const Mesh& mesh, std::int32_t vertex, const Vec3& place) {
 }
 
 /// Moves a vertex a share of the way to its anchor; one that stands at its candidate goes towards its safe place first.
-void pull(Surface& surface, const CellVertex& v, double share, Region& region) {
+/// False if it stays where it is.
+bool pull(Surface& surface, const CellVertex& v, double share, Region& region) {
   const Vec3 place = surface.mesh.vertices[v.vertex];
   const FloatGrid& grid = surface.grid;
   Special* const special = surface.marks[v.vertex] & kSpecial ? &surface.special(v) : nullptr;
   if (special && place != special->fallback) {
     const Vec3 from = grid.to_cell(v.cell, place), to = grid.to_cell(v.cell, special->fallback);
-    const bool part = share < 0.5;  // three tries on the way
-    move(surface, v, part ? grid.near(v.cell, from + share * (to - from)) : special->fallback, region);
-    return;
+    const Vec3 part = from + share * (to - from);
+    // Three tries on the way, of which none may be where another vertex of the cell is.
+    const bool whole = share >= 0.5 || (!special->alone && FloatGrid::in_cell(part));
+    return move(surface, v, whole ? special->fallback : grid.near(v.cell, part), region);
   }
   const Vec3 anchor = special ? special->anchor : Vec3(0.5);
   const Vec3 from = glm::clamp(grid.to_cell(v.cell, place), 0.0, 1.0);
   const Vec3 to = grid.free_place(v.cell, grid.inside(v.cell, from + share * (anchor - from)),
                                   [&](const Vec3& p) { return coincides(surface.mesh, v.vertex, p); });
-  move(surface, v, to, region);
   if (special) special->fallback = to;
+  return move(surface, v, to, region);
 }
 
 /// Splits the quads round moved vertices anew. Where a neighbour's candidate no longer leaves a diagonal, it goes back
@@ -186,10 +188,14 @@ void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<V
 
 void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region, const Progress& progress) {
   std::vector<CellVertex> moved = folded_vertices(surface, quads, false, region);
+  // The whole way is reached after six rounds. From then on each vertex moves twice at most, so the rounds come to an
+  // end; there are many where a fold runs along a sheet whose sides coincide.
   double share = 0.04;
-  for (int round = 0; round < kRounds && !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
-    report(progress, static_cast<double>(round) / kRounds);
-    for (const CellVertex& v : moved) pull(surface, v, share, region);
+  for (int round = 0; !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
+    report(progress, round / (round + 8.0));
+    bool any = share < 1;
+    for (const CellVertex& v : moved) any |= pull(surface, v, share, region);
+    if (!any) break;
     std::vector<Vec3i> cells;
     split_again(surface, moved, cells, region);
     std::vector<CellVertex> next =

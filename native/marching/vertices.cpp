@@ -10,6 +10,8 @@ namespace riffler::marching {
 namespace {
 
 constexpr double kBroken = 0.05;      // residual, cells, above which hits contradict each other: stay in the cell
+constexpr double kExact = 0.005;      // residual, cells, up to which vertices may go as far as the grid lets them
+constexpr double kBent = 0.49;        // cells, how far they may leave their cell where it is more
 constexpr double kOnWall = 1e-6;      // cells; less than this outside is on the wall
 constexpr double kClearlyOut = 1e-3;  // cells; a bound violated by more …
 constexpr double kInset = 0.02;       // … is moved inwards by this, which keeps quads from folding at the wall
@@ -40,7 +42,7 @@ Vec3 fit_in(const Qef& qef, const Vec3& x, Box3 box, double inset) {
 
 /// A cell's place for `p`: inside, or outside where `opened` lets it. Inside it is safe whatever the neighbours do.
 Vec3 place(const FloatGrid& grid, const Vec3i& cell, const Vec3& p, int opened) {
-  return contains({Vec3(0.0), Vec3(1.0)}, p) ? grid.inside(cell, p) : grid.outside(cell, p, opened);
+  return FloatGrid::in_cell(p) ? grid.inside(cell, p) : grid.outside(cell, p, opened);
 }
 
 /// Mean of the edges' middles: it depends on signs only, and siblings' differ.
@@ -79,28 +81,30 @@ Vec3 apart_from_siblings(const FloatGrid& grid, const Vec3i& cell, const Vec3& v
 
 }  // namespace
 
-Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const std::vector<Vec3>& siblings) {
+Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const Siblings& siblings) {
   bool weak = false;
   const Tangents hits = gather(cycle, weak);
   const Qef qef(hits);
   const Vec3 x = qef.solve();
   const bool alone = cycle.entry.cycles == 1;
-  if (alone && !weak && contains({Vec3(0.0), Vec3(1.0)}, x))
+  if (alone && !weak && FloatGrid::in_cell(x))
     return {grid.inside(cycle.cell, x), static_cast<std::uint8_t>(qef.sharp() ? kSharp : 0), {}, {}};
-  const bool stay = !alone || weak || qef.residual(x) > kBroken;
-  const double opening = stay ? 0 : grid.opening();
+  const double residual = qef.residual(x);
+  const bool stay = siblings.left || weak || residual > kBroken;
+  const double opening = stay ? 0 : residual > kExact ? std::min(kBent, grid.opening()) : grid.opening();
   // Beyond a face that no edge of the cycle lies on, the vertex still keeps to its quadrant round every edge.
-  const int opened = opening > 0 ? ~cycle.entry.faces[cycle.number] & 63 : 0;
+  const int opened = opening > 0 && alone ? ~cycle.entry.faces[cycle.number] & 63 : 0;
   Placed out;
   out.place = place(grid, cycle.cell, fit_in(qef, x, opened_box(opening, opened), kInset), opened);
   out.marks = kSpecial;
+  if (!alone) out.place = apart_from_siblings(grid, cycle.cell, out.place, siblings.places);
   out.anchor = anchor_of(cycle);
   out.other = out.place;
   if (opening > 0 && !contains(opened_box(opening, opened), x)) {
-    out.other = place(grid, cycle.cell, fit_in(qef, x, opened_box(opening, 63), 0), 63);
+    const Vec3 fit = fit_in(qef, x, opened_box(opening, 63), 0);
+    if (alone || !FloatGrid::in_cell(fit)) out.other = place(grid, cycle.cell, fit, 63);
     if (out.other != out.place) out.marks = kSpecial | kCandidate;
   }
-  if (!alone) out.other = out.place = apart_from_siblings(grid, cycle.cell, out.place, siblings);
   return out;
 }
 

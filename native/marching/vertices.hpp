@@ -70,8 +70,13 @@ class CycleSums {
   float place_[3] = {}, normal_[3] = {};
 };
 
-/// The vertex of a cycle that is not `smooth` and alone in its cell. `siblings` are the places of the cell's vertices
-/// so far: no two share one.
-Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const std::vector<Vec3>& siblings);
+/// The vertices of a cell so far. No two share a place, so one of them at most may leave the cell.
+struct Siblings {
+  std::vector<Vec3> places;
+  bool left = false;  // one has a candidate
+};
+
+/// The vertex of a cycle that is not `smooth` and alone in its cell.
+Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const Siblings& siblings);
 
 }  // namespace riffler::marching

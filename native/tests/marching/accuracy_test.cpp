@@ -73,12 +73,12 @@ TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
   RecordProperty("corners_max", std::to_string(corners.worst));
   RecordProperty("vertices_max", std::to_string(vertices.worst));
   RecordProperty("vertices_mean", std::to_string(vertices.mean()));
-  EXPECT_LT(edges.mean(), 5e-5);
-  EXPECT_LT(edges.worst, 0.025);
-  EXPECT_LT(vertices.worst, 0.025);
-  // A corner may lie in a cell whose points are all on one side, beyond the reach of the cells around it.
-  EXPECT_LT(corners.mean(), 1e-3);
-  EXPECT_LT(corners.worst, 0.08);
+  EXPECT_LT(edges.mean(), 2e-5);
+  EXPECT_LT(edges.worst, 0.015);
+  EXPECT_LT(vertices.worst, 0.015);
+  // A corner may lie in a cell that no face crosses: its vertex is a neighbour's, which has to leave its own.
+  EXPECT_LT(corners.mean(), 5e-5);
+  EXPECT_LT(corners.worst, 0.02);
 }
 
 }  // namespace
