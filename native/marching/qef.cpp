@@ -2,14 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace riffler::marching {
 
 namespace {
 
+constexpr double kGroup = 0.35;
+constexpr double kRound = 0.9;     // share of the way to the tangent planes where it bends tightly
 constexpr double kDamping = 0.01;  // λ of the stepwise solution: directions that no plane fixes stay near the mean
 constexpr double kAnchor = 1e-2;   // weight of the distance to the mean in the box
+
+/// Whether unit normals fall into two or three groups: within them no normal is further from the next than kGroup of
+/// what lies between the groups. The steps of the shortest tree through all (Prim's) tell.
+bool in_groups(const Tangents& hits) {
+  std::array<double, 12> away{}, steps{};  // of each normal from the tree; of the tree
+  std::array<bool, 12> in{};
+  away.fill(std::numeric_limits<double>::infinity());
+  for (int last = 0, count = 0; count + 1 < hits.count; ++count) {
+    in[last] = true;
+    int next = -1;
+    for (int i = 0; i < hits.count; ++i) {
+      if (in[i]) continue;
+      away[i] = std::min(away[i], glm::length(hits.normal[i] - hits.normal[last]));
+      if (next < 0 || away[i] < away[next]) next = i;
+    }
+    steps[count] = away[next], last = next;
+  }
+  std::sort(steps.begin(), steps.begin() + hits.count - 1, std::greater<>());
+  return steps[1] <= kGroup * steps[0] || steps[2] <= kGroup * steps[1];
+}
 
 /// Solves the rows and columns of a x = r that `free` names, for a symmetric positive definite `a`; x holds the others.
 void solve_free(const Mat3& a, const Vec3& r, int free, Vec3& x) {
@@ -47,22 +70,22 @@ Qef::Qef(const Tangents& tangents) : hits_(tangents) {
   }
   const double share = 1.0 / hits_.count;
   mean_ *= share, mean_normal_ *= share, a_ *= share, b_ *= share;
-}
-
-bool Qef::sharp() const {
-  return glm::dot(mean_normal_, mean_normal_) <= kSmooth;
+  const bool smooth = glm::dot(mean_normal_, mean_normal_) > kSmooth;
+  bend_ = smooth ? Bend::Smooth : in_groups(hits_) ? Bend::Sharp : Bend::Round;
 }
 
 Vec3 Qef::solve() const {
-  if (!sharp()) {
-    // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel.
+  if (bend_ != Bend::Sharp) {
+    // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel. Where the
+    // radius is not much more than a cell, triangles cut off more than vertices stick out.
+    const double part = bend_ == Bend::Round ? kRound : 0.5;
     const Vec3 g = glm::normalize(mean_normal_);
     double distance = 0, slope = 0;
     for (int i = 0; i < hits_.count; ++i) {
       distance += glm::dot(hits_.normal[i], hits_.point[i] - mean_);
       slope += glm::dot(hits_.normal[i], g);
     }
-    return mean_ + g * (0.5 * distance / slope);
+    return mean_ + g * (part * distance / slope);
   }
   const Mat3 inverse = glm::inverse(a_ + Mat3(kDamping));
   Vec3 x = mean_;

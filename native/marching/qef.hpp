@@ -17,14 +17,20 @@ struct Tangents {
   std::array<Vec3, 12> point, normal;
 };
 
+/// How the surface bends in a cell, as its hits' normals tell.
+enum class Bend {
+  Smooth,  // hardly: they nearly agree
+  Round,   // more tightly than cells can follow: they differ by all sorts of angles
+  Sharp,   // at an edge or a corner: they fall into two or three groups
+};
+
 /// Squared distances to the tangent planes: E(x) = xᵀAx − 2bᵀx + const, averaged over the hits.
 class Qef {
  public:
   explicit Qef(const Tangents& tangents);
 
-  /// True where the hits' normals differ too much for a smooth surface.
-  bool sharp() const;
-  /// The fit: half way to the tangent planes where the hits' normals agree, the least squares point elsewhere.
+  Bend bend() const { return bend_; }
+  /// The fit: the least squares point of an edge or a corner; elsewhere out of the hits' mean along its normal.
   Vec3 solve() const;
   /// The least squares point in a box.
   Vec3 solve_in(const Box3& box) const;
@@ -35,6 +41,7 @@ class Qef {
   const Tangents& hits_;
   Vec3 mean_{0, 0, 0}, mean_normal_{0, 0, 0}, b_{0, 0, 0};
   Mat3 a_{0.0};
+  Bend bend_;
 };
 
 }  // namespace riffler::marching

@@ -88,7 +88,7 @@ Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const Siblings& s
   const Vec3 x = qef.solve();
   const bool alone = cycle.entry.cycles == 1;
   if (alone && !weak && FloatGrid::in_cell(x))
-    return {grid.inside(cycle.cell, x), static_cast<std::uint8_t>(qef.sharp() ? kSharp : 0), {}, {}};
+    return {grid.inside(cycle.cell, x), static_cast<std::uint8_t>(qef.bend() == Bend::Smooth ? 0 : kSharp), {}, {}};
   const double residual = qef.residual(x);
   const bool stay = siblings.left || weak || residual > kBroken;
   const double opening = stay ? 0 : residual > kExact ? std::min(kBent, grid.opening()) : grid.opening();
