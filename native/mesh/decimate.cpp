@@ -130,7 +130,8 @@ class Decimation {
   void run() {
     for (int frame = 0; left_ > target_ + target_ / 32 && left_ > 2 * kPatchVertices; ++frame) {
       const std::size_t before = left_;
-      if (!run_patches(frame) || left_ > before - before / 32) break;
+      run_patches(frame);
+      if (left_ > before - before / 32) break;
     }
     for (std::size_t before = 2 * left_; left_ > target_ && left_ < before - before / 100;) {
       before = left_;
@@ -139,8 +140,8 @@ class Decimation {
   }
 
  private:
-  /// One partition, until about half of the triangles are gone; false if there is nothing left to do.
-  bool run_patches(int frame) {
+  /// One partition, until about half of the triangles are gone or there is nothing left to do.
+  void run_patches(int frame) {
     const Patches patches(surface_.half_edges.mesh, frame, kPatchVertices);
     std::vector<std::unique_ptr<Worker>> workers(patches.size());
     for_each(patches.size(), [&](std::size_t i) {
@@ -152,13 +153,12 @@ class Decimation {
     while (left_ > target_ + target_ / 32 && left_ > enough) {
       int first = EdgeQueue::kLast + 1;
       for (const auto& worker : workers) first = std::min(first, worker->queue().first());
-      if (first > EdgeQueue::kLast) return true;
+      if (first > EdgeQueue::kLast) return;
       if (first > last) last = first + kStep;
       const std::size_t quota = 2 * ((left_ - target_) / patches.size() / 4 + 1);
       for_each(patches.size(), [&](std::size_t i) { workers[i]->run(last, quota, &patches); });
       for (const auto& worker : workers) left_ -= worker->lost();
     }
-    return true;
   }
 
   void run_whole() {
