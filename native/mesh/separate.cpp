@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "geom/float32.hpp"
 #include "mesh/weld.hpp"
@@ -20,10 +23,29 @@ double stepped(double x, int steps) {
   return static_cast<double>(value);
 }
 
-/// Whether all triangles at v still face where they faced if v is at p.
-bool keeps_sides(const Mesh& mesh, int v, const Vec3& p) {
-  for (const Vec3i& t : mesh.triangles) {
-    if (t.x != v && t.y != v && t.z != v) continue;
+/// The triangles at each vertex.
+class Fans {
+ public:
+  explicit Fans(const Mesh& mesh) : begin_(mesh.vertices.size() + 1, 0), triangles_(3 * mesh.triangles.size()) {
+    for (const Vec3i& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) ++begin_[t[k]];
+    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    for (std::size_t i = triangles_.size(); i-- > 0;)
+      triangles_[--begin_[mesh.triangles[i / 3][static_cast<int>(i % 3)]]] = static_cast<int>(i / 3);
+  }
+  std::span<const int> of(std::size_t v) const {
+    return std::span(triangles_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
+  }
+
+ private:
+  std::vector<std::size_t> begin_;
+  std::vector<int> triangles_;
+};
+
+/// Whether all triangles of the fan of v still face where they faced if v is at p.
+bool keeps_sides(const Mesh& mesh, std::span<const int> fan, int v, const Vec3& p) {
+  for (const int triangle : fan) {
+    const Vec3i& t = mesh.triangles[triangle];
     std::array<Vec3, 3> old, now;
     for (int k = 0; k < 3; ++k) old[k] = mesh.vertices[t[k]], now[k] = to_float32(t[k] == v ? p : old[k]);
     if (!(glm::dot(glm::cross(old[1] - old[0], old[2] - old[0]), glm::cross(now[1] - now[0], now[2] - now[0])) > 0))
@@ -46,8 +68,10 @@ void separate(Mesh& mesh, const std::vector<char>& movable) {
   };
   for (std::size_t v = 0; v < movable.size(); ++v)
     if (!movable[v]) is_free(mesh.vertices[v]);
+  std::optional<Fans> fans;  // hardly ever needed
   for (std::size_t v = 0; v < movable.size(); ++v) {
     if (!movable[v] || is_free(mesh.vertices[v])) continue;
+    if (!fans) fans.emplace(mesh);
     const auto at_other_place = [&] {
       const Vec3 home = mesh.vertices[v];
       for (int reach = 1; reach <= kSteps; ++reach)
@@ -55,7 +79,7 @@ void separate(Mesh& mesh, const std::vector<char>& movable) {
           for (int y = -reach; y <= reach; ++y)
             for (int z = -reach; z <= reach; ++z) {
               const Vec3 p(stepped(home.x, x), stepped(home.y, y), stepped(home.z, z));
-              if (!keeps_sides(mesh, static_cast<int>(v), p) || !is_free(p)) continue;
+              if (!keeps_sides(mesh, fans->of(v), static_cast<int>(v), p) || !is_free(p)) continue;
               mesh.vertices[v] = p;
               return true;
             }
