@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/fold.hpp"
+
 namespace riffler {
 
 namespace {
@@ -13,19 +15,11 @@ using OpenMesh::VertexHandle;
 
 // A new triangle's normal may differ from that of the one it takes the place of by 78°.
 constexpr double kTurn = 0.2;
-// Neighbours may not come nearer to lying on each other than 154°; -0.99999 counts as a fold.
-constexpr double kFold = -0.9;
 // Twice the area over the square of the longest edge.
 constexpr double kThin = 1e-4;
 
 double square(const Vec3& v) {
   return glm::dot(v, v);
-}
-
-/// Whether the angle between a and b has a cosine below `limit`, which is not positive.
-bool opposed(const Vec3& a, const Vec3& b) {
-  const double dot = glm::dot(a, b);
-  return dot < 0 && dot * dot > kFold * kFold * square(a) * square(b);
 }
 
 bool turned(const Vec3& was, const Vec3& is) {

@@ -9,6 +9,7 @@
 #include "geom/float32.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/fold.hpp"
 #include "mesh/weld.hpp"
 
 namespace riffler {
@@ -146,10 +147,6 @@ void restore_volume(const Mesh& mesh, Vertices& vertices, double limit) {
 Vec3 cross_in_float(const Vertices& vertices, const Vec3i& t) {
   const Vec3 a = to_float32(vertices[t.x]), b = to_float32(vertices[t.y]), c = to_float32(vertices[t.z]);
   return glm::cross(b - a, c - a);
-}
-
-bool opposed(const Vec3& a, const Vec3& b) {
-  return glm::dot(a, b) < -0.9 * glm::length(a) * glm::length(b);
 }
 
 /// Puts vertices back until nothing is wrong; at the latest everything is back where it was.
