@@ -14,6 +14,7 @@
 #include "mesh/edge_costs.hpp"
 #include "mesh/edge_queue.hpp"
 #include "mesh/half_edge.hpp"
+#include "mesh/map_check.hpp"
 #include "mesh/patches.hpp"
 #include "mesh/separate.hpp"
 #include "mesh/tolerance_check.hpp"
@@ -210,15 +211,25 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   const bool may_move = !limits.tolerance || tolerance > 16 * reach;
   if (may_move) tolerance -= reach;
 
-  HalfEdges half_edges(local);
-  report(progress, 0.1);
-  EdgeCosts costs(half_edges, centre, may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity());
-  report(progress, 0.2);
-  std::optional<Traces> traces;
-  if (limits.tolerance) traces.emplace(half_edges);
-  const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
-  Decimation(surface, target, progress).run();
-  return half_edges.to_mesh(mesh, local, centre);
+  std::vector<int> kept;  // vertices that stay because the tolerance could not be proven otherwise
+  for (;;) {
+    HalfEdges half_edges(local);
+    for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
+    report(progress, 0.1);
+    EdgeCosts costs(half_edges, centre, may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity());
+    report(progress, 0.2);
+    std::optional<Traces> traces;
+    if (limits.tolerance) traces.emplace(half_edges);
+    const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
+    Decimation(surface, target, progress).run();
+    const std::vector<int> far = traces ? MapCheck(*traces, tolerance).far_vertices() : std::vector<int>{};
+    if (far.empty()) return half_edges.to_mesh(mesh, local, centre);
+    const std::size_t before = kept.size();
+    kept.insert(kept.end(), far.begin(), far.end());
+    std::sort(kept.begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    if (kept.size() == before) return mesh;
+  }
 }
 
 }  // namespace riffler
