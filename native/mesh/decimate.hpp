@@ -24,7 +24,7 @@ struct DecimateLimits {
 /// where no further collapse keeps to all this. Triangles that name a vertex twice are dropped. The bytes are the same
 /// for any number of threads.
 ///
-/// The tolerance bounds the distance of every point of either surface from the other (see Traces).
+/// The tolerance bounds the distance of every point of either surface from the other (see MapCheck).
 ///
 /// std::invalid_argument where `validate` throws, without a limit, or for a tolerance that is negative or not finite.
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress = {});

@@ -18,8 +18,8 @@ namespace riffler {
 ///  - every old vertex within a region: it must be near the new triangle;
 ///  - every old border vertex: it must be near the new border edge in whose stead it was.
 /// A region consists of pieces of old triangles whose corners are such points, and points near a triangle are a convex
-/// set: so the whole region is near its triangle. The other way round, moving each of those points to its partner maps
-/// the region onto the triangle without tearing it, its border onto the border: no point of the triangle is left out.
+/// set: so the whole region is near its triangle, as long as no two traces cross. On rough surfaces they may, for their
+/// planes lean differently: MapCheck has the last word.
 ///
 /// In planes old vertices would only pile up: where all of a fan is flat they are dropped, and the new triangles
 /// remember by how much they were off.

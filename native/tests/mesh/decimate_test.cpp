@@ -19,12 +19,12 @@ namespace {
 
 /// Largest distance of points of `from`, dense on each of its triangles, from `to`, by a search that shares no code
 /// with what is tested.
-double one_way(const Mesh& from, const Mesh& to, double step = 0.15) {
+double one_way(const Mesh& from, const Mesh& to) {
   std::vector<Vec3> points;
   for (const Vec3i& t : from.triangles) {
     const Vec3 &a = from.vertices[t.x], &b = from.vertices[t.y], &c = from.vertices[t.z];
     const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
-    const int n = std::clamp(static_cast<int>(longest / step), 3, 40);
+    const int n = std::clamp(static_cast<int>(longest / 0.15) + 1, 3, 40);
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j)
         points.push_back((a * (n - i - j * 1.0) + b * (i * 1.0) + c * (j * 1.0)) / (n * 1.0));
@@ -111,14 +111,17 @@ Mesh bumpy(unsigned seed) {
 }
 
 TEST(Decimate, RandomBumpsStayWithinTheTolerance) {
-  // 29: the checks of the single collapses alone let 1.08 times the tolerance pass.
-  for (const unsigned seed : {29U, 1U, 2U, 3U}) {
-    const Mesh mesh = bumpy(seed);
-    for (const double tolerance : {0.05, 0.3}) {
-      const Mesh result = decimate(mesh, {{}, tolerance});
-      EXPECT_LE(one_way(mesh, result, 0.1), tolerance) << "seed " << seed;
-      EXPECT_LE(one_way(result, mesh, 0.1), tolerance) << "seed " << seed;
-    }
+  struct Case {
+    unsigned seed;
+    double tolerance;
+  };
+  // What the checks of the single collapses let pass by themselves: 1.06 times the tolerance from old to new for the
+  // first, 1.02 times from new to old for the second.
+  for (const Case& c : {Case{6, 0.1}, Case{66, 0.3}, Case{1, 0.05}, Case{2, 0.3}}) {
+    const Mesh mesh = bumpy(c.seed), result = decimate(mesh, {{}, c.tolerance});
+    EXPECT_LT(result.triangles.size(), mesh.triangles.size()) << "seed " << c.seed;
+    EXPECT_LE(one_way(mesh, result), c.tolerance) << "seed " << c.seed;
+    EXPECT_LE(one_way(result, mesh), c.tolerance) << "seed " << c.seed;
   }
 }
 
