@@ -111,6 +111,7 @@ def b200(out: Report, settings: Settings, folder: Path, progress: Progress) -> N
 DEFECT_COLUMNS = (Column("bad edges", "bad"), Column("other defects", "others"))
 ERROR_COLUMNS = (
     Column("vertices: largest error mm", "max_mm", report.mm),
+    Column("mean", "mean_mm", report.mm),
     Column("RMS", "rms_mm", report.mm),
     Column("middles of triangles: largest", "middle_max_mm", report.mm),
     Column("RMS", "middle_rms_mm", report.mm),
@@ -150,7 +151,8 @@ def judged(mesh: Mesh, folder: Path) -> dict[str, Any]:
 
 
 def spread(name: str, values: np.ndarray) -> dict[str, float]:
-    return {f"{name}max_mm": float(values.max()), f"{name}rms_mm": float(np.sqrt(np.mean(values**2)))}
+    figures = {"max": values.max(), "mean": values.mean(), "rms": np.sqrt(np.mean(values**2))}
+    return {f"{name}{figure}_mm": float(value) for figure, value in figures.items()}
 
 
 # ---- sharp edges
