@@ -46,6 +46,17 @@ BoundaryPieces::BoundaryPieces(const std::vector<std::vector<Vec3>>& loops) {
     }
     add_chains(start, size());
   }
+  for (const Piece& piece : pieces_) add_ends(piece);
+}
+
+void BoundaryPieces::add_ends(const Piece& piece) {
+  for (const Edge& e : edges(piece)) {
+    const Vec3 d = e.b - e.a;
+    const double square = glm::dot(d, d);
+    ends_.push_back({e.b.x, e.b.y, e.b.z, true, true, false, square > 0 ? 1 / square : 0, 0.5 * std::sqrt(square), 0});
+  }
+  ends_.back().ends = true;
+  ends_.back().area = piece.is_loop() ? 1.5 * piece.surface.area : std::numeric_limits<double>::infinity();
 }
 
 /// Of the edges and the chord that closes them.
@@ -98,13 +109,6 @@ double BoundaryPieces::distance(const Piece& piece, const Vec3& p, double near) 
   double least = std::numeric_limits<double>::infinity();
   for (const Edge& e : edges(piece)) least = std::min(least, segment_distance(p, e.a, e.b));
   return least;
-}
-
-/// Third derivatives of 1/r are at most 6 / r⁴.
-double BoundaryPieces::curvature(const Piece& piece, double d) {
-  const double edges = edge_curvature(piece.length, d);
-  if (!piece.is_loop() || !(d > 0)) return edges;
-  return std::min(edges, 6 * piece.surface.area / (4 * kPi * d * d * d * d));
 }
 
 Surroundings Descent::root(const Vec3& centre, double radius) const {
@@ -218,7 +222,7 @@ void Descent::push(const Vec3& a, const Vec3& e, const Vec3& w, double endless, 
 
 void Descent::flush() {
   if (pushed_ == 0) return;
-  while (pushed_ % kLanes != 0) push(Vec3(1, 0, 0), Vec3(0), Vec3(0), 0, 0);
+  while (pushed_ % kSourceLanes != 0) push(Vec3(1, 0, 0), Vec3(0), Vec3(0), 0, 0);
   far_->add({arrays_[0], arrays_[1], arrays_[2], arrays_[3], arrays_[4], arrays_[5], arrays_[6], arrays_[7], arrays_[8],
              arrays_[9], arrays_[10], pushed_});
   pushed_ = 0;

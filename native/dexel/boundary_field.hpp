@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dexel/field_points.hpp"
 #include "dexel/local_expansion.hpp"
 #include "geom/vec.hpp"
 
@@ -39,6 +40,8 @@ class BoundaryPieces {
   int size() const { return static_cast<int>(pieces_.size()); }
   const Piece& operator[](int k) const { return pieces_[k]; }
   std::span<const Edge> edges(const Piece& p) const { return {edges_.data() + p.first, edges_.data() + p.last}; }
+  /// The ends of a piece's edges.
+  std::span<const PathPoint> ends(const Piece& p) const { return {ends_.data() + p.first, ends_.data() + p.last}; }
   double length() const { return length_; }
   /// Of the 2^level pieces from k on, all of one loop, where 2^level divides their place in it; null where there are
   /// less.
@@ -46,14 +49,15 @@ class BoundaryPieces {
 
   /// A lower bound of the distance of a piece from p: exact for an edge near by.
   double distance(const Piece& piece, const Vec3& p, double near) const;
-  /// Bound of the norm of the second derivatives of a piece's K at the distance d or more from it.
-  static double curvature(const Piece& piece, double d);
 
  private:
   Surface span(int first, int last) const;
   void add_chains(int first, int last);
 
+  void add_ends(const Piece& piece);
+
   std::vector<Edge> edges_;
+  std::vector<PathPoint> ends_;
   std::vector<Piece> pieces_;
   std::vector<std::vector<Surface>> surfaces_;  // of chains that begin at a piece, by level
   double length_ = 0;

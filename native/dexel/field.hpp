@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "dexel/boundary_field.hpp"
-#include "dexel/field_sum.hpp"
+#include "dexel/field_points.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {
@@ -23,60 +23,26 @@ namespace riffler {
 /// K near one place. Lengths in cells, z along the column.
 class Field {
  public:
-  /// K modulo 1 as a phase in (−½, ½] that is 0 where K = ½, and dK/dz.
-  struct Value {
-    double phase, slope;
-  };
-
-  /// K in the ball of `around`; refers to both.
+  /// K in the ball of `around`; refers to it.
   void fill(const BoundaryPieces& pieces, const Surroundings& around);
+  bool smooth() const { return path_.empty(); }
 
-  /// K at the centre of a box within the ball as a phase, with its gradient there, and a bound of how far K in the box
-  /// may be from that tangent plane: infinity where an edge may pass through.
-  struct Tangent {
-    double phase, remainder;
-    Vec3 gradient;
-  };
-  /// `curved` is that of the polynomial for the box.
-  Tangent tangent(const Vec3& centre, const Vec3& half, double curved);
-
-  /// Prepares `curvature` and `variation` for the box about the centre that the ball encloses.
-  void enclose(const Vec3& half);
-
-  /// Prepares `at` for the column through (u, v).
-  void set_column(double u, double v);
-  Value at(double z) const;
-  /// Phase and gradient; sets the column through p.
-  double at(const Vec3& p, Vec3& gradient);
-
-  /// Upper bound of K's second derivative by z within `half` of z on the column set; infinity on an edge.
-  double curvature(double z, double half) const;
-  /// How far K within `half` of z on the column set may be from K(z), given dK/dz there. Unlike `curvature` it stays
-  /// useful beside edges: one edge's share of K never turns back along a column, for the sign of
-  /// dK/dz = (a × b)_z (|a| + |b|) / (4π |a| |b| (|a| |b| + a·b)) is that of a constant.
-  double variation(double z, double half, double slope) const;
+  /// K at points within the ball, with `full` the whole of its gradient; bounds are those of the near edges.
+  void at(const FieldPoints& points, bool full, FieldValues& values) const {
+    evaluate_field(path_, around_->far, around_->centre, points, full, values);
+  }
+  /// Bounds of how far K may be from K(p) on the verticals through points, up to `reach` from them. Unlike those of
+  /// curvature they stay useful beside edges. `curved` is that of the polynomial.
+  void variation(const FieldPoints& points, const double* slope, double curved, double* variation) const {
+    field_variation(path_, points, slope, rays_ + curved, variation);
+  }
+  /// Bound of the second derivatives of what the ways to infinity have.
+  double rays() const { return rays_; }
 
  private:
-  EdgeArrays edge_arrays() const {
-    return {ax_.data(),    ay_.data(),     z_.data(),      rr_.data(),      dot_.data(),
-            cross_.data(), joined_.data(), finite_.data(), scratch_.data(), z_.size() - 1};
-  }
-  void add_point(const Vec3& p, bool joined, bool finite = true);
-  void set_edges(double u, double v);
-
-  const BoundaryPieces* pieces_ = nullptr;
   const Surroundings* around_ = nullptr;
-  double rays_ = 0;  // curvature of the ways to infinity
-  // The points of polylines, one after the other, padded to a multiple of kLanes. See EdgeArrays.
-  std::vector<double> x_, y_, z_, joined_, finite_;
-  std::vector<int> close_;  // pieces whose curvature depends on the place
-  double curvature_ = 0;    // of all others, along z
-
-  double u_ = 0, v_ = 0;
-  // Of each point relative to the column, and of the edge that leads to it: Re and Im of conj(α) β.
-  std::vector<double> ax_, ay_, rr_, dot_, cross_;
-  LocalExpansion::Column far_{};  // in z − centre
-  mutable std::vector<double> scratch_;
+  double rays_ = 0;
+  std::vector<PathPoint> path_;
 };
 
 /// A direction in stereographic coordinates up to a positive factor: (t : α) = (t : f α), rr = |α|².
@@ -90,7 +56,5 @@ struct Stereographic {
 
 /// Distance of p from the segment ab.
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
-/// Bound of the norm of the second derivatives of K of an edge at the distance d or more from it.
-double edge_curvature(double length, double d);
 
 }  // namespace riffler

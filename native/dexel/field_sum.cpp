@@ -10,7 +10,7 @@
 namespace riffler {
 
 namespace {
-constexpr double kTiny = 1e-300, kPi = 3.14159265358979323846;
+constexpr double kPi = 3.14159265358979323846;
 constexpr double kGauss = 0.28867513459481287;  // 1 / (2 √3)
 }  // namespace
 
@@ -18,79 +18,18 @@ constexpr double kGauss = 0.28867513459481287;  // 1 / (2 √3)
 
 /// The loops over lanes, compiled once for each set of instructions.
 struct FieldLanes {
-  using EdgeLanes = FieldSums::EdgeLanes;
   using SourceLanes = FieldSums::SourceLanes;
-
-  /// The direction to each point in stereographic coordinates up to a positive factor, (t : α) = (t : f α).
-  static RIFFLER_INLINE void project(const EdgeArrays& in, double z, double* __restrict dz, double* __restrict length,
-                                     double* __restrict t, double* __restrict f) {
-    for (std::size_t k = 0; k <= in.n; ++k) {
-      const double d = in.z[k] - in.finite[k] * z, l = __builtin_sqrt(in.rr[k] + d * d);
-      dz[k] = d, length[k] = l;
-      t[k] = d < 0 ? in.rr[k] : l + d;
-      f[k] = d < 0 ? l - d : 1.0;
-    }
-  }
-
-  template <bool kFull>
-  static RIFFLER_INLINE void edges(const EdgeArrays& in, double z, EdgeLanes& out) {
-    double* const dz = in.scratch;
-    double* const length = dz + in.n + 1;
-    double* const t = length + in.n + 1;
-    double* const f = t + in.n + 1;
-    project(in, z, dz, length, t, f);
-
-    double re[kLanes], im[kLanes], gx[kLanes], gy[kLanes], gz[kLanes];
-    for (std::size_t q = 0; q < kLanes; ++q) re[q] = 1, im[q] = gx[q] = gy[q] = gz[q] = 0;
-    for (std::size_t begin = 1, group = 1; begin <= in.n; begin += kLanes, ++group) {
-      for (std::size_t q = 0; q < kLanes; ++q) {
-        const std::size_t b = begin + q, a = b - 1;
-        const double ff = f[a] * f[b], product = length[a] * length[b];
-        const double x = t[a] * t[b] + ff * in.dot[b], y = ff * in.cross[b];
-        const double turned = re[q] * x - im[q] * y;
-        im[q] = re[q] * y + im[q] * x;
-        re[q] = turned;
-
-        const double below = product * (product + in.dot[b] + dz[a] * dz[b]);
-        const double around = in.finite[b] * length[a] + in.finite[a] * length[b];
-        const double weight = (below > 0 ? around : 0.0) / (below > 0 ? below : 1.0);
-        gz[q] += in.cross[b] * weight;
-        if constexpr (kFull) {
-          gx[q] += in.joined[b] * (in.y[a] * dz[b] - dz[a] * in.y[b]) * weight;
-          gy[q] += in.joined[b] * (dz[a] * in.x[b] - in.x[a] * dz[b]) * weight;
-        }
-      }
-      // A factor is at most the fourth power of a distance in cells, so that eight stay within range.
-      if (group % 8 == 0)
-        for (std::size_t q = 0; q < kLanes; ++q) {
-          const double scale = 1 / (__builtin_fabs(re[q]) + __builtin_fabs(im[q]) + kTiny);
-          re[q] *= scale, im[q] *= scale;
-        }
-    }
-    for (std::size_t q = 0; q < kLanes; ++q) {
-      const double scale = 1 / (__builtin_fabs(re[q]) + __builtin_fabs(im[q]) + kTiny);
-      out.re[q] = re[q] * scale, out.im[q] = im[q] * scale;
-      out.gx[q] = gx[q], out.gy[q] = gy[q], out.gz[q] = gz[q];
-    }
-  }
-
-  static RIFFLER_INLINE void edges(const EdgeArrays& in, double z, bool full, EdgeLanes& out) {
-    if (full)
-      edges<true>(in, z, out);
-    else
-      edges<false>(in, z, out);
-  }
 
   /// b[i][j]: terms of 1 / |y − p| in the powers x^i y^j of p, and those with one z. |α| |y|² b_α = (2 |α| − 1) Σ y_i
   /// b_{α − e_i} − (|α| − 1) Σ b_{α − 2 e_i}, since Σ b_α is a generating function of Legendre polynomials.
   struct Inverse {
     static constexpr int kSide = kExpansionDegree + 2;
-    double flat[kSide][kSide][kLanes], once[kSide][kSide][kLanes];
+    double flat[kSide][kSide][kSourceLanes], once[kSide][kSide][kSourceLanes];
   };
 
   static RIFFLER_INLINE void inverse(const double* x, const double* y, const double* z, Inverse& out) {
-    double over[kLanes];
-    for (std::size_t q = 0; q < kLanes; ++q) {
+    double over[kSourceLanes];
+    for (std::size_t q = 0; q < kSourceLanes; ++q) {
       over[q] = 1 / (x[q] * x[q] + y[q] * y[q] + z[q] * z[q]);
       out.flat[0][0][q] = __builtin_sqrt(over[q]);
     }
@@ -100,51 +39,51 @@ struct FieldLanes {
         double* __restrict b = out.flat[i][j];
         if (n > 0) {
           const double first = (2.0 * n - 1) / n, second = (n - 1.0) / n;
-          double sum[kLanes];
-          for (std::size_t q = 0; q < kLanes; ++q) sum[q] = 0;
+          double sum[kSourceLanes];
+          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] = 0;
           if (i > 0)
-            for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * x[q] * out.flat[i - 1][j][q];
+            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * x[q] * out.flat[i - 1][j][q];
           if (j > 0)
-            for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * y[q] * out.flat[i][j - 1][q];
+            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * y[q] * out.flat[i][j - 1][q];
           if (i > 1)
-            for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.flat[i - 2][j][q];
+            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.flat[i - 2][j][q];
           if (j > 1)
-            for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.flat[i][j - 2][q];
-          for (std::size_t q = 0; q < kLanes; ++q) b[q] = sum[q] * over[q];
+            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.flat[i][j - 2][q];
+          for (std::size_t q = 0; q < kSourceLanes; ++q) b[q] = sum[q] * over[q];
         }
         if (n + 1 >= Inverse::kSide) continue;
         const double first = (2.0 * n + 1) / (n + 1), second = static_cast<double>(n) / (n + 1);
-        double sum[kLanes];
-        for (std::size_t q = 0; q < kLanes; ++q) sum[q] = first * z[q] * b[q];
+        double sum[kSourceLanes];
+        for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] = first * z[q] * b[q];
         if (i > 0)
-          for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * x[q] * out.once[i - 1][j][q];
+          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * x[q] * out.once[i - 1][j][q];
         if (j > 0)
-          for (std::size_t q = 0; q < kLanes; ++q) sum[q] += first * y[q] * out.once[i][j - 1][q];
+          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * y[q] * out.once[i][j - 1][q];
         if (i > 1)
-          for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.once[i - 2][j][q];
+          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.once[i - 2][j][q];
         if (j > 1)
-          for (std::size_t q = 0; q < kLanes; ++q) sum[q] -= second * out.once[i][j - 2][q];
-        for (std::size_t q = 0; q < kLanes; ++q) out.once[i][j][q] = sum[q] * over[q];
+          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.once[i][j - 2][q];
+        for (std::size_t q = 0; q < kSourceLanes; ++q) out.once[i][j][q] = sum[q] * over[q];
       }
   }
 
   /// Adds (w · ∇) of the terms, by which a term of degree n in K is made of those of degree n + 1, times g^n.
   static RIFFLER_INLINE void derive(const Inverse& b, const double* wx, const double* wy, const double* wz,
                                     const double* g, const double* dipole, SourceLanes& out) {
-    double power[kExpansionDegree + 1][kLanes];  // g^n / n, of dipoles 1
-    for (std::size_t q = 0; q < kLanes; ++q) {
+    double power[kExpansionDegree + 1][kSourceLanes];  // g^n / n, of dipoles 1
+    for (std::size_t q = 0; q < kSourceLanes; ++q) {
       double p = 1;
       for (int n = 1; n <= kExpansionDegree; ++n) p *= g[q], power[n][q] = p * (1.0 / n + dipole[q] * (1 - 1.0 / n));
     }
     for (int i = 0; i <= kExpansionDegree; ++i)
       for (int j = 0; i + j <= kExpansionDegree; ++j) {
         if (i + j > 0)
-          for (std::size_t q = 0; q < kLanes; ++q)
+          for (std::size_t q = 0; q < kSourceLanes; ++q)
             out.terms[0][i][j][q] +=
                 power[i + j][q] * (wx[q] * ((i + 1) * b.flat[i + 1][j][q]) + wy[q] * ((j + 1) * b.flat[i][j + 1][q]) +
                                    wz[q] * b.once[i][j][q]);
         if (i + j == kExpansionDegree) continue;
-        for (std::size_t q = 0; q < kLanes; ++q)
+        for (std::size_t q = 0; q < kSourceLanes; ++q)
           out.terms[1][i][j][q] +=
               power[i + j + 1][q] *
               (wx[q] * ((i + 1) * b.once[i + 1][j][q]) + wy[q] * ((j + 1) * b.once[i][j + 1][q]) -
@@ -155,15 +94,16 @@ struct FieldLanes {
   static RIFFLER_INLINE void sources(const SourceArrays& in, SourceLanes& out) {
     out = {};
     Inverse b;
-    for (std::size_t begin = 0; begin < in.n; begin += kLanes) {
-      double wx[kLanes], wy[kLanes], wz[kLanes], x[kLanes], y[kLanes], z[kLanes], g[kLanes];
-      for (std::size_t q = 0; q < kLanes; ++q) {
+    for (std::size_t begin = 0; begin < in.n; begin += kSourceLanes) {
+      double wx[kSourceLanes], wy[kSourceLanes], wz[kSourceLanes], x[kSourceLanes], y[kSourceLanes], z[kSourceLanes],
+          g[kSourceLanes];
+      for (std::size_t q = 0; q < kSourceLanes; ++q) {
         const std::size_t k = begin + q;
         constexpr double kWeight = -0.5 / (4 * kPi);
         wx[q] = kWeight * in.wx[k], wy[q] = kWeight * in.wy[k], wz[q] = kWeight * in.wz[k];
       }
       for (const double s : {0.5 - kGauss, 0.5 + kGauss}) {
-        for (std::size_t q = 0; q < kLanes; ++q) {
+        for (std::size_t q = 0; q < kSourceLanes; ++q) {
           const std::size_t k = begin + q;
           x[q] = in.ax[k] + s * in.ex[k], y[q] = in.ay[k] + s * in.ey[k], z[q] = in.az[k] + s * in.ez[k];
           g[q] = 1 - in.endless[k] * s;
@@ -174,20 +114,12 @@ struct FieldLanes {
     }
   }
 
-  static void edges_baseline(const EdgeArrays& in, double z, bool full, EdgeLanes& out) { edges(in, z, full, out); }
   static void sources_baseline(const SourceArrays& in, SourceLanes& out) { sources(in, out); }
 
 #ifdef RIFFLER_VECTOR_TARGETS
   // Neither target may bring fused multiply-adds in: results would differ.
-  __attribute__((target("avx2"))) static void edges_avx2(const EdgeArrays& in, double z, bool full, EdgeLanes& out) {
-    edges(in, z, full, out);
-  }
   __attribute__((target("avx2"))) static void sources_avx2(const SourceArrays& in, SourceLanes& out) {
     sources(in, out);
-  }
-  __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) static void edges_avx512(
-      const EdgeArrays& in, double z, bool full, EdgeLanes& out) {
-    edges(in, z, full, out);
   }
   __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) static void sources_avx512(
       const SourceArrays& in, SourceLanes& out) {
@@ -197,18 +129,18 @@ struct FieldLanes {
 
   static std::vector<FieldSums> available() {
     std::vector<FieldSums> sums;
-    const auto add = [&](auto edges, auto sources) {
+    const auto add = [&](auto sources) {
       FieldSums s;
-      s.edges_ = edges, s.sources_ = sources;
+      s.sources_ = sources;
       sums.push_back(s);
     };
 #ifdef RIFFLER_VECTOR_TARGETS
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-      add(edges_avx512, sources_avx512);
-    if (__builtin_cpu_supports("avx2")) add(edges_avx2, sources_avx2);
+      add(sources_avx512);
+    if (__builtin_cpu_supports("avx2")) add(sources_avx2);
 #endif
-    add(edges_baseline, sources_baseline);
+    add(sources_baseline);
     return sums;
   }
 };
@@ -218,21 +150,7 @@ const std::vector<FieldSums>& FieldSums::available() {
   return sums;
 }
 
-// Lanes are joined out here, in the baseline's instructions: gcc 12 fuses the multiplications of a complex product into
-// fmaddsub where it may, -ffp-contract=off notwithstanding.
-EdgeSum FieldSums::edges(const EdgeArrays& in, double z, bool full) const {
-  EdgeLanes lanes;
-  edges_(in, z, full, lanes);
-  EdgeSum out{1, 0, 0, 0, 0};
-  for (std::size_t q = 0; q < kLanes; ++q) {
-    const double turned = out.re * lanes.re[q] - out.im * lanes.im[q];
-    out.im = out.re * lanes.im[q] + out.im * lanes.re[q];
-    out.re = turned;
-    out.gx += lanes.gx[q], out.gy += lanes.gy[q], out.gz += lanes.gz[q];
-  }
-  return out;
-}
-
+// Lanes are joined out here, in the baseline's instructions.
 SourceSum FieldSums::sources(const SourceArrays& in) const {
   SourceLanes lanes;
   sources_(in, lanes);
@@ -240,7 +158,7 @@ SourceSum FieldSums::sources(const SourceArrays& in) const {
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i + k <= kExpansionDegree; ++i)
       for (int j = 0; i + j + k <= kExpansionDegree; ++j)
-        for (std::size_t q = 0; q < kLanes; ++q) out.terms[k][i][j] += lanes.terms[k][i][j][q];
+        for (std::size_t q = 0; q < kSourceLanes; ++q) out.terms[k][i][j] += lanes.terms[k][i][j][q];
   return out;
 }
 

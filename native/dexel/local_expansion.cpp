@@ -71,38 +71,4 @@ double LocalExpansion::curvature_along(const Vec3& half) const {
   return sum;
 }
 
-LocalExpansion::Column LocalExpansion::column(double x, double y) const {
-  Column out;
-  for (int k = 0; k <= kDegree; ++k) {
-    std::array<double, kSide> c = rows_[row(k, kDegree - k)];
-    for (int i = kDegree - k - 1; i >= 0; --i)
-      for (int j = 0; j < kSide; ++j) c[j] = c[j] * x + rows_[row(k, i)][j];
-    double value = c[kDegree - k];
-    for (int j = kDegree - k - 1; j >= 0; --j) value = value * y + c[j];
-    out[k] = value;
-  }
-  return out;
-}
-
-double LocalExpansion::at(const Vec3& r, Vec3& gradient) const {
-  // Horner's scheme for the value and the derivatives, z outermost.
-  std::array<double, kSide> in_z{}, by_x{}, by_z{};  // in y
-  for (int k = kDegree; k >= 0; --k) {
-    std::array<double, kSide> c{}, slope{};
-    for (int i = kDegree - k; i >= 0; --i)
-      for (int j = 0; j < kSide; ++j) slope[j] = slope[j] * r.x + c[j], c[j] = c[j] * r.x + rows_[row(k, i)][j];
-    for (int j = 0; j < kSide; ++j) {
-      by_z[j] = by_z[j] * r.z + in_z[j], in_z[j] = in_z[j] * r.z + c[j];
-      by_x[j] = by_x[j] * r.z + slope[j];
-    }
-  }
-  double value = 0;
-  gradient = Vec3(0);
-  for (int j = kDegree; j >= 0; --j) {
-    gradient = Vec3(gradient.x * r.y + by_x[j], gradient.y * r.y + value, gradient.z * r.y + by_z[j]);
-    value = value * r.y + in_z[j];
-  }
-  return value;
-}
-
 }  // namespace riffler

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "dexel/field_sum.hpp"
 #include "geom/vec.hpp"
@@ -16,7 +15,8 @@ class LocalExpansion {
 
   double constant() const { return rows_[0][0]; }
   void set_constant(double c) { rows_[0][0] = c; }
-  Vec3 gradient() const { return {rows_[row(0, 1)][0], rows_[0][1], rows_[row(1, 0)][0]}; }
+  /// Coefficients of x^i y^j z^k for j = 0 … kDegree − i − k.
+  const double* terms(int k, int i) const { return rows_[row(k, i)].data(); }
 
   /// Moves the centre by d.
   void shift(const Vec3& d);
@@ -28,12 +28,6 @@ class LocalExpansion {
   double curved(const Vec3& half) const;
   /// Bound of the second derivative along z within ± half.
   double curvature_along(const Vec3& half) const;
-
-  /// The polynomial in z on the column through (x, y): its coefficients.
-  using Column = std::array<double, kDegree + 1>;
-  Column column(double x, double y) const;
-  /// Value and gradient.
-  double at(const Vec3& r, Vec3& gradient) const;
 
  private:
   static constexpr int kSide = kDegree + 1, kRows = kSide * (kSide + 1) / 2;

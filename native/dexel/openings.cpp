@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -53,6 +54,14 @@ void halves(const Block& b, int side, const Body& body) {
   part(b.i0, i, j, b.j1, z, b.z1), part(i, b.i1, j, b.j1, z, b.z1);
 }
 
+/// K at a block's centre as a phase, with its gradient there, and a bound of how far K in the block may be from that
+/// tangent plane: infinity where an edge may pass through.
+struct Tangent {
+  double phase, remainder;
+  Vec3 gradient;
+};
+constexpr Tangent kNoTangent{0, std::numeric_limits<double>::infinity(), Vec3(0)};
+
 /// Searches blocks for passages.
 class Search {
  public:
@@ -66,93 +75,200 @@ class Search {
   void parts(const Block& block, const Surroundings& around, const Body& body) {
     field_.fill(pieces_, around);
     const double curved = around.far.curved(block.half());
-    std::array<std::pair<Block, Field::Tangent>, 8> found;
+    std::array<Block, kPoints> parts;
     std::size_t count = 0;
-    halves(block, kLeaf, [&](const Block& part) {
-      const Vec3 half = part.half();
-      // The bound is for parts of half the size along every axis.
+    halves(block, kLeaf, [&](const Block& part) { parts[count++] = part; });
+    FieldPoints points;
+    for (std::size_t k = 0; k < kPoints; ++k) set(points, k, parts[std::min(k, count - 1)]);
+    FieldValues values;
+    field_.at(points, true, values);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3 half = parts[k].half();
+      // The polynomial's bound is for parts of half the size along every axis.
       const bool halved = glm::all(glm::lessThanEqual(half, 0.5 * block.half()));
-      const Field::Tangent t = field_.tangent(part.centre(), half, halved ? curved : 4 * curved);
-      if (std::abs(t.phase) <= glm::dot(glm::abs(t.gradient), half) + t.remainder + kSlack) found[count++] = {part, t};
-    });
-    for (std::size_t k = 0; k < count; ++k) body(found[k].first, found[k].second);
+      const double bend = 0.5 * (field_.rays() + values.curvature[k]) * glm::dot(half, half);
+      Tangent t{values.phase[k], bend + (halved ? curved : 4 * curved), {values.gx[k], values.gy[k], values.gz[k]}};
+      if (t.remainder > 1) t = kNoTangent;
+      if (std::abs(t.phase) <= glm::dot(glm::abs(t.gradient), half) + t.remainder + kSlack) body(parts[k], t);
+    }
   }
 
   void enter(const Block& block, const Surroundings& within, Surroundings& around) {
     descent_.enter(within, block.centre(), glm::length(block.half()), around);
   }
 
-  void block(const Block& block, const Field::Tangent& tangent, const Surroundings& within, std::size_t depth = 0) {
+  void block(const Block& block, const Tangent& tangent, const Surroundings& within, std::size_t depth = 0) {
     if (depth == levels_.size()) levels_.emplace_back();
     Surroundings& around = levels_[depth];
     enter(block, within, around);
     if (block.within(around.near.empty() ? kSmoothLeaf : kLeaf)) return leaf(block, tangent, around);
-    parts(block, around, [&](const Block& part, const Field::Tangent& t) { this->block(part, t, around, depth + 1); });
+    parts(block, around, [&](const Block& part, const Tangent& t) { this->block(part, t, around, depth + 1); });
   }
 
  private:
   /// Phases are that much in error (polynomials), with room to spare.
   static constexpr double kSlack = 1e-4;
 
-  void leaf(const Block& block, const Field::Tangent& t, const Surroundings& around) {
+  /// A piece of a column, z0 ≤ z ≤ z1.
+  struct Piece {
+    int row, column;
+    double z0, z1;
+
+    double middle() const { return 0.5 * (z0 + z1); }
+    double half() const { return 0.5 * (z1 - z0); }
+  };
+  /// One with what is known of K at its middle.
+  struct Doubt {
+    Piece piece;
+    double phase, slope;
+  };
+  /// One in which K passes ½ once, where a search for that place has got to.
+  struct Root {
+    Piece piece;
+    double z;
+    bool rising;
+    int steps;
+  };
+
+  static void set(FieldPoints& points, std::size_t k, const Block& block) {
+    const Vec3 centre = block.centre();
+    points.x[k] = centre.x, points.y[k] = centre.y, points.z[k] = centre.z;
+    points.reach[k] = glm::length(block.half());
+  }
+  static void set(FieldPoints& points, std::size_t k, const Piece& piece, double z) {
+    points.x[k] = piece.row, points.y[k] = piece.column, points.z[k] = z, points.reach[k] = piece.half();
+  }
+
+  /// Takes up to kPoints items from the end of `items`; the points are those of the first where there are less.
+  template <class Item, class At>
+  static std::size_t take(std::vector<Item>& items, std::array<Item, kPoints>& taken, FieldPoints& points,
+                          const At& at) {
+    const std::size_t count = std::min<std::size_t>(items.size(), kPoints);
+    std::copy(items.end() - static_cast<std::ptrdiff_t>(count), items.end(), taken.begin());
+    items.resize(items.size() - count);
+    for (std::size_t k = 0; k < kPoints; ++k) {
+      const Item& item = taken[k < count ? k : 0];
+      at(item, points, k);
+    }
+    return count;
+  }
+
+  void leaf(const Block& block, const Tangent& t, const Surroundings& around) {
     const Vec3 centre = block.centre(), half = block.half();
     field_.fill(pieces_, around);
-    field_.enclose(half);
+    curved_ = around.far.curvature_along(half);
     const double along = std::abs(t.gradient.z) * half.z + t.remainder + kSlack;
     for (int i = block.i0; i < block.i1; ++i)
-      for (int j = block.j0; j < block.j1; ++j) {
-        if (std::abs(t.phase + t.gradient.x * (i - centre.x) + t.gradient.y * (j - centre.y)) > along) continue;
-        row_ = i, column_ = j;
-        field_.set_column(i, j);
-        segment(block.z0, block.z1);
+      for (int j = block.j0; j < block.j1; ++j)
+        if (std::abs(t.phase + t.gradient.x * (i - centre.x) + t.gradient.y * (j - centre.y)) <= along)
+          segments_.push_back({i, j, block.z0, block.z1});
+    while (!segments_.empty() || !doubts_.empty()) {
+      // Lanes should be full.
+      if (segments_.empty() || doubts_.size() >= kPoints)
+        doubts();
+      else
+        segments();
+    }
+    while (!roots_.empty()) roots();
+    normals();
+  }
+
+  /// Passages on some pieces. One at an end may be found from both sides.
+  void segments() {
+    std::array<Piece, kPoints> pieces;
+    FieldPoints points;
+    FieldValues values;
+    const std::size_t count = take(segments_, pieces, points,
+                                   [](const Piece& p, FieldPoints& to, std::size_t k) { set(to, k, p, p.middle()); });
+    field_.at(points, false, values);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double half = points.reach[k], phase = values.phase[k], slope = values.gz[k];
+      const double curvature = field_.rays() + curved_ + values.curvature[k];
+      if (std::abs(phase) > std::abs(slope) * half + 0.5 * curvature * half * half + kSlack * half) continue;
+      if (std::abs(slope) > 2 * curvature * half)
+        newton({pieces[k], points.z[k], slope > 0, 0}, phase, slope);
+      else
+        doubts_.push_back({pieces[k], phase, slope});
+    }
+  }
+
+  /// Pieces that second derivatives do not settle.
+  void doubts() {
+    std::array<Doubt, kPoints> taken;
+    FieldPoints points;
+    const std::size_t count = take(doubts_, taken, points, [](const Doubt& d, FieldPoints& to, std::size_t k) {
+      set(to, k, d.piece, d.piece.middle());
+    });
+    double slopes[kPoints], variation[kPoints];
+    for (std::size_t k = 0; k < kPoints; ++k) slopes[k] = taken[k < count ? k : 0].slope;
+    field_.variation(points, slopes, curved_, variation);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& [piece, phase, slope] = taken[k];
+      const double half = points.reach[k], z = points.z[k];
+      if (std::abs(phase) > variation[k] + kSlack * half) continue;
+      // A column in the plane of a flat opening, where K is ½ throughout: either side will do.
+      const bool level = std::abs(phase) + std::abs(slope) * half < kLevel && variation[k] < kLevelBound;
+      if (half > kShortest && !level) {
+        segments_.push_back({piece.row, piece.column, piece.z0, z});
+        segments_.push_back({piece.row, piece.column, z, piece.z1});
+        continue;
       }
+      // At an edge the same decisions as for crossings tell on which side of it the column passes.
+      const int change = rounded_(piece.row, piece.column, piece.z1) - rounded_(piece.row, piece.column, piece.z0);
+      for (int n = 0; n < std::abs(change); ++n) add(piece, z, change > 0);
+    }
   }
 
-  /// Passages with z0 ≤ z ≤ z1 on the column set. One at an end may be found from both sides.
-  void segment(double z0, double z1) {
-    const double z = 0.5 * (z0 + z1), half = 0.5 * (z1 - z0);
-    const Field::Value value = field_.at(z);
-    const double curvature = field_.curvature(z, half);
-    if (std::abs(value.phase) > std::abs(value.slope) * half + 0.5 * curvature * half * half + kSlack * half) return;
-    if (std::abs(value.slope) > 2 * curvature * half) return newton(z0, z1, value);
-    const double variation = field_.variation(z, half, value.slope);
-    if (std::abs(value.phase) > variation + kSlack * half) return;
-    // A column in the plane of a flat opening, where K is ½ throughout: either side will do.
-    const bool level = std::abs(value.phase) + std::abs(value.slope) * half < kLevel && variation < kLevelBound;
-    if (half > kShortest && !level) {
-      segment(z0, z), segment(z, z1);
-      return;
-    }
-    // At an edge the same decisions as for crossings tell on which side of it the column passes.
-    const int change = rounded_(row_, column_, z1) - rounded_(row_, column_, z0);
-    for (int k = 0; k < std::abs(change); ++k) add(z, change > 0);
+  /// One evaluation for the roots of phases whose slopes vary by less than half of themselves.
+  void roots() {
+    std::array<Root, kPoints> taken;
+    FieldPoints points;
+    FieldValues values;
+    const std::size_t count =
+        take(roots_, taken, points, [](const Root& r, FieldPoints& to, std::size_t k) { set(to, k, r.piece, r.z); });
+    field_.at(points, false, values);
+    for (std::size_t k = 0; k < count; ++k) newton(taken[k], values.phase[k], values.gz[k]);
   }
 
-  /// The one root of a phase whose slope varies by less than half of itself.
-  void newton(double z0, double z1, Field::Value value) {
-    double z = 0.5 * (z0 + z1);
-    const bool rising = value.slope > 0;
-    const double room = 1e-3 * (z1 - z0);
-    for (int step = 0; step < 30; ++step) {
-      const double move = -value.phase / value.slope;
-      z += move;
-      if (z < z0 - 0.5 * (z1 - z0) || z > z1 + 0.5 * (z1 - z0)) return;
-      if (std::abs(move) < kRoot * (1 + std::abs(z)) || (step > 0 && move * move < kRoot * (z1 - z0))) break;
-      value = field_.at(z);
-    }
-    if (z >= z0 - room && z <= z1 + room) add(z, rising);
+  /// A step of Newton's method.
+  void newton(Root root, double phase, double slope) {
+    const double z0 = root.piece.z0, z1 = root.piece.z1, length = z1 - z0, room = 1e-3 * length;
+    const double move = -phase / slope;
+    root.z += move;
+    if (root.z < z0 - 0.5 * length || root.z > z1 + 0.5 * length) return;
+    const bool done = std::abs(move) < kRoot * (1 + std::abs(root.z)) ||
+                      (root.steps > 0 && move * move < kRoot * length) || root.steps == 29;
+    ++root.steps;
+    if (!done)
+      roots_.push_back(root);
+    else if (root.z >= z0 - room && root.z <= z1 + room)
+      add(root.piece, root.z, root.rising);
   }
 
-  void add(double z, bool rising) {
-    Passage passage{row_, column_, z, rising ? 1 : -1, {}};
-    if (grid_.has_normals()) {
-      Vec3 gradient;
-      field_.at(Vec3(row_, column_, z), gradient);
-      const double length = glm::length(gradient);
-      const Vec3 normal = length > 0 ? gradient / -length : Vec3(0, 0, rising ? -1 : 1);
-      passage.normal = PackedNormal::pack(to_world(grid_.axis(), normal));
+  void add(const Piece& piece, double z, bool rising) {
+    out_.push_back({piece.row, piece.column, z, rising ? 1 : -1, {}});
+  }
+
+  /// Of the passages that have none yet.
+  void normals() {
+    if (!grid_.has_normals()) return;
+    for (; complete_ < out_.size(); complete_ += kPoints) {
+      FieldPoints points;
+      FieldValues values;
+      const auto passages = std::span(out_).subspan(complete_);
+      for (std::size_t k = 0; k < kPoints; ++k) {
+        const Passage& p = passages[k < passages.size() ? k : 0];
+        set(points, k, {p.row, p.column, p.z, p.z}, p.z);
+      }
+      field_.at(points, true, values);
+      for (std::size_t k = 0; k < std::min<std::size_t>(kPoints, passages.size()); ++k) {
+        const Vec3 gradient(values.gx[k], values.gy[k], values.gz[k]);
+        const double length = glm::length(gradient);
+        const Vec3 normal = length > 0 ? gradient / -length : Vec3(0, 0, -passages[k].sign);
+        passages[k].normal = PackedNormal::pack(to_world(grid_.axis(), normal));
+      }
     }
-    out_.push_back(passage);
+    complete_ = out_.size();
   }
 
   const BoundaryPieces& pieces_;
@@ -162,7 +278,11 @@ class Search {
   std::vector<Passage>& out_;
   std::deque<Surroundings> levels_;  // of the blocks that enclose the present one
   Field field_;
-  int row_ = 0, column_ = 0;
+  double curved_ = 0;  // of the polynomial along the leaf's columns
+  std::vector<Piece> segments_;
+  std::vector<Doubt> doubts_;
+  std::vector<Root> roots_;
+  std::size_t complete_ = 0;  // passages that have their normals
 };
 
 /// How far above and below the part |w| may still reach ½, cells: |w| is at most area / (4 π d²), and at most
@@ -222,7 +342,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   // Level by level down to blocks enough for all threads, then each block alone.
   struct Task {
     Block block;
-    Field::Tangent tangent;
+    Tangent tangent;
     std::shared_ptr<const Surroundings> within;
     std::vector<Passage> found;
     std::vector<Task> parts;
@@ -242,7 +362,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
           auto around = std::make_shared<Surroundings>();
           search.enter(task.block, *task.within, *around);
           search.parts(task.block, *around,
-                       [&](const Block& b, const Field::Tangent& t) { task.parts.push_back({b, t, around, {}, {}}); });
+                       [&](const Block& b, const Tangent& t) { task.parts.push_back({b, t, around, {}, {}}); });
         },
         part(progress, begin, begin + 0.02));
     std::vector<Task> next;

@@ -1,6 +1,7 @@
 // Broken parts: the generalized winding number against solid angles summed over all triangles.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "dexel/boundary.hpp"
@@ -93,6 +94,26 @@ double winding(const std::vector<std::vector<Vec3>>& loops, const Vec3& p) {
   return k;
 }
 
+/// The same point in all lanes.
+FieldPoints everywhere(const Vec3& p, double reach) {
+  FieldPoints points;
+  for (int k = 0; k < kPoints; ++k) points.x[k] = p.x, points.y[k] = p.y, points.z[k] = p.z, points.reach[k] = reach;
+  return points;
+}
+
+/// K at one point.
+struct At {
+  double phase, curvature;
+  Vec3 gradient;
+
+  At(const Field& field, const Vec3& p, double reach) {
+    FieldValues values;
+    field.at(everywhere(p, reach), true, values);
+    phase = values.phase[3], curvature = values.curvature[3] + field.rays();
+    gradient = {values.gx[3], values.gy[3], values.gz[3]};
+  }
+};
+
 TEST(BoundaryField, PhaseAndGradientAreThoseOfTheLoops) {
   const auto loops = boundaries();
   const BoundaryPieces pieces(loops);
@@ -116,13 +137,14 @@ TEST(BoundaryField, PhaseAndGradientAreThoseOfTheLoops) {
       std::swap(around, inner);
       if (glm::length(p - around.centre) > radius) break;
       field.fill(pieces, around);
-      Vec3 gradient;
-      const double phase = field.at(p, gradient), error = phase - (k - 0.5);
+      const At at(field, p, 0);
+      const Vec3& gradient = at.gradient;
+      const double error = at.phase - (k - 0.5);
       EXPECT_NEAR(error, std::round(error), 1e-5) << radius;
-      field.set_column(p.x, p.y);
-      const Field::Value value = field.at(p.z);
-      EXPECT_NEAR(value.phase, phase, 1e-12);
-      EXPECT_NEAR(value.slope, gradient.z, 1e-12);
+      FieldValues along;
+      field.at(everywhere(p, 0), false, along);
+      EXPECT_EQ(along.phase[0], at.phase);
+      EXPECT_EQ(along.gz[0], gradient.z);
       for (int axis = 0; axis < 3; ++axis) {
         Vec3 shift(0);
         shift[axis] = 1e-3;
@@ -149,28 +171,28 @@ TEST(BoundaryField, StaysWithinItsBounds) {
     Surroundings around;
     descent.enter(descent.root(Vec3(0), 130), centre, glm::length(half), around);
     field.fill(pieces, around);
-    const double curved = around.far.curved(half);
     const Vec3 inner = centre + 0.5 * half * Vec3(uniform(random) > 0 ? 1 : -1);
-    const Field::Tangent t = field.tangent(inner, 0.5 * half, curved);
-    if (t.remainder > 0.5) continue;
+    const At at(field, inner, 0.5 * glm::length(half));
+    const double remainder = 0.125 * at.curvature * glm::dot(half, half) + around.far.curved(half);
+    if (remainder > 0.5) continue;
     ++bounded;
     for (int k = 0; k < 8; ++k) {
       const Vec3 q = 0.5 * half * Vec3(uniform(random), uniform(random), uniform(random));
-      Vec3 gradient;
-      const double off = field.at(inner + q, gradient) - t.phase - glm::dot(t.gradient, q);
-      EXPECT_LE(std::abs(off - std::round(off)), t.remainder + 1e-7);
+      const double off = At(field, inner + q, 0).phase - at.phase - glm::dot(at.gradient, q);
+      EXPECT_LE(std::abs(off - std::round(off)), remainder + 1e-7);
     }
     // Along a column, piece by piece.
-    field.enclose(half);
     const Vec3 q = centre + half * Vec3(uniform(random), uniform(random), 0.5 * uniform(random));
-    const double reach = 0.5 * half.z;
-    field.set_column(q.x, q.y);
-    const Field::Value value = field.at(q.z);
-    const double curvature = field.curvature(q.z, reach), variation = field.variation(q.z, reach, value.slope);
+    const double reach = 0.5 * half.z, curved = around.far.curvature_along(half);
+    const At here(field, q, reach);
+    const double curvature = here.curvature + curved;
+    std::array<double, kPoints> slopes, variation;
+    slopes.fill(here.gradient.z);
+    field.variation(everywhere(q, reach), slopes.data(), curved, variation.data());
     for (int k = 0; k < 4; ++k) {
-      const double dz = reach * uniform(random), off = field.at(q.z + dz).phase - value.phase;
-      EXPECT_LE(std::abs(off - std::round(off)), variation + 1e-7);
-      const double bent = off - value.slope * dz;
+      const double dz = reach * uniform(random), off = At(field, q + Vec3(0, 0, dz), 0).phase - here.phase;
+      EXPECT_LE(std::abs(off - std::round(off)), variation[0] + 1e-7);
+      const double bent = off - here.gradient.z * dz;
       EXPECT_LE(std::abs(bent - std::round(bent)), 0.5 * curvature * dz * dz + 1e-7);
     }
   }

@@ -1,0 +1,65 @@
+#include "dexel/field_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sweep/kernels.hpp"
+
+namespace riffler {
+namespace {
+
+struct Sums {
+  FieldValues some{}, all{};
+  std::array<double, kPoints> variation{};
+
+  bool operator==(const Sums& o) const { return std::memcmp(this, &o, sizeof o) == 0; }
+};
+
+TEST(FieldPoints, AreTheSameBitsForAllInstructionSets) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0, 30);
+  for (std::size_t round = 0; round < 300; ++round) {
+    std::vector<PathPoint> path;
+    for (std::size_t k = 0; k <= round % 40; ++k) {
+      const Vec3 p(normal(random), std::round(normal(random)), normal(random));
+      const bool joined = k > 0 && random() % 5 != 0, finite = random() % 5 != 0;
+      path.push_back({p.x, p.y, p.z, joined, finite, random() % 3 == 0, 1 / glm::dot(p, p), glm::length(p),
+                      random() % 2 == 0 ? 5 : std::numeric_limits<double>::infinity()});
+    }
+    FieldPoints points;
+    std::array<double, kPoints> slopes;
+    for (int k = 0; k < kPoints; ++k) {
+      points.x[k] = normal(random), points.y[k] = std::round(normal(random)), points.z[k] = normal(random);
+      points.reach[k] = 3, slopes[k] = normal(random);
+    }
+    LocalExpansion far;
+    std::array<std::array<double, kSourceLanes>, 11> a;
+    for (auto& values : a)
+      for (double& value : values) value = normal(random);
+    far.add({a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data(), a[6].data(), a[7].data(),
+             a[8].data(), a[9].data(), a[10].data(), kSourceLanes});
+    const auto sums = [&](const std::string& instruction_set) {
+      use_instruction_set(instruction_set);
+      Sums out;
+      evaluate_field(path, far, Vec3(1, 2, 3), points, false, out.some);
+      evaluate_field(path, far, Vec3(1, 2, 3), points, true, out.all);
+      field_variation(path, points, slopes.data(), 0.1, out.variation.data());
+      return out;
+    };
+    const Sums best = sums("");
+    for (const std::string& name : instruction_sets()) EXPECT_TRUE(sums(name) == best) << name;
+    use_instruction_set("");
+    // What is asked for is the same however much.
+    EXPECT_EQ(std::memcmp(best.some.gz, best.all.gz, sizeof best.all.gz), 0);
+    EXPECT_EQ(std::memcmp(best.some.phase, best.all.phase, sizeof best.all.phase), 0);
+  }
+}
+
+}  // namespace
+}  // namespace riffler
