@@ -120,8 +120,8 @@ Surroundings Descent::root(const Vec3& centre, double radius) const {
 }
 
 void Descent::enter(const Surroundings& parent, const Vec3& centre, double radius, Surroundings& out) {
-  pushed_ = 0, centre_ = centre, far_ = &out.far;
-  re_ = 1, im_ = 0, dipoles_ = 0;
+  edges_.count = dipoles_.count = 0, centre_ = centre, far_ = &out.far;
+  re_ = 1, im_ = 0, surfaces_ = 0;
   out.centre = centre, out.radius = radius;
   out.far = parent.far;
   out.far.shift(centre - parent.centre);
@@ -147,8 +147,8 @@ void Descent::enter(const Surroundings& parent, const Vec3& centre, double radiu
     }
   }
   add_chain(begin, end);
-  flush();
-  const double k = out.far.constant() + dipoles_ + std::atan2(im_, re_) / (2 * kPi);
+  flush(edges_), flush(dipoles_);
+  const double k = out.far.constant() + surfaces_ + std::atan2(im_, re_) / (2 * kPi);
   out.far.set_constant(k - std::round(k));
 }
 
@@ -180,15 +180,11 @@ void Descent::add_chain(int first, int last) {
 }
 
 void Descent::add_dipole(const BoundaryPieces::Surface& surface) {
-  const Vec3 r = surface.centre - centre_;
-  const double d = glm::length(r);
-  dipoles_ += glm::dot(surface.vector, r) / (4 * kPi * d * d * d);
-  push(r, Vec3(0), -surface.vector, 0, 1);
+  push(dipoles_, surface.centre - centre_, Vec3(0), -surface.vector, 0);
 }
 
 /// An edge at the distance or more.
 void Descent::add_edge(const Vec3& a, const Vec3& b, double distance) {
-  turn(a - centre_, b - centre_, 1);
   add_source(a - centre_, b - centre_, distance);
 }
 
@@ -201,39 +197,32 @@ void Descent::add_source(const Vec3& a, const Vec3& b, double distance) {
       return;
     }
   }
-  push(a, b - a, glm::cross(a, b), 0, 0);
+  push(edges_, a, b - a, glm::cross(a, b), 0);
 }
 
 /// From a to infinity, away from `from`.
 void Descent::add_wedge(const Vec3& a, const Vec3& from, double sign) {
-  push(a, -from, sign * glm::cross(a, -from), 1, 0);
-  const Vec3 along = glm::normalize(a - from);
-  const double length = glm::length(a);
-  // A direction enters as a point does, with its length 1 for the distance.
-  turn(a / length, along, sign);
+  push(edges_, a, -from, sign * glm::cross(a, -from), 1);
 }
 
-void Descent::push(const Vec3& a, const Vec3& e, const Vec3& w, double endless, double dipole) {
-  if (pushed_ == kBatch) flush();
-  const double values[] = {a.x, a.y, a.z, e.x, e.y, e.z, w.x, w.y, w.z, endless, dipole};
-  for (int k = 0; k < 11; ++k) arrays_[k][pushed_] = values[k];
-  ++pushed_;
+void Descent::push(Batch& batch, const Vec3& a, const Vec3& e, const Vec3& w, double endless) {
+  if (batch.count == Batch::kMost) flush(batch);
+  const double values[] = {a.x, a.y, a.z, e.x, e.y, e.z, w.x, w.y, w.z, endless};
+  for (int k = 0; k < 10; ++k) batch.arrays[k][batch.count] = values[k];
+  ++batch.count;
 }
 
-void Descent::flush() {
-  if (pushed_ == 0) return;
-  while (pushed_ % kSourceLanes != 0) push(Vec3(1, 0, 0), Vec3(0), Vec3(0), 0, 0);
-  far_->add({arrays_[0], arrays_[1], arrays_[2], arrays_[3], arrays_[4], arrays_[5], arrays_[6], arrays_[7], arrays_[8],
-             arrays_[9], arrays_[10], pushed_});
-  pushed_ = 0;
-}
-
-/// The factor of an edge at the centre, whose argument is half the solid angle.
-void Descent::turn(const Vec3& a, const Vec3& b, double sign) {
-  const double aa = a.x * a.x + a.y * a.y, bb = b.x * b.x + b.y * b.y;
-  const Stereographic s(a.z, aa), t(b.z, bb);
-  const double f = s.f * t.f, x = s.t * t.t + f * (a.x * b.x + a.y * b.y), y = sign * f * (a.x * b.y - a.y * b.x);
-  const double re = re_ * x - im_ * y, im = re_ * y + im_ * x, scale = 1 / (std::abs(re) + std::abs(im) + 1e-300);
+void Descent::flush(Batch& batch) {
+  if (batch.count == 0) return;
+  while (batch.count % kSourceLanes != 0) push(batch, Vec3(1, 0, 0), Vec3(0), Vec3(0), 0);
+  const auto& in = batch.arrays;
+  const SourceSum sum =
+      sum_sources({in[0], in[1], in[2], in[3], in[4], in[5], in[6], in[7], in[8], in[9], batch.count, batch.dipoles});
+  batch.count = 0;
+  far_->add(sum);
+  surfaces_ += sum.dipoles;
+  const double re = re_ * sum.re - im_ * sum.im, im = re_ * sum.im + im_ * sum.re;
+  const double scale = 1 / (std::abs(re) + std::abs(im) + 1e-300);
   re_ = re * scale, im_ = im * scale;
 }
 

@@ -119,18 +119,24 @@ class Descent {
   void add_edge(const Vec3& a, const Vec3& b, double distance);
   void add_source(const Vec3& a, const Vec3& b, double distance);
   void add_wedge(const Vec3& a, const Vec3& from, double sign);
-  void push(const Vec3& a, const Vec3& e, const Vec3& w, double endless, double dipole);
-  void flush();
-  void turn(const Vec3& a, const Vec3& b, double sign);
+
+  /// Sources of one kind that wait for their sum.
+  struct Batch {
+    static constexpr std::size_t kMost = 64;
+
+    bool dipoles;
+    double arrays[10][kMost];  // SourceArrays
+    std::size_t count = 0;
+  };
+  void push(Batch& batch, const Vec3& a, const Vec3& e, const Vec3& w, double endless);
+  void flush(Batch& batch);
 
   const BoundaryPieces& pieces_;
-  static constexpr std::size_t kBatch = 64;
-  double arrays_[11][kBatch];  // SourceArrays
-  std::size_t pushed_ = 0;
+  Batch edges_{false, {}, 0}, dipoles_{true, {}, 0};
   Vec3 centre_{0};
   LocalExpansion* far_ = nullptr;
   double re_ = 1, im_ = 0;  // product of the curves' factors at the centre
-  double dipoles_ = 0;      // sum of the dipoles' K at the centre
+  double surfaces_ = 0;     // sum of the dipoles' K at the centre
 };
 
 }  // namespace riffler

@@ -45,15 +45,6 @@ class Field {
   std::vector<PathPoint> path_;
 };
 
-/// A direction in stereographic coordinates up to a positive factor: (t : α) = (t : f α), rr = |α|².
-struct Stereographic {
-  double t, f;
-  Stereographic(double z, double rr) {
-    const double length = std::sqrt(rr + z * z);
-    t = z < 0 ? rr : length + z, f = z < 0 ? length - z : 1.0;
-  }
-};
-
 /// Distance of p from the segment ab.
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
 

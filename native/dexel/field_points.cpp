@@ -128,12 +128,16 @@ struct Sums {
 
   /// |∇(dl × r / |r|³)| ≤ 2 |dl| / |r|³, integrated over the edge or over the whole line. Third derivatives of 1/r, for
   /// the surface that a loop spans, are at most 6 / r⁴.
-  HWY_INLINE void bound(const PathPoint& to, const Seen& a, const Seen& b, V reach) {
+  HWY_INLINE void bound(const PathPoint& to, const Seen& a, const Seen& b, V half_x, V half_y, V half_z) {
     const V ex = sub(b.x, a.x), ey = sub(b.y, a.y), ez = sub(b.z, a.z);
     const V along = add(add(mul(a.x, ex), mul(a.y, ey)), mul(a.z, ez));
     const V t = hn::Min(hn::Max(mul(along, set(-to.inverse_square)), hn::Zero(kD)), set(1));
     const V qx = add(a.x, mul(t, ex)), qy = add(a.y, mul(t, ey)), qz = add(a.z, mul(t, ez));
-    const V d = sub(hn::Sqrt(add(add(mul(qx, qx), mul(qy, qy)), mul(qz, qz))), reach);
+    // From the point q of the edge that is nearest to the box's centre, the edge lies behind the plane across q. The
+    // box reaches that far toward it.
+    const V away = hn::Sqrt(add(add(mul(qx, qx), mul(qy, qy)), mul(qz, qz)));
+    const V reach = add(add(mul(hn::Abs(qx), half_x), mul(hn::Abs(qy), half_y)), mul(hn::Abs(qz), half_z));
+    const V d = sub(away, hn::Div(reach, hn::Max(away, set(kNearest))));
     const V inverse = hn::Div(set(1), hn::Max(d, set(kNearest))), square = mul(inverse, inverse);
     piece = add(piece, mul(hn::Min(mul(set(to.half_length), inverse), set(1)), square));
     closest = hn::Max(closest, square);
@@ -180,7 +184,8 @@ HWY_INLINE void evaluate(std::span<const PathPoint> path, const LocalExpansion& 
                          const FieldPoints& points, FieldValues& values) {
   for (std::size_t at = 0; at < kPoints; at += hn::Lanes(kD)) {
     const V px = hn::LoadU(kD, points.x + at), py = hn::LoadU(kD, points.y + at), pz = hn::LoadU(kD, points.z + at);
-    const V reach = hn::LoadU(kD, points.reach + at);
+    const V half_x = hn::LoadU(kD, points.half_x + at), half_y = hn::LoadU(kD, points.half_y + at);
+    const V half_z = hn::LoadU(kD, points.half_z + at);
     V gx, gy, gz;
     V phase = far_field<kFull>(far, sub(px, set(centre.x)), sub(py, set(centre.y)), sub(pz, set(centre.z)), gx, gy, gz);
     Sums sums = Sums::none();
@@ -192,7 +197,7 @@ HWY_INLINE void evaluate(std::span<const PathPoint> path, const LocalExpansion& 
         const Stereographic t = stereographic(b.z, b.rr, b.length);
         if (path[k].joined) {
           sums.edge<kFull>(path[k - 1], path[k], a, b, s, t);
-          if (path[k - 1].finite && path[k].finite) sums.bound(path[k], a, b, reach);
+          if (path[k - 1].finite && path[k].finite) sums.bound(path[k], a, b, half_x, half_y, half_z);
         }
         // A factor is at most the fourth power of a distance in cells, so that eight stay within range.
         if (k % 8 == 0) sums.rescale();
@@ -229,7 +234,7 @@ void FieldVariation(std::span<const PathPoint> path, const FieldPoints& points, 
                     double* variation) {
   for (std::size_t at = 0; at < kPoints; at += hn::Lanes(kD)) {
     const V px = hn::LoadU(kD, points.x + at), py = hn::LoadU(kD, points.y + at), pz = hn::LoadU(kD, points.z + at);
-    const V half = hn::LoadU(kD, points.reach + at);
+    const V half = hn::LoadU(kD, points.half_z + at);
     V rest = hn::LoadU(kD, slopes + at);  // of the slope
     V up[2], down[2];                     // below and above
     for (const int side : {0, 1}) up[side] = down[side] = hn::Zero(kD);

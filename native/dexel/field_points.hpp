@@ -24,20 +24,21 @@ struct PathPoint {
 
 struct FieldPoints {
   double x[kPoints], y[kPoints], z[kPoints];
-  double reach[kPoints];  ///< radius of the ball in which bounds hold
+  double half_x[kPoints], half_y[kPoints], half_z[kPoints];  ///< of the boxes about the points in which bounds hold
 };
 
 struct FieldValues {
   double phase[kPoints];                         ///< of K: 0 where K = ½, in [−½, ½]
   double gx[kPoints], gy[kPoints], gz[kPoints];  ///< K's gradient
-  double curvature[kPoints];  ///< bound of the second derivatives of the near edges' K; above 1e20: an edge is in reach
+  double curvature[kPoints];  ///< bound of the second derivatives of the near edges' K; above 1e20: an edge may be in
+                              ///< the box
 };
 
 /// K at points: the near path and the polynomial `far` about `centre`. gx and gy are left out unless `full`.
 void evaluate_field(std::span<const PathPoint> path, const LocalExpansion& far, const Vec3& centre,
                     const FieldPoints& points, bool full, FieldValues& values);
 
-/// Bounds of how far K may be from K(p) on the vertical through p, up to `reach` from p, given K's slope there and a
+/// Bounds of how far K may be from K(p) on the vertical through p, up to half_z from p, given K's slope there and a
 /// bound of the second derivative that points at infinity and polynomial have; infinity where the boundary has a vertex
 /// there.
 void field_variation(std::span<const PathPoint> path, const FieldPoints& points, const double* slope, double curvature,

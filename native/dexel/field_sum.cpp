@@ -1,165 +1,193 @@
 #include "dexel/field_sum.hpp"
 
-#if defined(__GNUC__) && defined(__x86_64__)
-#define RIFFLER_VECTOR_TARGETS 1
-#define RIFFLER_INLINE inline __attribute__((always_inline))
-#else
-#define RIFFLER_INLINE inline
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dexel/field_sum.cpp"
+// Clang-format would sort foreach_target.h away from its place.
+// clang-format off
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format on
+
+#ifndef RIFFLER_SOURCE_LANES
+#define RIFFLER_SOURCE_LANES
+namespace riffler {
+/// A SourceSum for every lane.
+struct SourceLanes {
+  double c_re[SourceSum::kTerms][kSourceLanes], c_im[SourceSum::kTerms][kSourceLanes];
+  double re[kSourceLanes], im[kSourceLanes], dipoles[kSourceLanes];
+};
+}  // namespace riffler
 #endif
+
+// Only operations that IEEE 754 rounds correctly are used and none is fused, and a source's lane is the same whatever
+// the width of the registers, so every instruction set gives the same bits.
+
+HWY_BEFORE_NAMESPACE();
+namespace riffler::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+namespace {
+
+using Lanes = hn::CappedTag<double, kSourceLanes>;
+using V = hn::Vec<Lanes>;
+constexpr Lanes kD;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kGauss = 0.28867513459481287;  // 1 / (2 √3)
+constexpr int kOrder = kExpansionDegree + 1;
+
+HWY_INLINE V set(double x) {
+  return hn::Set(kD, x);
+}
+HWY_INLINE V add(V a, V b) {
+  return hn::Add(a, b);
+}
+HWY_INLINE V sub(V a, V b) {
+  return hn::Sub(a, b);
+}
+HWY_INLINE V mul(V a, V b) {
+  return hn::Mul(a, b);
+}
+
+constexpr int place(int n, int m) {
+  return n * (n + 1) / 2 + m;
+}
+constexpr int kPlaces = place(kOrder, kOrder) + 1;
+
+/// Solid harmonics S_n^m, m ≥ 0, that decay: 1 / |r − p| = Σ conj(R_n^m(p)) S_n^m(r) over n and −n ≤ m ≤ n, with S_n^−m
+/// = (−1)^m conj(S_n^m). They are (n − m)! P_n^m(cos θ) e^(imφ) / |r|^(n+1).
+struct Harmonics {
+  V re[kPlaces], im[kPlaces];
+};
+
+/// Adds the harmonics of r, times g^(n−1). Returns 1 / |r|.
+HWY_INLINE V add_harmonics(V x, V y, V z, V g, Harmonics& sum) {
+  const V inverse = hn::Div(set(1), add(add(mul(x, x), mul(y, y)), mul(z, z))), root = hn::Sqrt(inverse);
+  const V u = mul(x, inverse), v = mul(y, inverse), w = mul(z, inverse);
+  V power[kOrder + 1];
+  power[1] = set(1);
+  for (int n = 2; n <= kOrder; ++n) power[n] = mul(power[n - 1], g);
+  const auto put = [&](int n, int m, V re, V im) HWY_ATTR {
+    if (n == 0) return;
+    const int k = place(n, m);
+    sum.re[k] = add(sum.re[k], mul(power[n], re));
+    if (m > 0) sum.im[k] = add(sum.im[k], mul(power[n], im));
+  };
+  V diagonal_re = root, diagonal_im = hn::Zero(kD);
+  for (int m = 0; m <= kOrder; ++m) {
+    if (m > 0) {
+      const V f = set(2.0 * m - 1), re = mul(f, diagonal_re), im = mul(f, diagonal_im);
+      diagonal_re = sub(mul(u, re), mul(v, im)), diagonal_im = add(mul(u, im), mul(v, re));
+    }
+    V before_re = hn::Zero(kD), before_im = hn::Zero(kD), re = diagonal_re, im = diagonal_im;
+    put(m, m, re, im);
+    for (int n = m + 1; n <= kOrder; ++n) {
+      const V a = mul(set(2.0 * n - 1), w), b = mul(set((n - 1.0) * (n - 1) - m * m), inverse);
+      const V next_re = sub(mul(a, re), mul(b, before_re)), next_im = sub(mul(a, im), mul(b, before_im));
+      before_re = re, before_im = im, re = next_re, im = next_im;
+      put(n, m, re, im);
+    }
+  }
+  return root;
+}
+
+/// The factor whose argument is half the solid angle of what an edge from a to b sweeps up the ray, dot = a·b and cross
+/// = (a × b)_z but for their z (field.hpp). Of directions only a positive factor depends on the length.
+HWY_INLINE void turn(V az, V aa, V bz, V bb, V dot, V cross, V& re, V& im) {
+  const auto project = [](V z, V rr, V& t, V& f) HWY_ATTR {
+    const V length = hn::Sqrt(add(rr, mul(z, z)));
+    const auto below = hn::Lt(z, hn::Zero(kD));
+    t = hn::IfThenElse(below, rr, add(length, z)), f = hn::IfThenElse(below, sub(length, z), set(1));
+  };
+  V ta, fa, tb, fb;
+  project(az, aa, ta, fa), project(bz, bb, tb, fb);
+  const V f = mul(fa, fb), x = add(mul(ta, tb), mul(f, dot)), y = mul(f, cross);
+  const V turned = sub(mul(re, x), mul(im, y));
+  im = add(mul(re, y), mul(im, x)), re = turned;
+  const V scale = hn::Div(set(1), add(add(hn::Abs(re), hn::Abs(im)), set(1e-300)));
+  re = mul(re, scale), im = mul(im, scale);
+}
+
+}  // namespace
+
+void SumSources(const SourceArrays& in, SourceLanes& out) {
+  for (std::size_t at = 0; at < kSourceLanes; at += hn::Lanes(kD)) {
+    V c_re[SourceSum::kTerms], c_im[SourceSum::kTerms];
+    for (int k = 0; k < SourceSum::kTerms; ++k) c_re[k] = c_im[k] = hn::Zero(kD);
+    V re = set(1), im = hn::Zero(kD), dipoles = hn::Zero(kD);
+    for (std::size_t k = at; k < in.n; k += kSourceLanes) {
+      const auto load = [&](const double* p) HWY_ATTR { return hn::LoadU(kD, p + k); };
+      const V ax = load(in.ax), ay = load(in.ay), az = load(in.az), wx = load(in.wx), wy = load(in.wy),
+              wz = load(in.wz);
+      Harmonics s;
+      for (int p = 0; p < kPlaces; ++p) s.re[p] = s.im[p] = hn::Zero(kD);
+      V weight = set(1 / (4 * kPi));
+      if (in.dipoles) {
+        const V root = add_harmonics(ax, ay, az, set(1), s);
+        const V along = add(add(mul(wx, ax), mul(wy, ay)), mul(wz, az));
+        dipoles = sub(dipoles, mul(mul(along, weight), mul(root, mul(root, root))));
+      } else {
+        const V ex = load(in.ex), ey = load(in.ey), ez = load(in.ez), endless = load(in.endless);
+        const V bx = add(ax, ex), by = add(ay, ey), bz = add(az, ez);
+        turn(az, add(mul(ax, ax), mul(ay, ay)), bz, add(mul(bx, bx), mul(by, by)), add(mul(ax, bx), mul(ay, by)), wz,
+             re, im);
+        weight = mul(weight, set(0.5));
+        for (const double t : {0.5 - kGauss, 0.5 + kGauss})
+          add_harmonics(add(ax, mul(set(t), ex)), add(ay, mul(set(t), ey)), add(az, mul(set(t), ez)),
+                        sub(set(1), mul(endless, set(t))), s);
+      }
+      // w · ∇ of S_n^m is −w_z S_{n+1}^m − (w_x − i w_y) S_{n+1}^{m+1} / 2 + (w_x + i w_y) S_{n+1}^{m−1} / 2.
+      const V ux = mul(mul(set(0.5), weight), wx), uy = mul(mul(set(0.5), weight), wy), uz = mul(weight, wz);
+      for (int n = 1; n <= kExpansionDegree; ++n) {
+        const V part = set(in.dipoles ? 1 : 1.0 / n);
+        for (int m = 0; m <= n; ++m) {
+          const int p = place(n + 1, m), t = SourceSum::term(n, m);
+          V sum_re = mul(uz, s.re[p]), sum_im = mul(uz, s.im[p]);
+          sum_re = add(sum_re, add(mul(ux, s.re[p + 1]), mul(uy, s.im[p + 1])));
+          sum_im = add(sum_im, sub(mul(ux, s.im[p + 1]), mul(uy, s.re[p + 1])));
+          if (m == 0) {
+            sum_re = add(sum_re, add(mul(ux, s.re[p + 1]), mul(uy, s.im[p + 1])));
+          } else {
+            sum_re = sub(sum_re, sub(mul(ux, s.re[p - 1]), mul(uy, s.im[p - 1])));
+            sum_im = sub(sum_im, add(mul(ux, s.im[p - 1]), mul(uy, s.re[p - 1])));
+            c_im[t] = sub(c_im[t], mul(part, sum_im));
+          }
+          c_re[t] = sub(c_re[t], mul(part, sum_re));
+        }
+      }
+    }
+    for (int k = 0; k < SourceSum::kTerms; ++k)
+      hn::StoreU(c_re[k], kD, out.c_re[k] + at), hn::StoreU(c_im[k], kD, out.c_im[k] + at);
+    hn::StoreU(re, kD, out.re + at), hn::StoreU(im, kD, out.im + at), hn::StoreU(dipoles, kD, out.dipoles + at);
+  }
+}
+
+}  // namespace riffler::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 
 namespace riffler {
 
-namespace {
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGauss = 0.28867513459481287;  // 1 / (2 √3)
-}  // namespace
+HWY_EXPORT(SumSources);
 
-// Nothing is reordered: every lane does the same arithmetic whatever the width of the registers.
-
-/// The loops over lanes, compiled once for each set of instructions.
-struct FieldLanes {
-  using SourceLanes = FieldSums::SourceLanes;
-
-  /// b[i][j]: terms of 1 / |y − p| in the powers x^i y^j of p, and those with one z. |α| |y|² b_α = (2 |α| − 1) Σ y_i
-  /// b_{α − e_i} − (|α| − 1) Σ b_{α − 2 e_i}, since Σ b_α is a generating function of Legendre polynomials.
-  struct Inverse {
-    static constexpr int kSide = kExpansionDegree + 2;
-    double flat[kSide][kSide][kSourceLanes], once[kSide][kSide][kSourceLanes];
-  };
-
-  static RIFFLER_INLINE void inverse(const double* x, const double* y, const double* z, Inverse& out) {
-    double over[kSourceLanes];
-    for (std::size_t q = 0; q < kSourceLanes; ++q) {
-      over[q] = 1 / (x[q] * x[q] + y[q] * y[q] + z[q] * z[q]);
-      out.flat[0][0][q] = __builtin_sqrt(over[q]);
-    }
-    for (int i = 0; i < Inverse::kSide; ++i)
-      for (int j = 0; i + j < Inverse::kSide; ++j) {
-        const int n = i + j;
-        double* __restrict b = out.flat[i][j];
-        if (n > 0) {
-          const double first = (2.0 * n - 1) / n, second = (n - 1.0) / n;
-          double sum[kSourceLanes];
-          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] = 0;
-          if (i > 0)
-            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * x[q] * out.flat[i - 1][j][q];
-          if (j > 0)
-            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * y[q] * out.flat[i][j - 1][q];
-          if (i > 1)
-            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.flat[i - 2][j][q];
-          if (j > 1)
-            for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.flat[i][j - 2][q];
-          for (std::size_t q = 0; q < kSourceLanes; ++q) b[q] = sum[q] * over[q];
-        }
-        if (n + 1 >= Inverse::kSide) continue;
-        const double first = (2.0 * n + 1) / (n + 1), second = static_cast<double>(n) / (n + 1);
-        double sum[kSourceLanes];
-        for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] = first * z[q] * b[q];
-        if (i > 0)
-          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * x[q] * out.once[i - 1][j][q];
-        if (j > 0)
-          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] += first * y[q] * out.once[i][j - 1][q];
-        if (i > 1)
-          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.once[i - 2][j][q];
-        if (j > 1)
-          for (std::size_t q = 0; q < kSourceLanes; ++q) sum[q] -= second * out.once[i][j - 2][q];
-        for (std::size_t q = 0; q < kSourceLanes; ++q) out.once[i][j][q] = sum[q] * over[q];
-      }
-  }
-
-  /// Adds (w · ∇) of the terms, by which a term of degree n in K is made of those of degree n + 1, times g^n.
-  static RIFFLER_INLINE void derive(const Inverse& b, const double* wx, const double* wy, const double* wz,
-                                    const double* g, const double* dipole, SourceLanes& out) {
-    double power[kExpansionDegree + 1][kSourceLanes];  // g^n / n, of dipoles 1
-    for (std::size_t q = 0; q < kSourceLanes; ++q) {
-      double p = 1;
-      for (int n = 1; n <= kExpansionDegree; ++n) p *= g[q], power[n][q] = p * (1.0 / n + dipole[q] * (1 - 1.0 / n));
-    }
-    for (int i = 0; i <= kExpansionDegree; ++i)
-      for (int j = 0; i + j <= kExpansionDegree; ++j) {
-        if (i + j > 0)
-          for (std::size_t q = 0; q < kSourceLanes; ++q)
-            out.terms[0][i][j][q] +=
-                power[i + j][q] * (wx[q] * ((i + 1) * b.flat[i + 1][j][q]) + wy[q] * ((j + 1) * b.flat[i][j + 1][q]) +
-                                   wz[q] * b.once[i][j][q]);
-        if (i + j == kExpansionDegree) continue;
-        for (std::size_t q = 0; q < kSourceLanes; ++q)
-          out.terms[1][i][j][q] +=
-              power[i + j + 1][q] *
-              (wx[q] * ((i + 1) * b.once[i + 1][j][q]) + wy[q] * ((j + 1) * b.once[i][j + 1][q]) -
-               wz[q] * ((i + 2) * (i + 1) * b.flat[i + 2][j][q] + (j + 2) * (j + 1) * b.flat[i][j + 2][q]));
-      }
-  }
-
-  static RIFFLER_INLINE void sources(const SourceArrays& in, SourceLanes& out) {
-    out = {};
-    Inverse b;
-    for (std::size_t begin = 0; begin < in.n; begin += kSourceLanes) {
-      double wx[kSourceLanes], wy[kSourceLanes], wz[kSourceLanes], x[kSourceLanes], y[kSourceLanes], z[kSourceLanes],
-          g[kSourceLanes];
-      for (std::size_t q = 0; q < kSourceLanes; ++q) {
-        const std::size_t k = begin + q;
-        constexpr double kWeight = -0.5 / (4 * kPi);
-        wx[q] = kWeight * in.wx[k], wy[q] = kWeight * in.wy[k], wz[q] = kWeight * in.wz[k];
-      }
-      for (const double s : {0.5 - kGauss, 0.5 + kGauss}) {
-        for (std::size_t q = 0; q < kSourceLanes; ++q) {
-          const std::size_t k = begin + q;
-          x[q] = in.ax[k] + s * in.ex[k], y[q] = in.ay[k] + s * in.ey[k], z[q] = in.az[k] + s * in.ez[k];
-          g[q] = 1 - in.endless[k] * s;
-        }
-        inverse(x, y, z, b);
-        derive(b, wx, wy, wz, g, in.dipole + begin, out);
-      }
-    }
-  }
-
-  static void sources_baseline(const SourceArrays& in, SourceLanes& out) { sources(in, out); }
-
-#ifdef RIFFLER_VECTOR_TARGETS
-  // Neither target may bring fused multiply-adds in: results would differ.
-  __attribute__((target("avx2"))) static void sources_avx2(const SourceArrays& in, SourceLanes& out) {
-    sources(in, out);
-  }
-  __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) static void sources_avx512(
-      const SourceArrays& in, SourceLanes& out) {
-    sources(in, out);
-  }
-#endif
-
-  static std::vector<FieldSums> available() {
-    std::vector<FieldSums> sums;
-    const auto add = [&](auto sources) {
-      FieldSums s;
-      s.sources_ = sources;
-      sums.push_back(s);
-    };
-#ifdef RIFFLER_VECTOR_TARGETS
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-      add(sources_avx512);
-    if (__builtin_cpu_supports("avx2")) add(sources_avx2);
-#endif
-    add(sources_baseline);
-    return sums;
-  }
-};
-
-const std::vector<FieldSums>& FieldSums::available() {
-  static const std::vector<FieldSums> sums = FieldLanes::available();
-  return sums;
-}
-
-// Lanes are joined out here, in the baseline's instructions.
-SourceSum FieldSums::sources(const SourceArrays& in) const {
+SourceSum sum_sources(const SourceArrays& in) {
   SourceLanes lanes;
-  sources_(in, lanes);
-  SourceSum out{};
-  for (int k = 0; k < 2; ++k)
-    for (int i = 0; i + k <= kExpansionDegree; ++i)
-      for (int j = 0; i + j + k <= kExpansionDegree; ++j)
-        for (std::size_t q = 0; q < kSourceLanes; ++q) out.terms[k][i][j] += lanes.terms[k][i][j][q];
+  HWY_DYNAMIC_DISPATCH(SumSources)(in, lanes);
+  const auto sum = [](const double* l) { return ((l[0] + l[4]) + (l[2] + l[6])) + ((l[1] + l[5]) + (l[3] + l[7])); };
+  static_assert(kSourceLanes == 8);
+  SourceSum out;
+  for (int k = 0; k < SourceSum::kTerms; ++k) out.c_re[k] = sum(lanes.c_re[k]), out.c_im[k] = sum(lanes.c_im[k]);
+  out.dipoles = sum(lanes.dipoles);
+  out.re = 1, out.im = 0;
+  for (std::size_t q = 0; q < kSourceLanes; ++q) {
+    const double turned = out.re * lanes.re[q] - out.im * lanes.im[q];
+    out.im = out.re * lanes.im[q] + out.im * lanes.re[q];
+    out.re = turned;
+  }
   return out;
 }
 
 }  // namespace riffler
+
+#endif

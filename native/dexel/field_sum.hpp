@@ -1,8 +1,7 @@
-// The sums over what is far of a boundary, written so that compilers turn them into vector code.
+// The sums over what is far of a boundary, in vector lanes, chosen at run time.
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 namespace riffler {
 
@@ -10,35 +9,29 @@ inline constexpr std::size_t kSourceLanes = 8;
 
 /// What is far from the origin, n a multiple of kSourceLanes:
 /// - edges from a to a + e, w = a × e;
-/// - where `endless` is 1, edges from a to infinity in the direction of a + e, w = a × e;
-/// - where `dipole` is 1, small surfaces at a, −w their area vector, e = 0.
+/// - where `endless` is 1, lines from a to infinity in the direction of a + e, w = ± a × e;
+/// - or, if `dipoles`, small surfaces at a, −w their area vectors; e and endless count for nothing.
+/// Filled up with a = (1, 0, 0) and zeros.
 struct SourceArrays {
-  const double *ax, *ay, *az, *ex, *ey, *ez, *wx, *wy, *wz, *endless, *dipole;
+  const double *ax, *ay, *az, *ex, *ey, *ez, *wx, *wy, *wz, *endless;
   std::size_t n;
+  bool dipoles;
 };
 
 inline constexpr int kExpansionDegree = 5;
 
-/// The terms of K's Taylor polynomial about the origin with the powers x^i y^j z^k, k < 2, 1 ≤ i + j + k ≤ degree.
+/// K of sources about the origin. With the solid harmonics
+///     R_n^m(p) = Σ_k (−1)^k ((x + iy) / 2)^(m+k) ((x − iy) / 2)^k z^(n−m−2k) / (k! (m+k)! (n−m−2k)!)
+/// its terms of degree n ≥ 1 are Re(conj(R_n^0) c_n^0) + 2 Σ_{m>0} Re(conj(R_n^m) c_n^m).
 struct SourceSum {
-  double terms[2][kExpansionDegree + 1][kExpansionDegree + 1];
+  static constexpr int kTerms = kExpansionDegree * (kExpansionDegree + 3) / 2;
+  static constexpr int term(int n, int m) { return n * (n + 1) / 2 + m - 1; }
+
+  double c_re[kTerms], c_im[kTerms];
+  double re, im;   // product of the edges' factors at the origin, scaled: its argument is half the solid angle
+  double dipoles;  // K of the dipoles at the origin
 };
 
-/// The sums for one set of instructions.
-class FieldSums {
- public:
-  SourceSum sources(const SourceArrays& in) const;
-
-  /// All that this processor can run, the fastest first. They give the same bits.
-  static const std::vector<FieldSums>& available();
-
- private:
-  struct SourceLanes {
-    double terms[2][kExpansionDegree + 1][kExpansionDegree + 1][kSourceLanes];
-  };
-  friend struct FieldLanes;
-
-  void (*sources_)(const SourceArrays&, SourceLanes&);
-};
+SourceSum sum_sources(const SourceArrays& in);
 
 }  // namespace riffler

@@ -1,5 +1,6 @@
 #include "dexel/local_expansion.hpp"
 
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -24,12 +25,43 @@ void LocalExpansion::shift(const Vec3& d) {
     }
 }
 
-void LocalExpansion::add(const SourceArrays& sources) {
-  const SourceSum sum = FieldSums::available().front().sources(sources);
+namespace {
+
+/// The terms of R_n^m with z^k, k = (n − m) mod 2: those of x^(n−k−j) y^j, real for even j, else imaginary.
+struct Harmonic {
+  double terms[kExpansionDegree + 1];
+};
+
+std::array<Harmonic, SourceSum::kTerms> harmonics() {
+  std::array<Harmonic, SourceSum::kTerms> all{};
+  const auto factorial = [](int n) { return std::tgamma(n + 1.0); };
+  for (int n = 1; n <= kExpansionDegree; ++n)
+    for (int m = 0; m <= n; ++m) {
+      const int k = (n - m) / 2, degree = n - (n - m) % 2;
+      // (x + iy)^(m+k) (x − iy)^k, factor by factor: the coefficient of y^j is i^j times that of (1 + y)^(m+k) (1 −
+      // y)^k.
+      std::array<double, kExpansionDegree + 2> c{1};
+      for (int factor = 0; factor < degree; ++factor)
+        for (int j = kExpansionDegree; j > 0; --j) c[j] += factor < m + k ? c[j - 1] : -c[j - 1];
+      // conj(R) c has the real part Re R Re c + Im R Im c, and counts twice for m and −m.
+      const double scale =
+          (m > 0 ? 2 : 1) * (k % 2 == 0 ? 1 : -1) / (factorial(k) * factorial(m + k) * std::ldexp(1.0, degree));
+      for (int j = 0; j <= degree; ++j) all[SourceSum::term(n, m)].terms[j] = (j / 2 % 2 == 0 ? scale : -scale) * c[j];
+    }
+  return all;
+}
+
+}  // namespace
+
+void LocalExpansion::add(const SourceSum& sources) {
+  static const std::array<Harmonic, SourceSum::kTerms> all = harmonics();
   LocalExpansion more;
-  for (int k = 0; k < 2; ++k)
-    for (int i = 0; i + k <= kDegree; ++i)
-      for (int j = 0; i + j + k <= kDegree; ++j) more.rows_[row(k, i)][j] = sum.terms[k][i][j];
+  for (int n = 1; n <= kDegree; ++n)
+    for (int m = 0; m <= n; ++m) {
+      const int t = SourceSum::term(n, m), k = (n - m) % 2, degree = n - k;
+      for (int j = 0; j <= degree; ++j)
+        more.rows_[row(k, degree - j)][j] += all[t].terms[j] * (j % 2 == 0 ? sources.c_re[t] : sources.c_im[t]);
+    }
   // The others follow from Laplace's equation.
   for (int k = 2; k <= kDegree; ++k)
     for (int i = 0; i + k <= kDegree; ++i)

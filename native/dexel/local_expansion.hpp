@@ -20,8 +20,8 @@ class LocalExpansion {
 
   /// Moves the centre by d.
   void shift(const Vec3& d);
-  /// Adds what the sources about the centre give, all but the constant.
-  void add(const SourceArrays& sources);
+  /// Adds what sources about the centre give, all but the constant.
+  void add(const SourceSum& sources);
 
   /// Within a box of sides `half` (not ± half) that lies within ± half: bound of how far the polynomial is from its
   /// tangent plane at that box's centre.

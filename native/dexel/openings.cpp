@@ -21,8 +21,7 @@ namespace riffler {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kLeaf = 4;                             // columns and cells of a leaf's sides
-constexpr int kSmoothLeaf = 16;                      // of one that is far from the boundary
+constexpr int kLeaf = 4;                             // columns and cells of a leaf's sides at least
 constexpr std::size_t kTasks = 512;                  // blocks into which the grid is cut before each is searched alone
 constexpr double kShortest = 1.0 / (1 << 20);        // cells: a piece of a column at an edge is not halved further
 constexpr double kRoot = 1e-9;                       // cells: where the search along a column ends
@@ -61,6 +60,13 @@ struct Tangent {
   Vec3 gradient;
 };
 constexpr Tangent kNoTangent{0, std::numeric_limits<double>::infinity(), Vec3(0)};
+
+/// Columns and cells of the sides of blocks that are searched column by column: the less of the boundary is near, the
+/// less a column costs beside what it costs to divide a block.
+int leaf_side(const Surroundings& around) {
+  const std::size_t near = around.near.size();
+  return near <= 8 ? 4 * kLeaf : near <= 64 ? 2 * kLeaf : kLeaf;
+}
 
 /// Searches blocks for passages.
 class Search {
@@ -101,7 +107,7 @@ class Search {
     if (depth == levels_.size()) levels_.emplace_back();
     Surroundings& around = levels_[depth];
     enter(block, within, around);
-    if (block.within(around.near.empty() ? kSmoothLeaf : kLeaf)) return leaf(block, tangent, around);
+    if (block.within(leaf_side(around))) return leaf(block, tangent, around);
     parts(block, around, [&](const Block& part, const Tangent& t) { this->block(part, t, around, depth + 1); });
   }
 
@@ -133,10 +139,12 @@ class Search {
   static void set(FieldPoints& points, std::size_t k, const Block& block) {
     const Vec3 centre = block.centre();
     points.x[k] = centre.x, points.y[k] = centre.y, points.z[k] = centre.z;
-    points.reach[k] = glm::length(block.half());
+    const Vec3 half = block.half();
+    points.half_x[k] = half.x, points.half_y[k] = half.y, points.half_z[k] = half.z;
   }
   static void set(FieldPoints& points, std::size_t k, const Piece& piece, double z) {
-    points.x[k] = piece.row, points.y[k] = piece.column, points.z[k] = z, points.reach[k] = piece.half();
+    points.x[k] = piece.row, points.y[k] = piece.column, points.z[k] = z;
+    points.half_x[k] = points.half_y[k] = 0, points.half_z[k] = piece.half();
   }
 
   /// Takes up to kPoints items from the end of `items`; the points are those of the first where there are less.
@@ -182,7 +190,7 @@ class Search {
                                    [](const Piece& p, FieldPoints& to, std::size_t k) { set(to, k, p, p.middle()); });
     field_.at(points, false, values);
     for (std::size_t k = 0; k < count; ++k) {
-      const double half = points.reach[k], phase = values.phase[k], slope = values.gz[k];
+      const double half = points.half_z[k], phase = values.phase[k], slope = values.gz[k];
       const double curvature = field_.rays() + curved_ + values.curvature[k];
       if (std::abs(phase) > std::abs(slope) * half + 0.5 * curvature * half * half + kSlack * half) continue;
       if (std::abs(slope) > 2 * curvature * half)
@@ -204,7 +212,7 @@ class Search {
     field_.variation(points, slopes, curved_, variation);
     for (std::size_t k = 0; k < count; ++k) {
       const auto& [piece, phase, slope] = taken[k];
-      const double half = points.reach[k], z = points.z[k];
+      const double half = points.half_z[k], z = points.z[k];
       if (std::abs(phase) > variation[k] + kSlack * half) continue;
       // A column in the plane of a flat opening, where K is ½ throughout: either side will do.
       const bool level = std::abs(phase) + std::abs(slope) * half < kLevel && variation[k] < kLevelBound;

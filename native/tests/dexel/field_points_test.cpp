@@ -36,14 +36,13 @@ TEST(FieldPoints, AreTheSameBitsForAllInstructionSets) {
     std::array<double, kPoints> slopes;
     for (int k = 0; k < kPoints; ++k) {
       points.x[k] = normal(random), points.y[k] = std::round(normal(random)), points.z[k] = normal(random);
-      points.reach[k] = 3, slopes[k] = normal(random);
+      points.half_x[k] = 1, points.half_y[k] = 2, points.half_z[k] = 3, slopes[k] = normal(random);
     }
     LocalExpansion far;
-    std::array<std::array<double, kSourceLanes>, 11> a;
-    for (auto& values : a)
-      for (double& value : values) value = normal(random);
-    far.add({a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data(), a[6].data(), a[7].data(),
-             a[8].data(), a[9].data(), a[10].data(), kSourceLanes});
+    SourceSum sources{};
+    for (double& c : sources.c_re) c = 1e-3 * normal(random);
+    for (double& c : sources.c_im) c = 1e-3 * normal(random);
+    far.add(sources);
     const auto sums = [&](const std::string& instruction_set) {
       use_instruction_set(instruction_set);
       Sums out;

@@ -95,9 +95,12 @@ double winding(const std::vector<std::vector<Vec3>>& loops, const Vec3& p) {
 }
 
 /// The same point in all lanes.
-FieldPoints everywhere(const Vec3& p, double reach) {
+FieldPoints everywhere(const Vec3& p, const Vec3& half) {
   FieldPoints points;
-  for (int k = 0; k < kPoints; ++k) points.x[k] = p.x, points.y[k] = p.y, points.z[k] = p.z, points.reach[k] = reach;
+  for (int k = 0; k < kPoints; ++k) {
+    points.x[k] = p.x, points.y[k] = p.y, points.z[k] = p.z;
+    points.half_x[k] = half.x, points.half_y[k] = half.y, points.half_z[k] = half.z;
+  }
   return points;
 }
 
@@ -106,9 +109,9 @@ struct At {
   double phase, curvature;
   Vec3 gradient;
 
-  At(const Field& field, const Vec3& p, double reach) {
+  At(const Field& field, const Vec3& p, const Vec3& half = Vec3(0)) {
     FieldValues values;
-    field.at(everywhere(p, reach), true, values);
+    field.at(everywhere(p, half), true, values);
     phase = values.phase[3], curvature = values.curvature[3] + field.rays();
     gradient = {values.gx[3], values.gy[3], values.gz[3]};
   }
@@ -137,12 +140,12 @@ TEST(BoundaryField, PhaseAndGradientAreThoseOfTheLoops) {
       std::swap(around, inner);
       if (glm::length(p - around.centre) > radius) break;
       field.fill(pieces, around);
-      const At at(field, p, 0);
+      const At at(field, p);
       const Vec3& gradient = at.gradient;
       const double error = at.phase - (k - 0.5);
       EXPECT_NEAR(error, std::round(error), 1e-5) << radius;
       FieldValues along;
-      field.at(everywhere(p, 0), false, along);
+      field.at(everywhere(p, Vec3(0)), false, along);
       EXPECT_EQ(along.phase[0], at.phase);
       EXPECT_EQ(along.gz[0], gradient.z);
       for (int axis = 0; axis < 3; ++axis) {
@@ -172,25 +175,26 @@ TEST(BoundaryField, StaysWithinItsBounds) {
     descent.enter(descent.root(Vec3(0), 130), centre, glm::length(half), around);
     field.fill(pieces, around);
     const Vec3 inner = centre + 0.5 * half * Vec3(uniform(random) > 0 ? 1 : -1);
-    const At at(field, inner, 0.5 * glm::length(half));
+    const At at(field, inner, 0.5 * half);
     const double remainder = 0.125 * at.curvature * glm::dot(half, half) + around.far.curved(half);
     if (remainder > 0.5) continue;
     ++bounded;
     for (int k = 0; k < 8; ++k) {
       const Vec3 q = 0.5 * half * Vec3(uniform(random), uniform(random), uniform(random));
-      const double off = At(field, inner + q, 0).phase - at.phase - glm::dot(at.gradient, q);
+      const double off = At(field, inner + q).phase - at.phase - glm::dot(at.gradient, q);
       EXPECT_LE(std::abs(off - std::round(off)), remainder + 1e-7);
     }
     // Along a column, piece by piece.
     const Vec3 q = centre + half * Vec3(uniform(random), uniform(random), 0.5 * uniform(random));
     const double reach = 0.5 * half.z, curved = around.far.curvature_along(half);
-    const At here(field, q, reach);
+    const Vec3 along(0, 0, reach);
+    const At here(field, q, along);
     const double curvature = here.curvature + curved;
     std::array<double, kPoints> slopes, variation;
     slopes.fill(here.gradient.z);
-    field.variation(everywhere(q, reach), slopes.data(), curved, variation.data());
+    field.variation(everywhere(q, along), slopes.data(), curved, variation.data());
     for (int k = 0; k < 4; ++k) {
-      const double dz = reach * uniform(random), off = At(field, q + Vec3(0, 0, dz), 0).phase - here.phase;
+      const double dz = reach * uniform(random), off = At(field, q + Vec3(0, 0, dz)).phase - here.phase;
       EXPECT_LE(std::abs(off - std::round(off)), variation[0] + 1e-7);
       const double bent = off - here.gradient.z * dz;
       EXPECT_LE(std::abs(bent - std::round(bent)), 0.5 * curvature * dz * dz + 1e-7);
