@@ -4,6 +4,9 @@
 #include <bit>
 #include <cstdint>
 #include <numeric>
+#include <utility>
+
+#include "mesh/weld.hpp"
 
 namespace riffler {
 
@@ -15,60 +18,71 @@ std::uint64_t mix(std::uint64_t x) {  // the finaliser of MurmurHash3
   return x ^ x >> 33;
 }
 
-/// For each vertex a, the sum over its half-edges to higher vertices b of ± hash(b): zero where all pairs cancel (and
-/// by chance with probability 2^−64).
-std::vector<std::uint64_t> unpaired(const Mesh& mesh, const std::vector<int>& same) {
-  std::vector<std::uint64_t> sums(mesh.vertices.size(), 0);
-  const auto add = [&](int a, int b) {
-    if (a < b) sums[a] += mix(static_cast<std::uint64_t>(b) + 1);
-    if (b < a) sums[b] -= mix(static_cast<std::uint64_t>(a) + 1);
-  };
-  for (const Vec3i& t : mesh.triangles) {
-    const int a = same.empty() ? t.x : same[t.x], b = same.empty() ? t.y : same[t.y],
-              c = same.empty() ? t.z : same[t.z];
-    add(a, b), add(b, c), add(c, a);
-  }
-  return sums;
-}
-
-bool all_zero(const std::vector<std::uint64_t>& sums) {
-  return std::all_of(sums.begin(), sums.end(), [](std::uint64_t s) { return s == 0; });
-}
-
-/// For each vertex the first one with equal coordinates.
-std::vector<int> weld(const Vertices& vertices) {
-  const std::size_t slots = std::bit_ceil(vertices.size() * 2 + 1);
-  std::vector<int> table(slots, -1), same(vertices.size());
-  for (std::size_t k = 0; k < vertices.size(); ++k) {
-    const Vec3 p = vertices[k] + 0.0;  // −0 becomes 0
-    std::uint64_t h = mix(std::bit_cast<std::uint64_t>(p.x));
-    h = mix(h + std::bit_cast<std::uint64_t>(p.y)), h = mix(h + std::bit_cast<std::uint64_t>(p.z));
-    std::size_t slot = h & (slots - 1);
-    while (table[slot] >= 0 && vertices[table[slot]] != vertices[k]) slot = (slot + 1) & (slots - 1);
-    if (table[slot] < 0) table[slot] = static_cast<int>(k);
-    same[k] = table[slot];
-  }
-  return same;
-}
-
 struct HalfEdge {
   int from, to;
 };
 
+/// For each vertex a, a sum over half-edges between it and higher vertices b of ± hash(b): zero where all pairs cancel
+/// (and by chance with probability 2^−64).
+class Pairing {
+ public:
+  explicit Pairing(std::size_t vertices) : sums_(vertices, 0) {}
+
+  void add(int from, int to) {
+    if (from < to) sums_[from] += mix(static_cast<std::uint64_t>(to) + 1);
+    if (to < from) sums_[to] -= mix(static_cast<std::uint64_t>(from) + 1);
+  }
+  bool paired(int from, int to) const { return sums_[std::min(from, to)] == 0; }
+  bool all_paired() const {
+    return std::all_of(sums_.begin(), sums_.end(), [](std::uint64_t s) { return s == 0; });
+  }
+
+ private:
+  std::vector<std::uint64_t> sums_;
+};
+
+template <class Visit>
+void for_each_half_edge(const Mesh& mesh, const Visit& visit) {
+  for (const Vec3i& t : mesh.triangles) visit(t.x, t.y), visit(t.y, t.z), visit(t.z, t.x);
+}
+
+/// Half-edges, some of which may have no partner, between vertices with different coordinates: they are numbered anew.
+struct Seams {
+  std::vector<HalfEdge> edges;
+  std::vector<int> first;                   // of each number the first vertex of the mesh
+  std::vector<std::pair<int, int>> others;  // vertices and their numbers
+};
+
+Seams weld_seams(const Mesh& mesh, std::vector<HalfEdge> edges) {
+  Seams out;
+  std::vector<int> number(mesh.vertices.size(), -1), ends;
+  for (const HalfEdge& e : edges) number[e.from] = number[e.to] = 0;
+  for (std::size_t k = 0; k < number.size(); ++k)
+    if (number[k] == 0) ends.push_back(static_cast<int>(k));
+  Welder<Vec3> welder(ends.size());
+  for (const int k : ends) {
+    number[k] = welder.add(mesh.vertices[k]);
+    if (number[k] == static_cast<int>(out.first.size()))
+      out.first.push_back(k);
+    else
+      out.others.emplace_back(k, number[k]);
+  }
+  out.edges = std::move(edges);
+  for (HalfEdge& e : out.edges) e = {number[e.from], number[e.to]};
+  return out;
+}
+
 /// The half-edges that are left over, sorted by their start, each with its multiplicity.
-std::vector<HalfEdge> leftover(const Mesh& mesh, const std::vector<int>& same, const std::vector<std::uint64_t>& sums) {
+std::vector<HalfEdge> leftover(const std::vector<HalfEdge>& all, std::size_t vertices) {
+  Pairing pairing(vertices);
+  for (const HalfEdge& e : all) pairing.add(e.from, e.to);
   struct Directed {
     int low, high, sign;
   };
   std::vector<Directed> candidates;
-  const auto add = [&](int a, int b) {
-    if (a < b && sums[a] != 0) candidates.push_back({a, b, 1});
-    if (b < a && sums[b] != 0) candidates.push_back({b, a, -1});
-  };
-  for (const Vec3i& t : mesh.triangles) {
-    const int a = same[t.x], b = same[t.y], c = same[t.z];
-    add(a, b), add(b, c), add(c, a);
-  }
+  for (const HalfEdge& e : all)
+    if (e.from != e.to && !pairing.paired(e.from, e.to))
+      candidates.push_back({std::min(e.from, e.to), std::max(e.from, e.to), e.from < e.to ? 1 : -1});
   std::sort(candidates.begin(), candidates.end(),
             [](const Directed& a, const Directed& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
   std::vector<HalfEdge> edges;
@@ -121,12 +135,23 @@ std::vector<std::vector<int>> walks(const std::vector<HalfEdge>& edges, std::siz
 
 }  // namespace
 
-std::vector<std::vector<int>> boundary_loops(const Mesh& mesh) {
-  if (all_zero(unpaired(mesh, {}))) return {};
-  const std::vector<int> same = weld(mesh.vertices);
-  const std::vector<std::uint64_t> sums = unpaired(mesh, same);
-  if (all_zero(sums)) return {};
-  return walks(leftover(mesh, same, sums), mesh.vertices.size());
+Boundary find_boundary(const Mesh& mesh) {
+  Pairing pairing(mesh.vertices.size());
+  for_each_half_edge(mesh, [&](int from, int to) { pairing.add(from, to); });
+  if (pairing.all_paired()) return {};
+  // What has its partner by index has it with equal coordinates too.
+  std::vector<HalfEdge> edges;
+  for_each_half_edge(mesh, [&](int from, int to) {
+    if (!pairing.paired(from, to)) edges.push_back({from, to});
+  });
+  const Seams seams = weld_seams(mesh, std::move(edges));
+  Boundary out;
+  out.loops = walks(leftover(seams.edges, seams.first.size()), seams.first.size());
+  if (out.loops.empty()) return out;
+  for (std::vector<int>& loop : out.loops)
+    for (int& k : loop) k = seams.first[k];
+  for (const auto& [k, number] : seams.others) out.twins.emplace_back(k, seams.first[number]);
+  return out;
 }
 
 namespace {
@@ -171,16 +196,19 @@ class Buckets {
 
 }  // namespace
 
-Mesh join_cracks(const Mesh& mesh, const std::vector<std::vector<int>>& loops, double tolerance) {
+std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, double tolerance) {
+  std::vector<int> rim;
+  for (const std::vector<int>& loop : boundary.loops) rim.insert(rim.end(), loop.begin(), loop.end());
+  std::sort(rim.begin(), rim.end());
+  rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
+  Buckets buckets(tolerance, rim.size());
+  std::vector<std::pair<int, Vec3>> moved;
+  for (const int k : rim)
+    if (const Vec3 p = buckets.find_or_add(mesh.vertices[k]); p != mesh.vertices[k]) moved.emplace_back(k, p);
+  if (moved.empty()) return {};
   Mesh joined = mesh;
-  const std::vector<int> same = weld(mesh.vertices);
-  std::vector<bool> on_boundary(mesh.vertices.size(), false);
-  for (const std::vector<int>& loop : loops)
-    for (const int k : loop) on_boundary[k] = true;
-  Buckets buckets(tolerance, mesh.vertices.size());
-  for (std::size_t k = 0; k < mesh.vertices.size(); ++k)
-    if (on_boundary[k]) joined.vertices[k] = buckets.find_or_add(mesh.vertices[k]);
-  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) joined.vertices[k] = joined.vertices[same[k]];
+  for (const auto& [k, p] : moved) joined.vertices[k] = p;
+  for (const auto& [k, twin] : boundary.twins) joined.vertices[k] = joined.vertices[twin];
   return joined;
 }
 

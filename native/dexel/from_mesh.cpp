@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -360,18 +361,18 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
   }
   const Progress rest = part(progress, report ? kCounted : 0, 1);
   const Box3 box = bounds(mesh);
-  std::vector<std::vector<int>> loops = boundary_loops(mesh);
+  Boundary boundary = find_boundary(mesh);
   // Coordinates may have been rounded to single precision on their way here.
   const double rounding =
       std::max(std::ldexp(most(box.size()), -22), std::ldexp(std::max(most(box.lower), most(box.upper)), -24));
-  if (!loops.empty() && is_flat(mesh, rounding))
+  if (!boundary.empty() && is_flat(mesh, rounding))
     throw std::invalid_argument("the mesh is a flat sheet: it has no volume");
-  Mesh joined;
-  const Mesh* used = &mesh;
-  if (!loops.empty()) {
-    joined = join_cracks(mesh, loops, std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
-    if (joined.vertices != mesh.vertices) used = &joined, loops = boundary_loops(joined);
-  }
+  std::optional<Mesh> joined;
+  if (!boundary.empty())
+    joined = join_cracks(mesh, boundary, std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
+  if (joined) boundary = find_boundary(*joined);
+  const Mesh* used = joined ? &*joined : &mesh;
+  const std::vector<std::vector<int>>& loops = boundary.loops;
   fill(result, *used, loops, rest, report ? &findings : nullptr);
   if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(*used, loops, box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");

@@ -65,7 +65,7 @@ constexpr Tangent kNoTangent{0, std::numeric_limits<double>::infinity(), Vec3(0)
 /// less a column costs beside what it costs to divide a block.
 int leaf_side(const Surroundings& around) {
   const std::size_t near = around.near.size();
-  return near <= 8 ? 4 * kLeaf : near <= 64 ? 2 * kLeaf : kLeaf;
+  return near <= 32 ? 4 * kLeaf : near <= 128 ? 2 * kLeaf : kLeaf;
 }
 
 /// Searches blocks for passages.
@@ -80,23 +80,7 @@ class Search {
   template <class Body>
   void parts(const Block& block, const Surroundings& around, const Body& body) {
     field_.fill(pieces_, around);
-    const double curved = around.far.curved(block.half());
-    std::array<Block, kPoints> parts;
-    std::size_t count = 0;
-    halves(block, kLeaf, [&](const Block& part) { parts[count++] = part; });
-    FieldPoints points;
-    for (std::size_t k = 0; k < kPoints; ++k) set(points, k, parts[std::min(k, count - 1)]);
-    FieldValues values;
-    field_.at(points, true, values);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Vec3 half = parts[k].half();
-      // The polynomial's bound is for parts of half the size along every axis.
-      const bool halved = glm::all(glm::lessThanEqual(half, 0.5 * block.half()));
-      const double bend = 0.5 * (field_.rays() + values.curvature[k]) * glm::dot(half, half);
-      Tangent t{values.phase[k], bend + (halved ? curved : 4 * curved), {values.gx[k], values.gy[k], values.gz[k]}};
-      if (t.remainder > 1) t = kNoTangent;
-      if (std::abs(t.phase) <= glm::dot(glm::abs(t.gradient), half) + t.remainder + kSlack) body(parts[k], t);
-    }
+    parts(block, around.far.curved(block.half()), body);
   }
 
   void enter(const Block& block, const Surroundings& within, Surroundings& around) {
@@ -114,6 +98,33 @@ class Search {
  private:
   /// Phases are that much in error (polynomials), with room to spare.
   static constexpr double kSlack = 1e-4;
+
+  /// The same with the present field, `curved` the polynomial's bound for halves of the block.
+  template <class Body>
+  void parts(const Block& block, double curved, const Body& body) {
+    std::array<Block, kPoints> parts;
+    std::size_t count = 0;
+    halves(block, kLeaf, [&](const Block& part) { parts[count++] = part; });
+    FieldPoints points;
+    for (std::size_t k = 0; k < kPoints; ++k) set(points, k, parts[std::min(k, count - 1)]);
+    FieldValues values;
+    field_.at(points, true, values);
+    std::array<Tangent, kPoints> tangents;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3 half = parts[k].half();
+      // The polynomial's bound is for parts of half the size along every axis.
+      const bool halved = glm::all(glm::lessThanEqual(half, 0.5 * block.half()));
+      const double bend = 0.5 * (field_.rays() + values.curvature[k]) * glm::dot(half, half);
+      tangents[k] = {
+          values.phase[k], bend + (halved ? curved : 4 * curved), {values.gx[k], values.gy[k], values.gz[k]}};
+      if (tangents[k].remainder > 1) tangents[k] = kNoTangent;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const Tangent& t = tangents[k];
+      const double most = glm::dot(glm::abs(t.gradient), parts[k].half()) + t.remainder + kSlack;
+      if (std::abs(t.phase) <= most) body(parts[k], t);
+    }
+  }
 
   /// A piece of a column, z0 ≤ z ≤ z1.
   struct Piece {
@@ -161,15 +172,11 @@ class Search {
     return count;
   }
 
-  void leaf(const Block& block, const Tangent& t, const Surroundings& around) {
-    const Vec3 centre = block.centre(), half = block.half();
+  /// A block that is searched in its own surroundings to the end.
+  void leaf(const Block& block, const Tangent& tangent, const Surroundings& around) {
     field_.fill(pieces_, around);
-    curved_ = around.far.curvature_along(half);
-    const double along = std::abs(t.gradient.z) * half.z + t.remainder + kSlack;
-    for (int i = block.i0; i < block.i1; ++i)
-      for (int j = block.j0; j < block.j1; ++j)
-        if (std::abs(t.phase + t.gradient.x * (i - centre.x) + t.gradient.y * (j - centre.y)) <= along)
-          segments_.push_back({i, j, block.z0, block.z1});
+    curved_ = around.far.curvature_along(block.half());
+    columns(block, tangent, around.far.curved(block.half()));
     while (!segments_.empty() || !doubts_.empty()) {
       // Lanes should be full.
       if (segments_.empty() || doubts_.size() >= kPoints)
@@ -179,6 +186,24 @@ class Search {
     }
     while (!roots_.empty()) roots();
     normals();
+  }
+
+  /// Columns of the leaf's blocks in which K may pass ½, `curved` the polynomial's bound for halves of the block.
+  void columns(const Block& block, const Tangent& t, double curved) {
+    if (!field_.smooth() && !block.within(kLeaf)) {
+      const Vec3 half = block.half();
+      parts(block, curved, [&](const Block& part, const Tangent& inner) {
+        const bool halved = glm::all(glm::lessThanEqual(part.half(), 0.5 * half));
+        columns(part, inner, halved ? 0.25 * curved : curved);
+      });
+      return;
+    }
+    const Vec3 centre = block.centre();
+    const double along = std::abs(t.gradient.z) * block.half().z + t.remainder + kSlack;
+    for (int i = block.i0; i < block.i1; ++i)
+      for (int j = block.j0; j < block.j1; ++j)
+        if (std::abs(t.phase + t.gradient.x * (i - centre.x) + t.gradient.y * (j - centre.y)) <= along)
+          segments_.push_back({i, j, block.z0, block.z1});
   }
 
   /// Passages on some pieces. One at an end may be found from both sides.
