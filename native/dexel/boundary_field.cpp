@@ -14,6 +14,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 /// Length of an edge in its distances up to which two points of Gauss are enough.
 constexpr double kShort = 1.0 / 4;
+/// Radii of pieces in distances up to which the ball about them says where they are.
+constexpr double kSmall = 0.25;
 /// Loops of so many edges are pieces as a whole.
 constexpr int kWhole = 8;
 /// What a dipole may leave out of K.
@@ -105,7 +107,7 @@ const BoundaryPieces::Surface* BoundaryPieces::surface(int k, int level) const {
 
 double BoundaryPieces::distance(const Piece& piece, const Vec3& p, double near) const {
   const double d = glm::length(piece.surface.centre - p) - piece.surface.radius;
-  if (d >= near) return d;
+  if (d >= near || piece.surface.radius < kSmall * near) return d;
   double least = std::numeric_limits<double>::infinity();
   for (const Edge& e : edges(piece)) least = std::min(least, segment_distance(p, e.a, e.b));
   return least;
@@ -154,8 +156,9 @@ void Descent::enter(const Surroundings& parent, const Vec3& centre, double radiu
 
 void Descent::add_loop(const BoundaryPieces::Piece& loop) {
   const BoundaryPieces::Surface& s = loop.surface;
-  if (glm::length(s.centre - centre_) - s.radius >= s.far_enough) return add_dipole(s);
-  for (const BoundaryPieces::Edge& e : pieces_.edges(loop)) add_edge(e.a, e.b, segment_distance(centre_, e.a, e.b));
+  const double d = glm::length(s.centre - centre_) - s.radius;
+  if (d >= s.far_enough) return add_dipole(s);
+  for (const BoundaryPieces::Edge& e : pieces_.edges(loop)) add_edge(e.a, e.b, d);
 }
 
 /// As few chords as are good enough, and what lies between them and the chain.

@@ -107,7 +107,9 @@ Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) 
   std::vector<std::size_t> places(chunks * bands, 0);
 
   const auto visit = [&](std::size_t begin, std::size_t end, const auto& body) {
+    constexpr std::size_t kAhead = 16;
     for (std::size_t t = begin; t < end; ++t) {
+      if (t + kAhead < n) projection.prefetch(mesh.triangles[t + kAhead]);
       const Vec3i& corners = mesh.triangles[t];
       const auto &a = projection.vertex(corners.x), &b = projection.vertex(corners.y),
                  &c = projection.vertex(corners.z);

@@ -43,6 +43,9 @@ class Projection {
   int nv() const { return nv_; }
   const Vertex& vertex(int index) const { return vertices_[index]; }
   const std::vector<Vertex>& vertices() const { return vertices_; }
+  void prefetch(const Vec3i& corners) const {
+    for (int k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[corners[k]]);
+  }
 
   /// ⌈v*⌉ clamped to [0, nv], where v* is the point at which the edge from `low` to `high` meets u = row, for
   /// low.row ≤ row < high.row. Exact: it depends on the edge and the row alone, not on the triangle. `v` is near v*.

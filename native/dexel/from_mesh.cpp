@@ -134,8 +134,14 @@ void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& bu
   for (int first = first_row; first < end_row; first += bands_.rows()) {
     const int last = std::min(end_row, first + bands_.rows());
     scratch.unsorted.clear();
-    for (const std::uint32_t t : bands_.band(first / bands_.rows()))
-      projection_.cross(mesh_.triangles[t], t, first, last, scratch.unsorted);
+    const std::span<const std::uint32_t> band = bands_.band(first / bands_.rows());
+    // Triangles in no order would cost a wait for each of their corners.
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t k = 0; k < band.size(); ++k) {
+      if (k + 2 * kAhead < band.size()) __builtin_prefetch(&mesh_.triangles[band[k + 2 * kAhead]]);
+      if (k + kAhead < band.size()) projection_.prefetch(mesh_.triangles[band[k + kAhead]]);
+      projection_.cross(mesh_.triangles[band[k]], band[k], first, last, scratch.unsorted);
+    }
     add_passages(first, last, scratch.unsorted);
     const std::size_t columns = static_cast<std::size_t>(last - first) * static_cast<std::size_t>(nv);
     sort_by_column(scratch.unsorted, columns, scratch.sorted, scratch.begin);
