@@ -1,0 +1,43 @@
+// The outline of a tool with shank and holder in the (radius, height) half-plane, and how far points are from it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tool/tool.hpp"
+
+namespace riffler {
+
+/// One step of an outline, upwards or level, with the solid on its left: on the side of the axis.
+struct OutlineEdge {
+  Vec2 from, to;  ///< (radius, height from the tip), mm
+  std::optional<Vec2> centre;
+  double bulge = 0;  ///< radius of an arc, negative where it is a hollow; 0: a line
+  Part part;         ///< what it belongs to
+};
+
+/// Signed distance of a solid of revolution in space: for a point at height ζ and ρ from the axis it is that of (ρ, ζ)
+/// in the half-plane, exact outside and inside, for the union of all pieces.
+class Outline {
+ public:
+  struct Nearest {
+    double distance;  ///< mm, negative inside
+    Vec2 point;       ///< the nearest of the outline
+    Vec2 normal;      ///< out of the solid: the gradient of the distance, at corners towards the point
+    Part part;
+  };
+
+  /// Hollow arcs are exact here, not the cones that stand for them where rays are cut.
+  explicit Outline(const Tool& tool);
+
+  /// From the tip upwards; where the tool has a gap, its edges come back to the axis.
+  const std::vector<OutlineEdge>& edges() const { return edges_; }
+  /// rho ≥ 0.
+  Nearest nearest(double rho, double z) const;
+  bool inside(double rho, double z) const;
+
+ private:
+  std::vector<OutlineEdge> edges_;
+};
+
+}  // namespace riffler
