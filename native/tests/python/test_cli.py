@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -230,10 +231,17 @@ def test_tables_are_for_people_and_bars_for_terminals(folder):
     for word in ("rays", "moves", "removed", "triangles", "times", "part.stl"):
         assert word in done.stdout
     assert "\x1b" not in done.stdout
+    seen = seen_on_a_terminal(folder, "xterm")
+    assert b"carve" in seen and b"mesh" in seen
+    assert seen_on_a_terminal(folder, "dumb") == b""
+
+
+def seen_on_a_terminal(folder: Path, kind: str) -> bytes:
+    """What a carve shows on a terminal of that kind."""
     ours, theirs = pty.openpty()
     command = [*RIFFLER, *CARVE, "--tool", "flat:6", "--out", "part.stl", "--json"]
     with subprocess.Popen(
-        command, cwd=folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=theirs, text=True
+        command, cwd=folder, env=ENVIRONMENT | {"TERM": kind}, stdout=subprocess.PIPE, stderr=theirs, text=True
     ) as running:
         stdout = running.communicate(timeout=60)[0]
     os.close(theirs)
@@ -245,7 +253,7 @@ def test_tables_are_for_people_and_bars_for_terminals(folder):
         assert error.errno == errno.EIO  # how a pseudo-terminal says that the other side is closed
     os.close(ours)
     assert json.loads(stdout)["moves"] == 3
-    assert b"carve" in seen and b"mesh" in seen
+    return seen
 
 
 # ---- bad input
@@ -372,8 +380,10 @@ def test_ctrl_c_leaves_nothing_behind(folder):
     before = sorted(p.name for p in folder.iterdir())
     command = [*RIFFLER, "carve", "--stock", "90x60x30", "--pitch", "0.2", *TOOL, "--program",
                "long.ngc", "--out", "part.stl"]  # fmt: skip
+    # Tests that run in the background may have been told to ignore it.
+    heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(
-        command, cwd=folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command, cwd=folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed
     ) as running:
         while "_core" not in Path(f"/proc/{running.pid}/maps").read_text():
             time.sleep(0.05)  # it has not even been loaded

@@ -82,9 +82,10 @@ class Console:
 
     @contextmanager
     def step(self, name: str) -> Iterator[Callable[[float], None] | None]:
-        """Times a step of the work; yields the callable that its ``progress=`` wants, or None where nobody watches."""
+        """Times a step of the work; yields the callable that its ``progress=`` wants, or None where nobody watches
+        or the terminal cannot draw over what it has."""
         start = time.perf_counter()
-        if sys.stderr.isatty():
+        if sys.stderr.isatty() and os.environ.get("TERM") not in ("dumb", "unknown"):
             from rich.console import Console as Rich
             from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
