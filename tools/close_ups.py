@@ -148,18 +148,18 @@ def render(blender: Path, jobs: list[dict]) -> None:
     subprocess.run([blender, script, json.dumps(jobs)], check=True, stdout=subprocess.DEVNULL)
 
 
-def compose(name: str, pitch: float, left: Path, right: Path, out: Path) -> None:
+def compose(name: str, pictures: dict[str, Path], out: Path) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import image, pyplot
 
-    figure, axes = pyplot.subplots(1, 2, figsize=(12, 6.3), layout="constrained")
-    for axis, path, title in zip(axes, (left, right), ("OpenVDB", "Riffler"), strict=True):
+    figure, axes = pyplot.subplots(1, len(pictures), figsize=(6 * len(pictures), 6.3), layout="constrained")
+    for axis, (title, path) in zip(axes, pictures.items(), strict=True):
         axis.imshow(image.imread(path))
-        axis.set_title(f"{title}, h = {pitch:g} mm")
+        axis.set_title(title)
         axis.axis("off")
-    figure.savefig(out / f"{name}.jpg", dpi=110, pil_kwargs={"quality": 88})
+    figure.savefig(out / f"{name}.jpg", dpi=90, pil_kwargs={"quality": 88})
     pyplot.close(figure)
 
 
@@ -175,16 +175,22 @@ def entry() -> None:
         folder = Path(name)
         for scene, (make, pitch, view) in SCENES.items():
             volume, truth = make(options.models, pitch), make(options.models, pitch / FINER).to_mesh()
-            meshes = {"openvdb": openvdb(options.programs, volume, truth, folder), "riffler": volume.to_mesh()}
-            jobs = []
-            for engine, mesh in meshes.items():
-                mesh.write(folder / f"{engine}.stl")
+            meshes = {
+                f"OpenVDB, h = {pitch:g} mm": openvdb(options.programs, volume, truth, folder),
+                f"Riffler, h = {pitch:g} mm": volume.to_mesh(),
+                f"The part, h = {pitch / FINER:.2g} mm": truth,
+            }
+            jobs, pictures = [], {}
+            for number, (title, mesh) in enumerate(meshes.items()):
+                stem = f"{folder}/{number}"
+                mesh.write(f"{stem}.stl")
+                pictures[title] = Path(f"{stem}.png")
                 jobs.append(
-                    {"mesh": f"{folder}/{engine}.stl", "picture": f"{folder}/{engine}.png", "target": view.target,
+                    {"mesh": f"{stem}.stl", "picture": f"{stem}.png", "target": view.target,
                      "direction": view.direction, "width": view.width}
                 )  # fmt: skip
             render(options.blender, jobs)
-            compose(scene, pitch, folder / "openvdb.png", folder / "riffler.png", options.out)
+            compose(scene, pictures, options.out)
             print(f"{options.out / scene}.jpg", flush=True)
 
 
