@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geom/each_once.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
@@ -9,11 +10,15 @@ namespace riffler {
 namespace {
 
 using OpenMesh::FaceHandle;
+using OpenMesh::HalfedgeHandle;
 using Image = SurfaceMap::Image;
 using Segment = SurfaceMap::Segment;
 
 /// How often a triangle may be halved where it is looked at piece by piece.
 constexpr int kNearDepth = 24;
+
+/// How many times the tolerance pieces along a rim may measure at first.
+constexpr double kCoarse = 32;
 
 /// What the edge from (ax, ay) to (bx, by) adds to the winding number about the origin; nothing is left of an edge that
 /// is run both ways.
@@ -23,11 +28,15 @@ int winding(double ax, double ay, double bx, double by) {
   return 0;
 }
 
-/// A face seen along the axis that it is most square to, with a point in its midst, on no line that a regular mesh is
-/// likely to have.
+/// A point in the midst of a triangle, on no line that a regular mesh is likely to have.
+Vec3 probe_of(const std::array<Vec3, 3>& p) {
+  return p[0] + 0.3304 * (p[1] - p[0]) + 0.3125 * (p[2] - p[0]);
+}
+
+/// A face seen along the axis that it is most square to, from above that point.
 class View {
  public:
-  explicit View(const std::array<Vec3, 3>& p) : probe_(p[0] + 0.3304 * (p[1] - p[0]) + 0.3125 * (p[2] - p[0])) {
+  explicit View(const std::array<Vec3, 3>& p) : probe_(probe_of(p)) {
     const Vec3 size = glm::abs(glm::cross(p[1] - p[0], p[2] - p[0]));
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     x_ = (axis + 1) % 3, y_ = (axis + 2) % 3;
@@ -38,11 +47,60 @@ class View {
     return winding(a[x_], a[y_], b[x_], b[y_]) + winding(b[x_], b[y_], c[x_], c[y_]) +
            winding(c[x_], c[y_], a[x_], a[y_]);
   }
+  /// By how much the winding number about q is larger than that about the point above, if this line has a part in it.
+  int winding_beyond(const SurfaceMap::Segment& line, const Vec3& q) const {
+    const Vec3 way = q - probe_, a = line.a - probe_, b = line.b - probe_;
+    const bool a_left = cross(way, a) > 0, b_left = cross(way, b) > 0;
+    if (a_left == b_left) return 0;
+    const bool from_left = cross(b - a, -a) > 0, to_left = cross(b - a, way - a) > 0;
+    return from_left == to_left ? 0 : to_left ? 1 : -1;
+  }
 
  private:
+  double cross(const Vec3& u, const Vec3& v) const { return u[x_] * v[y_] - u[y_] * v[x_]; }
+
   Vec3 probe_;
   int x_, y_;
 };
+
+/// Whether a line may touch a box; `slack` for rounding.
+bool touches(const Segment& s, const Vec3& lower, const Vec3& upper, double slack) {
+  return glm::all(glm::lessThanEqual(glm::min(s.a, s.b) - slack, upper)) &&
+         glm::all(glm::greaterThanEqual(glm::max(s.a, s.b) + slack, lower));
+}
+
+Mesh mesh_of(const std::vector<std::array<Vec3, 3>>& triangles) {
+  Mesh mesh;
+  for (const std::array<Vec3, 3>& t : triangles) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), t.begin(), t.end());
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  return mesh;
+}
+
+/// From `seeds` to neighbours, and on from those that are within `reach` of `place`: the seeds and these, in order.
+/// for_each_neighbour(t, visit) calls visit(neighbour).
+template <class Points, class Neighbours>
+std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<std::array<Vec3, 3>>& place,
+                       double reach, const Points& points, const Neighbours& for_each_neighbour) {
+  each_once(seeds);
+  std::vector<char> seen(n, 0);
+  for (const int t : seeds) seen[t] = 1;
+  const Closest closest(mesh_of(place));
+  for (std::size_t next = 0; next < seeds.size(); ++next)
+    for_each_neighbour(seeds[next], [&](int t) {
+      if (seen[t]) return;
+      seen[t] = 1;
+      const std::array<Vec3, 3> p = points(t);
+      const Vec3 centre = (p[0] + p[1] + p[2]) / 3.0;
+      const double radius =
+          std::max({glm::length(p[0] - centre), glm::length(p[1] - centre), glm::length(p[2] - centre)});
+      if (closest.within(centre, radius + reach)) seeds.push_back(t);
+    });
+  std::sort(seeds.begin(), seeds.end());
+  return seeds;
+}
 
 }  // namespace
 
@@ -52,7 +110,7 @@ MapCheck::MapCheck(const Traces& traces, double tolerance)
       mesh_(traces.half_edges.mesh),
       tolerance_(tolerance),
       map_(traces, tolerance),
-      state_(traces.half_edges.corner.size() / 3, Mapped),
+      hole_(traces.half_edges.corner.size() / 3, 0),
       sheets_(mesh_.n_faces()) {}
 
 std::vector<int> MapCheck::far_vertices() {
@@ -60,26 +118,29 @@ std::vector<int> MapCheck::far_vertices() {
   std::vector<int> result;
   check_holes(result);
   check_faces(result);
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
+  each_once(result);
   return result;
 }
 
+MapCheck::Corners MapCheck::old_points(int t) const {
+  const auto point = [&](int k) { return traces_.old[half_edges_.corner[3 * t + k]].point; };
+  return {point(0), point(1), point(2)};
+}
+
 void MapCheck::map_all() {
-  parallel_for(state_.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+  parallel_for(hole_.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     std::vector<Image> images;
     for (std::size_t t = begin; t < end; ++t) {
       if (!exists(t)) continue;
-      const auto face = [&](std::size_t k) { return map_.face_of(half_edges_.corner[3 * t + k]); };
-      state_[t] = map_.map_triangle(t, images) ? Mapped : Hole;
-      if (state_[t] == Hole) continue;
-      for (const Image& image : images) {
-        if (image.face != face(0) && image.face != face(1) && image.face != face(2)) state_[t] = Wide;
+      hole_[t] = !map_.map_triangle(t, images);
+      if (hole_[t]) continue;
+      for (const Image& image : images)
         if (const int sheets = View(map_.points_of(image.face)).sheets_over(image); sheets != 0)
           sheets_[image.face].fetch_add(sheets, std::memory_order_relaxed);
-      }
     }
   });
+  for (std::size_t t = 0; t < hole_.size(); ++t)
+    if (hole_[t]) holes_.push_back(static_cast<int>(t));
 }
 
 /// New faces that the map may not cover whole: those that the rims of its holes cross, for there the number of sheets
@@ -88,88 +149,95 @@ std::vector<MapCheck::Doubt> MapCheck::doubts() const {
   std::vector<int> place(sheets_.size(), -1);
   std::vector<Doubt> result;
   const auto add = [&](int face) -> Doubt& {
-    if (place[face] < 0) place[face] = static_cast<int>(result.size()), result.push_back({face, {}, {}});
+    if (place[face] < 0) place[face] = static_cast<int>(result.size()), result.push_back({face, {}, true});
     return result[place[face]];
   };
   std::vector<Segment> segments;
-  for (int half = 0; half < static_cast<int>(3 * state_.size()); ++half) {
-    const int twin = state_[triangle_of(half)] == Hole ? half_edges_.adjacency.twin(half) : -1;
-    if (twin < 0 || state_[triangle_of(twin)] == Hole) continue;
-    map_.map_edge(half, segments);
-    for (const Segment& segment : segments) add(segment.face).rim.push_back(segment);
-  }
+  for (const int t : holes_)
+    for (int half = 3 * t; half < 3 * t + 3; ++half) {
+      const int twin = half_edges_.adjacency.twin(half);
+      if (twin < 0 || hole_[triangle_of(twin)]) continue;
+      map_.map_edge(half, segments);
+      for (const Segment& segment : segments) add(segment.face).rim.push_back(segment);
+    }
   for (const FaceHandle face : mesh_.all_faces())
     if (!mesh_.status(face).deleted() && sheets_[face.idx()] == 0) add(face.idx());
-  if (result.empty()) return result;
-  std::vector<Image> images;
-  for (std::size_t t = 0; t < state_.size(); ++t) {
-    if (!exists(t) || state_[t] == Hole) continue;
-    const auto in_doubt = [&](std::size_t k) { return place[map_.face_of(half_edges_.corner[3 * t + k])] >= 0; };
-    if (state_[t] != Wide && !in_doubt(0) && !in_doubt(1) && !in_doubt(2)) continue;
-    map_.map_triangle(t, images);
-    for (const Image& image : images)
-      if (place[image.face] >= 0) result[place[image.face]].images.push_back(image);
+  for (Doubt& doubt : result) {
+    const Corners p = map_.points_of(doubt.face);
+    const Vec3 probe = probe_of(p);
+    const double slack = 1e-9 * (glm::length(p[1] - p[0]) + glm::length(p[2] - p[0]));
+    for (const Segment& segment : doubt.rim) doubt.known = doubt.known && !touches(segment, probe, probe, slack);
   }
   return result;
 }
 
-/// Holes of the map, against the new surface.
-void MapCheck::check_holes(std::vector<int>& far) const {
-  std::vector<int> holes;
-  for (std::size_t t = 0; t < state_.size(); ++t)
-    if (state_[t] == Hole) holes.push_back(static_cast<int>(t));
-  if (holes.empty()) return;
-  const Closest closest(map_.new_surface());
-  std::vector<char> near(holes.size(), 0);
-  parallel_for(holes.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto point = [&](int k) { return traces_.old[half_edges_.corner[3 * holes[i] + k]].point; };
-      near[i] = triangle_near(closest, point(0), point(1), point(2), -1, kNearDepth);
-    }
-  });
-  for (std::size_t i = 0; i < holes.size(); ++i)
-    for (int k = 0; !near[i] && k < 3; ++k) far.push_back(half_edges_.corner[3 * holes[i] + k]);
+/// Faces of the new surface round `place`, from `seeds` on.
+std::vector<int> MapCheck::new_faces_near(const std::vector<Corners>& place, std::vector<int> seeds) const {
+  return grown(
+      std::move(seeds), mesh_.n_faces(), place, tolerance_, [&](int face) { return map_.points_of(face); },
+      [&](int face, const auto& visit) {
+        HalfedgeHandle half = mesh_.halfedge_handle(FaceHandle(face));
+        for (int k = 0; k < 3; ++k, half = mesh_.next_halfedge_handle(half))
+          if (const HalfedgeHandle across = mesh_.opposite_halfedge_handle(half); !mesh_.is_boundary(across))
+            visit(mesh_.face_handle(across).idx());
+      });
 }
 
-/// What goes to faces in doubt or round them: no point is nearer to this part of the old surface than to the whole.
-Mesh MapCheck::old_surface_round(const std::vector<Doubt>& doubt) const {
-  std::vector<char> marked(mesh_.n_vertices(), 0);
-  for (const Doubt& d : doubt)
-    for (const int v : map_.corners(d.face)) marked[v] = 1;
-  const auto is_round = [&](int v) {
-    const int face = map_.face_of(v);
-    return face < 0 || std::ranges::any_of(map_.corners(face), [&](int c) { return marked[c] != 0; });
-  };
-  Mesh old;
-  for (const Traces::OldVertex& v : traces_.old) old.vertices.push_back(v.point);
-  for (std::size_t t = 0; t < state_.size(); ++t)
-    if (const int* c = &half_edges_.corner[3 * t]; exists(t) && (is_round(c[0]) || is_round(c[1]) || is_round(c[2])))
-      old.triangles.emplace_back(c[0], c[1], c[2]);
-  return old;
+/// Triangles of the old surface round `place`, from `seeds` on.
+std::vector<int> MapCheck::old_triangles_near(const std::vector<Corners>& place, std::vector<int> seeds) const {
+  return grown(
+      std::move(seeds), hole_.size(), place, tolerance_, [&](int t) { return old_points(t); },
+      [&](int t, const auto& visit) {
+        for (int half = 3 * t; half < 3 * t + 3; ++half)
+          if (const int twin = half_edges_.adjacency.twin(half); twin >= 0) visit(triangle_of(twin));
+      });
+}
+
+/// Whether triangles are near a surface.
+std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::vector<Corners>& surface) const {
+  std::vector<char> result(place.size(), 0);
+  if (surface.empty()) return result;
+  const Closest closest(mesh_of(surface));
+  parallel_for(place.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      result[i] = triangle_near(closest, place[i][0], place[i][1], place[i][2], -1, kNearDepth);
+  });
+  return result;
+}
+
+/// Holes of the map, against the new surface round them.
+void MapCheck::check_holes(std::vector<int>& far) const {
+  if (holes_.empty()) return;
+  std::vector<Corners> place, surface;
+  std::vector<int> seeds;
+  for (const int t : holes_) {
+    place.push_back(old_points(t));
+    for (int k = 0; k < 3; ++k)
+      if (const int face = map_.face_of(half_edges_.corner[3 * t + k]); face >= 0) seeds.push_back(face);
+  }
+  for (const int face : new_faces_near(place, std::move(seeds))) surface.push_back(map_.points_of(face));
+  const std::vector<char> is_near = near(place, surface);
+  for (std::size_t i = 0; i < holes_.size(); ++i)
+    for (int k = 0; !is_near[i] && k < 3; ++k) far.push_back(half_edges_.corner[3 * holes_[i] + k]);
 }
 
 /// Faces that may not be covered, against the old surface. Where one is far off, what was near its corners stays, and
 /// what went to it.
 void MapCheck::check_faces(std::vector<int>& far) const {
-  const std::vector<Doubt> doubt = doubts();
-  if (doubt.empty()) return;
-  const Mesh old = old_surface_round(doubt);
-  if (old.empty()) {
-    for (const Doubt& d : doubt) far.push_back(half_edges_.corner[traces_.anchor[map_.corners(d.face)[0]].half]);
-    return;
+  std::vector<Doubt> doubt = doubts();
+  // Large pieces along the rims first: hardly any is far off, and needs to be told from what is covered there.
+  for (const double smallest : {kCoarse * tolerance_, tolerance_}) {
+    const std::vector<char> is_near = faces_near(doubt, smallest);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < doubt.size(); ++i)
+      if (!is_near[i]) std::swap(doubt[left++], doubt[i]);
+    doubt.resize(left);
+    if (doubt.empty()) return;
   }
-  const Closest closest(old);
-  std::vector<char> near(doubt.size(), 0);
-  parallel_for(doubt.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      near[i] = covered_or_near(closest, doubt[i], doubt[i].rim, map_.points_of(doubt[i].face), kNearDepth);
-    }
-  });
   std::vector<char> is_far(sheets_.size(), 0);
-  for (std::size_t i = 0; i < doubt.size(); ++i) {
-    if (near[i]) continue;
-    is_far[doubt[i].face] = 1;
-    for (const int v : map_.corners(doubt[i].face))
+  for (const Doubt& d : doubt) {
+    is_far[d.face] = 1;
+    for (const int v : map_.corners(d.face))
       for (int half = 3 * triangle_of(traces_.anchor[v].half), k = 0; k < 3; ++k)
         far.push_back(half_edges_.corner[half + k]);
   }
@@ -177,28 +245,54 @@ void MapCheck::check_faces(std::vector<int>& far) const {
     if (map_.face_of(v) >= 0 && is_far[map_.face_of(v)]) far.push_back(v);
 }
 
-/// Of a part of a face: no rim crosses it and there is a sheet, or it is near; or this is so for its halves.
-bool MapCheck::covered_or_near(const Closest& closest, const Doubt& doubt, const std::vector<Segment>& rim,
-                               const std::array<Vec3, 3>& p, int depth) const {
+/// Whether what is not covered is near the old surface round it, in pieces along the rims that may be as large as
+/// `smallest`.
+std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double smallest) const {
+  std::vector<char> result(doubt.size(), 1);
+  std::vector<std::vector<Corners>> pieces(doubt.size());
+  parallel_for(doubt.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      add_uncovered(doubt[i], doubt[i].rim, map_.points_of(doubt[i].face), smallest, kNearDepth, pieces[i]);
+  });
+  std::vector<Corners> place, surface;
+  std::vector<std::size_t> whose;
+  std::vector<int> seeds = holes_;
+  for (std::size_t i = 0; i < doubt.size(); ++i) {
+    if (pieces[i].empty()) continue;
+    place.insert(place.end(), pieces[i].begin(), pieces[i].end());
+    whose.resize(place.size(), i);
+    for (const int v : map_.corners(doubt[i].face)) seeds.push_back(triangle_of(traces_.anchor[v].half));
+  }
+  if (place.empty()) return result;
+  for (const int t : old_triangles_near(place, std::move(seeds))) surface.push_back(old_points(t));
+  const std::vector<char> is_near = near(place, surface);
+  for (std::size_t i = 0; i < place.size(); ++i)
+    if (!is_near[i]) result[whose[i]] = 0;
+  return result;
+}
+
+/// Of a part of a face: no rim crosses it and there is a sheet, or it has to be near; or this is so for its halves.
+void MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim, const Corners& p, double smallest,
+                             int depth, std::vector<Corners>& pieces) const {
   const Vec3 lower = glm::min(p[0], glm::min(p[1], p[2])), upper = glm::max(p[0], glm::max(p[1], p[2]));
   const double slack = 1e-9 * glm::length(upper - lower);  // segments are in the face but for rounding
   std::vector<Segment> crossing;
-  for (const Segment& s : rim) {
-    const Vec3 low = glm::min(s.a, s.b) - slack, high = glm::max(s.a, s.b) + slack;
-    if (glm::all(glm::lessThanEqual(low, upper)) && glm::all(glm::greaterThanEqual(high, lower))) crossing.push_back(s);
-  }
-  if (crossing.empty()) {
-    const View view(p);
-    int sheets = 0;
-    for (const Image& image : doubt.images) sheets += view.sheets_over(image);
-    return sheets != 0 || triangle_near(closest, p[0], p[1], p[2], -1, depth);
+  for (const Segment& s : rim)
+    if (touches(s, lower, upper, slack)) crossing.push_back(s);
+  if (crossing.empty() && doubt.known) {
+    const View view(map_.points_of(doubt.face));
+    const Vec3 q = probe_of(p);
+    int sheets = sheets_[doubt.face];
+    // Hole half-edges: those of the mapped triangles beside them run the other way.
+    for (const Segment& s : doubt.rim) sheets -= view.winding_beyond(s, q);
+    if (sheets != 0) return;
   }
   const double side[3] = {glm::length(p[1] - p[0]), glm::length(p[2] - p[1]), glm::length(p[0] - p[2])};
   const int longest = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2;
-  if (depth == 0 || side[longest] < tolerance_) return triangle_near(closest, p[0], p[1], p[2], -1, depth);
+  if (crossing.empty() || depth == 0 || side[longest] < smallest) return void(pieces.push_back(p));
   const Vec3 &a = p[longest], &b = p[(longest + 1) % 3], &tip = p[(longest + 2) % 3], half = 0.5 * (a + b);
-  return covered_or_near(closest, doubt, crossing, {a, half, tip}, depth - 1) &&
-         covered_or_near(closest, doubt, crossing, {half, b, tip}, depth - 1);
+  add_uncovered(doubt, crossing, {a, half, tip}, smallest, depth - 1, pieces);
+  add_uncovered(doubt, crossing, {half, b, tip}, smallest, depth - 1, pieces);
 }
 
 /// Points near one triangle are a convex set; what is not near any one as a whole is halved. `hint` is a triangle

@@ -16,8 +16,9 @@ namespace riffler {
 /// new face are counted. Their number is the same all over a face, for the map is continuous and takes borders to
 /// borders: where it is not 0 the face is covered, and so near the old surface.
 ///
-/// Holes of the map are compared with the whole new surface. Within a face the number of sheets can only change across
-/// the rim of a hole: such faces are divided, and what the rim crosses is compared with the old surface.
+/// Holes of the map are compared with the new surface. Within a face the number of sheets only changes across the rim
+/// of a hole: such faces are divided, the number is followed across the rim, and what has no sheet or lies on the rim
+/// is compared with the old surface.
 class MapCheck {
  public:
   /// After the last collapse; `traces` must outlive this.
@@ -28,22 +29,25 @@ class MapCheck {
   std::vector<int> far_vertices();
 
  private:
-  enum State : char { Mapped, Wide, Hole };  // Wide: also to faces that no corner goes to
-  /// A face that may not be covered, the rims of holes in it, and what covers it.
+  using Corners = std::array<Vec3, 3>;
+  /// A face that may not be covered, and the rims of holes in it.
   struct Doubt {
     int face;
     std::vector<SurfaceMap::Segment> rim;
-    std::vector<SurfaceMap::Image> images;
+    bool known;  // how many sheets lie over its midst
   };
-
   bool exists(std::size_t t) const { return half_edges_.corner[3 * t] >= 0; }
+  Corners old_points(int t) const;
   void map_all();
   std::vector<Doubt> doubts() const;
   void check_holes(std::vector<int>& far) const;
   void check_faces(std::vector<int>& far) const;
-  Mesh old_surface_round(const std::vector<Doubt>& doubt) const;
-  bool covered_or_near(const Closest& closest, const Doubt& doubt, const std::vector<SurfaceMap::Segment>& rim,
-                       const std::array<Vec3, 3>& p, int depth) const;
+  std::vector<char> faces_near(const std::vector<Doubt>& doubt, double smallest) const;
+  void add_uncovered(const Doubt& doubt, const std::vector<SurfaceMap::Segment>& rim, const Corners& p, double smallest,
+                     int depth, std::vector<Corners>& pieces) const;
+  std::vector<int> new_faces_near(const std::vector<Corners>& place, std::vector<int> seeds) const;
+  std::vector<int> old_triangles_near(const std::vector<Corners>& place, std::vector<int> seeds) const;
+  std::vector<char> near(const std::vector<Corners>& place, const std::vector<Corners>& surface) const;
   bool triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint, int depth) const;
 
   const Traces& traces_;
@@ -51,7 +55,8 @@ class MapCheck {
   const HalfEdgeMesh& mesh_;
   double tolerance_;
   SurfaceMap map_;
-  std::vector<State> state_;              // of an old triangle
+  std::vector<char> hole_;  // of an old triangle: not mapped
+  std::vector<int> holes_;
   std::vector<std::atomic<int>> sheets_;  // over the midst of a new face
 };
 
