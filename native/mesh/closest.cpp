@@ -43,17 +43,22 @@ Vec3 unit(const Vec3& v) {
 OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = glm::cross(b - a, c - a);
   const double length2 = square(normal);
-  if (length2 > 0 && glm::dot(glm::cross(b - a, p - a), normal) > 0 && glm::dot(glm::cross(c - b, p - b), normal) > 0 &&
-      glm::dot(glm::cross(a - c, p - c), normal) > 0)
-    return {p - (glm::dot(p - a, normal) / length2) * normal, OnTriangle::Face};
+  const std::array<Vec3, 4> corner{a, b, c, a};
+  bool within[3], all = length2 > 0;
+  for (int k = 0; k < 3; ++k) {
+    within[k] = length2 > 0 && glm::dot(glm::cross(corner[k + 1] - corner[k], p - corner[k]), normal) > 0;
+    all = all && within[k];
+  }
+  if (all) return {p - (glm::dot(p - a, normal) / length2) * normal, OnTriangle::Face};
   using Part = OnTriangle::Part;
   constexpr Part kParts[3][3] = {{Part::EdgeAB, Part::VertexA, Part::VertexB},
                                  {Part::EdgeBC, Part::VertexB, Part::VertexC},
                                  {Part::EdgeCA, Part::VertexC, Part::VertexA}};
-  const std::array<Vec3, 4> corner{a, b, c, a};
+  // The nearest point lies on an edge that p is beyond.
   OnTriangle best{a, Part::VertexA};
   double best2 = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
+    if (within[k]) continue;
     const auto [q, where] = closest_on_segment(p, corner[k], corner[k + 1]);
     if (const double d2 = square(p - q); d2 < best2) best2 = d2, best = {q, kParts[k][where]};
   }

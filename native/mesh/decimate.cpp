@@ -84,7 +84,8 @@ class Worker {
       const EdgeQueue::Entry entry = queue_.pop();
       const EdgeHandle edge(entry.edge);
       if (costs_[edge] != entry.cost || mesh_.status(edge).deleted()) continue;
-      if (collapse_.prepare(costs_.place(edge)) && (!check_ || check_->allow(collapse_)))
+      const Placement place = costs_.place(edge);
+      if ((!check_ || check_->find_anchor(place)) && collapse_.prepare(place) && (!check_ || check_->allow(collapse_)))
         commit(patches);
       else
         costs_.put_off(edge);

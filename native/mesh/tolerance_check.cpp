@@ -16,6 +16,9 @@ using OpenMesh::VertexHandle;
 /// The share of the tolerance that flat fans may use up by dropping vertices.
 constexpr double kFlatShare = 0.02;
 
+/// The share of an old edge times a change of slope.
+constexpr double kBend = 0.25;
+
 struct Segment {
   Vec3 a, ab;
   double scale;
@@ -37,29 +40,56 @@ Traces::Traces(const HalfEdges& from)
       anchor(from.mesh.n_vertices()),
       in_face(from.mesh.n_faces(), -1),
       on_border(from.mesh.n_edges(), -1),
-      error(from.mesh.n_faces(), 0.0) {
+      flat(from.mesh.n_faces()) {
   for (std::size_t v = 0; v < old.size(); ++v)
     old[v] = {to_vec3(from.mesh.point(VertexHandle(static_cast<int>(v)))), -1};
   for (std::size_t half = 0; half < from.corner.size(); ++half)
     if (const int v = from.corner[half]; v >= 0) anchor[v] = {old[v].point, static_cast<int>(half), true};
+  std::size_t face = 0;  // faces are the triangles that were not left out
+  for (std::size_t half = 0; half < from.corner.size(); half += 3) {
+    if (from.corner[half] < 0) continue;
+    const Vec3 &a = old[from.corner[half]].point, &b = old[from.corner[half + 1]].point,
+               &c = old[from.corner[half + 2]].point;
+    const Vec3 ab = b - a, bc = c - b, ca = a - c;
+    flat[face++].edge =
+        static_cast<float>(std::sqrt(std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)})));
+  }
 }
 
 bool ToleranceCheck::allow(const Collapse& c) {
-  fan_error_ = 0;
-  for (int i = 0; i < c.old_faces(); ++i) fan_error_ = std::max(fan_error_, traces_.error[c.face(i).idx()]);
+  fan_error_ = fan_edge_ = 0;
+  for (int i = 0; i < c.old_faces(); ++i) {
+    const Traces::Flat& flat = traces_.flat[c.face(i).idx()];
+    fan_error_ = std::max<double>(fan_error_, flat.error), fan_edge_ = std::max<double>(fan_edge_, flat.edge);
+  }
   // Once for what was dropped and its fan, once for that fan and the old surface under a trace.
   limit_ = tolerance_ - 2 * fan_error_;
-  if (!(limit_ >= 0) || !find_anchor(c)) return false;
+  if (!(limit_ >= 0) || !(anchor_distance_ <= limit_)) return false;
   find_normal(c);
   find_planes(c);
   if (c.on_border() ? !border_near(c) : !vertices_near(c)) return false;
   // Old and new fan fill the same part of a slab: no point of one is farther from the other than it is thick.
   flat_error_ = fan_error_ + std::max(largest_, thickness_);
   flat_ = flat_error_ <= kFlatShare * tolerance_ && !c.on_border();
-  if (flat_) return true;
+  if (flat_ || crossings_at_most(c) <= limit_) return true;
   for (int i = c.between() ? 0 : c.first() + 1; i <= c.last(); ++i)
     if (!trace_near(c, i)) return false;
   return true;
+}
+
+/// How far from the new edges the traces cross old edges at most, nearly: an old edge of length l whose ends are d away
+/// from two faces is at most d + l s / 4 away from where they meet with a change of slope s.
+double ToleranceCheck::crossings_at_most(const Collapse& c) const {
+  double least = 1;  // cosine of the angle between neighbours
+  const auto look_at = [&](int i, int j) {
+    const Vec3 &a = c.new_cross(i), &b = c.new_cross(j);
+    const double dot = glm::dot(a, b), square = glm::dot(a, a) * glm::dot(b, b);
+    least = std::min(least, dot > 0 ? dot * dot / square : 0);
+  };
+  for (int i = c.first() + 1; i <= c.last(); ++i) look_at(i - 1, i);
+  if (c.between()) look_at(c.last(), c.first());
+  if (!(least > 0)) return std::numeric_limits<double>::infinity();
+  return largest_ + kBend * fan_edge_ * std::sqrt(1 / least - 1);
 }
 
 /// The direction along which the fans are seen best, and how thick a slab across it holds them; infinite where a face
@@ -84,11 +114,12 @@ void ToleranceCheck::find_normal(const Collapse& c) {
 }
 
 /// Walks over the old surface, from the nearer of both anchors, as long as it comes nearer to the new vertex.
-bool ToleranceCheck::find_anchor(const Collapse& c) {
-  anchor_ = traces_.anchor[c.to().idx()];
-  if (!c.between()) return true;
-  const Vec3& p = c.new_point();
-  const Traces::Anchor& other = traces_.anchor[c.from().idx()];
+bool ToleranceCheck::find_anchor(const Placement& place) {
+  if (!place.half.is_valid()) return false;
+  anchor_ = traces_.anchor[half_edges_.mesh.to_vertex_handle(place.half).idx()], anchor_distance_ = 0;
+  if (!place.between) return true;
+  const Vec3& p = place.point;
+  const Traces::Anchor& other = traces_.anchor[half_edges_.mesh.from_vertex_handle(place.half).idx()];
   const auto square_from = [&](const Vec3& q) { return glm::dot(p - q, p - q); };
   int face = triangle_of(square_from(other.point) < square_from(anchor_.point) ? other.half : anchor_.half);
   double best = std::numeric_limits<double>::infinity();
@@ -105,7 +136,8 @@ bool ToleranceCheck::find_anchor(const Collapse& c) {
     if (next >= 0) next = half_edges_.adjacency.twin(3 * face + next);
     if (next >= 0) next = triangle_of(next);
   }
-  return square_from(anchor_.point) <= limit_ * limit_;
+  anchor_distance_ = glm::length(p - anchor_.point);
+  return anchor_distance_ <= tolerance_;
 }
 
 void ToleranceCheck::find_planes(const Collapse& c) {
@@ -138,15 +170,16 @@ bool ToleranceCheck::near_new_face(const Collapse& c, int vertex) {
   const auto distance_to = [&](int i) {
     return glm::length(p - closest_on_triangle(p, c.new_point(), c.ring(i), c.ring(i + 1)).point);
   };
-  const auto left_of = [&](const Vec3& from, const Vec3& side) { return glm::dot(p - from, side) >= 0; };
+  const auto left_of_spoke = [&](int i) { return glm::dot(p - anchor_.point, corners_[i].side) >= 0; };
   // The region is told by the traces, and these by the sides of their planes. What is seen outside of the fan, because
   // the traces round it belong to other planes, goes to the nearest.
   int face = -1;
   double distance = std::numeric_limits<double>::infinity();
+  bool left = left_of_spoke(c.first());
   for (int i = c.first(); i <= c.last() && face < 0; ++i) {
-    const Corner &here = corners_[i], &next = corners_[i + 1 < c.ring_size() ? i + 1 : 0];
-    if (left_of(anchor_.point, here.side) && !left_of(anchor_.point, next.side) &&
-        left_of(here.anchor.point, here.outer_side))
+    const bool was_left = left;
+    left = left_of_spoke(i + 1 < c.ring_size() ? i + 1 : 0);
+    if (was_left && !left && glm::dot(p - corners_[i].anchor.point, corners_[i].outer_side) >= 0)
       face = i, distance = distance_to(i);
   }
   if (face < 0)
@@ -266,7 +299,8 @@ bool ToleranceCheck::follow(int half, const Traces::Anchor& target, const Vec3& 
 void ToleranceCheck::commit(const Collapse& c) {
   for (int i = 0; i < c.old_faces(); ++i) {
     traces_.in_face[c.face(i).idx()] = -1;
-    traces_.error[c.face(i).idx()] = flat_ ? flat_error_ : fan_error_;
+    traces_.flat[c.face(i).idx()] = {static_cast<float>(flat_ ? flat_error_ : fan_error_),
+                                     static_cast<float>(fan_edge_)};
   }
   traces_.anchor[c.to().idx()] = anchor_;
   if (c.on_border()) {

@@ -43,7 +43,12 @@ struct Traces {
   std::vector<Anchor> anchor;  // of a vertex
   std::vector<int> in_face;    // first old vertex of a face
   std::vector<int> on_border;  // first old vertex of a border edge
-  std::vector<double> error;   // of a face: by how much it may be off where vertices were dropped
+  /// Of a face.
+  struct Flat {
+    float error = 0;  // by how much it may be off where vertices were dropped
+    float edge = 0;   // no old edge that crosses it is longer
+  };
+  std::vector<Flat> flat;
 };
 
 class ToleranceCheck {
@@ -51,7 +56,9 @@ class ToleranceCheck {
   ToleranceCheck(Traces& traces, double tolerance)
       : traces_(traces), half_edges_(traces.half_edges), tolerance_(tolerance) {}
 
-  /// Whether the prepared collapse keeps to the tolerance.
+  /// Finds where on the old surface a new vertex belongs, before its collapse is prepared; false where that is far.
+  bool find_anchor(const Placement& place);
+  /// Whether the collapse that was prepared then keeps to the tolerance.
   bool allow(const Collapse& collapse);
   /// Before the collapse that was last allowed is carried out.
   void commit(const Collapse& collapse);
@@ -68,9 +75,9 @@ class ToleranceCheck {
 
   const Vec3& old_point(int half) const { return traces_.old[half_edges_.corner[half]].point; }
   void find_normal(const Collapse& collapse);
-  bool find_anchor(const Collapse& collapse);
   void find_planes(const Collapse& collapse);
   bool vertices_near(const Collapse& collapse);
+  double crossings_at_most(const Collapse& collapse) const;
   bool near_new_face(const Collapse& collapse, int vertex);
   bool border_near(const Collapse& collapse);
   bool near_new_border(const Collapse& collapse, int vertex) const;
@@ -89,7 +96,8 @@ class ToleranceCheck {
   std::vector<Move> moves_;
   std::vector<Corner> corners_;
   Traces::Anchor anchor_{};  // of the new vertex
-  double fan_error_ = 0, limit_ = 0, largest_ = 0, thickness_ = 0, flat_error_ = 0;
+  double anchor_distance_ = 0;
+  double fan_error_ = 0, fan_edge_ = 0, limit_ = 0, largest_ = 0, thickness_ = 0, flat_error_ = 0;
   bool flat_ = false;
   Vec3 normal_{0};
 };
