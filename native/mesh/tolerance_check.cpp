@@ -121,20 +121,30 @@ bool ToleranceCheck::find_anchor(const Placement& place) {
   const Vec3& p = place.point;
   const Traces::Anchor& other = traces_.anchor[half_edges_.mesh.from_vertex_handle(place.half).idx()];
   const auto square_from = [&](const Vec3& q) { return glm::dot(p - q, p - q); };
-  int face = triangle_of(square_from(other.point) < square_from(anchor_.point) ? other.half : anchor_.half);
+  int face = -1;
+  OnTriangle::Part part = OnTriangle::Face;
   double best = std::numeric_limits<double>::infinity();
-  for (int next = face; next >= 0;) {
-    const Vec3 &a = old_point(3 * next), &b = old_point(3 * next + 1), &d = old_point(3 * next + 2);
+  const auto look_at = [&](int t) {
+    const Vec3 &a = old_point(3 * t), &b = old_point(3 * t + 1), &d = old_point(3 * t + 2);
     const OnTriangle on = closest_on_triangle(p, a, b, d);
     const double distance2 = square_from(on.point);
-    if (!(distance2 < best)) break;
-    best = distance2, face = next;
+    if (!(distance2 < best)) return;
+    best = distance2, face = t, part = on.part;
     // A shade inside of the triangle, so that a plane through the anchor always leaves it over an edge.
-    anchor_ = {on.point + 1e-3 * ((a + b + d) / 3.0 - on.point), 3 * face, false};
-    // Across the edge that the point lies on; of a corner, across the edge that starts there.
-    next = on.part == OnTriangle::Face ? -1 : (on.part - OnTriangle::EdgeAB) % 3;
-    if (next >= 0) next = half_edges_.adjacency.twin(3 * face + next);
-    if (next >= 0) next = triangle_of(next);
+    anchor_ = {on.point + 1e-3 * ((a + b + d) / 3.0 - on.point), 3 * t, false};
+  };
+  look_at(triangle_of(square_from(other.point) < square_from(anchor_.point) ? other.half : anchor_.half));
+  for (int last = -1; face != last && part != OnTriangle::Face;) {
+    last = face;
+    if (part < OnTriangle::VertexA) {
+      if (const int twin = half_edges_.adjacency.twin(3 * last + (part - OnTriangle::EdgeAB)); twin >= 0)
+        look_at(triangle_of(twin));
+      continue;
+    }
+    const int start = 3 * last + (part - OnTriangle::VertexA);
+    for (int half = half_edges_.adjacency.twin(previous_half(start)); half >= 0 && half != start;
+         half = half_edges_.adjacency.twin(previous_half(half)))
+      look_at(triangle_of(half));
   }
   anchor_distance_ = glm::length(p - anchor_.point);
   return anchor_distance_ <= tolerance_;
