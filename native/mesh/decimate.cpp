@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/each_once.hpp"
 #include "geom/float32.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/collapse.hpp"
@@ -191,6 +192,29 @@ class Decimation {
   const Progress& progress_;
 };
 
+/// Adds `far` to the vertices that stay. Where that has not helped twice, a belt round all of them is added as well,
+/// twice as wide each time: in the end everything stays.
+void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::vector<int>& kept) {
+  kept.insert(kept.end(), far.begin(), far.end());
+  each_once(kept);
+  std::vector<char> stays(half_edges.source.size(), 0);
+  for (const int v : kept) stays[v] = 1;
+  std::vector<int> belt;
+  for (int ring = attempt < 2 ? 0 : 1 << std::min(attempt - 2, 24); ring > 0; --ring) {
+    belt.clear();
+    for (std::size_t half = 0; half < half_edges.corner.size(); half += 3) {
+      const int* c = &half_edges.corner[half];
+      if (c[0] < 0 || (!stays[c[0]] && !stays[c[1]] && !stays[c[2]])) continue;
+      for (int k = 0; k < 3; ++k)
+        if (!stays[c[k]]) belt.push_back(c[k]);
+    }
+    if (belt.empty()) break;
+    for (const int v : belt) stays[v] = 1;
+    kept.insert(kept.end(), belt.begin(), belt.end());
+  }
+  each_once(kept);
+}
+
 }  // namespace
 
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress) {
@@ -213,23 +237,28 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   if (may_move) tolerance -= reach;
 
   std::vector<int> kept;  // vertices that stay because the tolerance could not be proven otherwise
-  for (;;) {
+  double done = 0;
+  for (int attempt = 0;; ++attempt) {
+    // Most often the first attempt is the last: what could follow gets a tenth of what is left.
+    const double end = limits.tolerance ? done + 0.9 * (1 - done) : 1, proof = limits.tolerance ? 0.2 : 0;
+    const Progress loop = part(progress, done, end - proof * (end - done));
+    const Progress proving = part(progress, end - proof * (end - done), end);
     HalfEdges half_edges(local);
     for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
-    report(progress, 0.1);
+    report(loop, 0.1);
     EdgeCosts costs(half_edges, centre, may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity());
-    report(progress, 0.2);
+    report(loop, 0.2);
     std::optional<Traces> traces;
     if (limits.tolerance) traces.emplace(half_edges);
     const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
-    Decimation(surface, target, progress).run();
-    const std::vector<int> far = traces ? MapCheck(*traces, tolerance).far_vertices() : std::vector<int>{};
+    Decimation(surface, target, loop).run();
+    std::vector<int> far;
+    if (traces) far = MapCheck(*traces, tolerance).far_vertices(proving);
     if (far.empty()) return half_edges.to_mesh(mesh, local, centre);
     const std::size_t before = kept.size();
-    kept.insert(kept.end(), far.begin(), far.end());
-    std::sort(kept.begin(), kept.end());
-    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    keep(half_edges, std::move(far), attempt, kept);
     if (kept.size() == before) return mesh;
+    done = end;
   }
 }
 

@@ -113,8 +113,8 @@ MapCheck::MapCheck(const Traces& traces, double tolerance)
       hole_(traces.half_edges.corner.size() / 3, 0),
       sheets_(mesh_.n_faces()) {}
 
-std::vector<int> MapCheck::far_vertices() {
-  map_all();
+std::vector<int> MapCheck::far_vertices(const Progress& progress) {
+  map_all(progress);
   std::vector<int> result;
   check_holes(result);
   check_faces(result);
@@ -127,18 +127,23 @@ MapCheck::Corners MapCheck::old_points(int t) const {
   return {point(0), point(1), point(2)};
 }
 
-void MapCheck::map_all() {
-  parallel_for(hole_.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+void MapCheck::map_all(const Progress& progress) {
+  const auto map_part = [&](std::size_t begin, std::size_t end) {
     std::vector<Image> images;
+    int face = -1;  // whose view is at hand
+    View view({});
     for (std::size_t t = begin; t < end; ++t) {
       if (!exists(t)) continue;
       hole_[t] = !map_.map_triangle(t, images);
       if (hole_[t]) continue;
-      for (const Image& image : images)
-        if (const int sheets = View(map_.points_of(image.face)).sheets_over(image); sheets != 0)
-          sheets_[image.face].fetch_add(sheets, std::memory_order_relaxed);
+      for (const Image& image : images) {
+        if (image.face != face) face = image.face, view = View(map_.points_of(face));
+        if (const int sheets = view.sheets_over(image); sheets != 0)
+          sheets_[face].fetch_add(sheets, std::memory_order_relaxed);
+      }
     }
-  });
+  };
+  parallel_for(hole_.size(), 1 << 12, map_part, progress);
   for (std::size_t t = 0; t < hole_.size(); ++t)
     if (hole_[t]) holes_.push_back(static_cast<int>(t));
 }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "mesh/closest.hpp"
 #include "mesh/surface_map.hpp"
 
@@ -26,7 +27,7 @@ class MapCheck {
 
   /// Old vertices round places that are farther from the other surface than the tolerance, or may be; none where the
   /// tolerance is kept to.
-  std::vector<int> far_vertices();
+  std::vector<int> far_vertices(const Progress& progress = {});
 
  private:
   using Corners = std::array<Vec3, 3>;
@@ -38,7 +39,7 @@ class MapCheck {
   };
   bool exists(std::size_t t) const { return half_edges_.corner[3 * t] >= 0; }
   Corners old_points(int t) const;
-  void map_all();
+  void map_all(const Progress& progress);
   std::vector<Doubt> doubts() const;
   void check_holes(std::vector<int>& far) const;
   void check_faces(std::vector<int>& far) const;

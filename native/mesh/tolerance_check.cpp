@@ -51,8 +51,7 @@ Traces::Traces(const HalfEdges& from)
     const Vec3 &a = old[from.corner[half]].point, &b = old[from.corner[half + 1]].point,
                &c = old[from.corner[half + 2]].point;
     const Vec3 ab = b - a, bc = c - b, ca = a - c;
-    flat[face++].edge =
-        static_cast<float>(std::sqrt(std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)})));
+    flat[face++].edge = static_cast<float>(std::sqrt(std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)})));
   }
 }
 

@@ -24,7 +24,7 @@ double one_way(const Mesh& from, const Mesh& to) {
   for (const Vec3i& t : from.triangles) {
     const Vec3 &a = from.vertices[t.x], &b = from.vertices[t.y], &c = from.vertices[t.z];
     const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
-    const int n = std::clamp(static_cast<int>(longest / 0.15) + 1, 3, 40);
+    const int n = std::clamp(static_cast<int>(longest / 0.2) + 1, 2, 40);
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j)
         points.push_back((a * (n - i - j * 1.0) + b * (i * 1.0) + c * (j * 1.0)) / (n * 1.0));
@@ -297,6 +297,20 @@ TEST(Decimate, RefusesBadLimits) {
 
 TEST(Decimate, CanBeCancelled) {
   EXPECT_THROW(decimate(sphere_mesh(10, 5), {100, {}}, [](double share) { return share < 0.5; }), Cancelled);
+  EXPECT_THROW(decimate(sphere_mesh(10, 5), {{}, 0.1}, [](double share) { return share < 0.8; }), Cancelled);
+}
+
+TEST(Decimate, ProgressNeverGoesBack) {
+  for (const unsigned seed : {6U, 1U}) {
+    double last = 0;
+    decimate(bumpy(seed), {{}, 0.1}, [&](double share) {
+      EXPECT_GE(share, last);
+      EXPECT_LE(share, 1);
+      last = share;
+      return true;
+    });
+    EXPECT_GT(last, 0.85);
+  }
 }
 
 }  // namespace
