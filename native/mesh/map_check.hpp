@@ -37,6 +37,7 @@ class MapCheck {
     std::vector<SurfaceMap::Segment> rim;
     bool known;  // how many sheets lie over its midst
   };
+
   bool exists(std::size_t t) const { return half_edges_.corner[3 * t] >= 0; }
   Corners old_points(int t) const;
   void map_all(const Progress& progress);

@@ -121,6 +121,7 @@ bool ToleranceCheck::find_anchor(const Placement& place) {
   const Traces::Anchor& other = traces_.anchor[half_edges_.mesh.from_vertex_handle(place.half).idx()];
   const auto square_from = [&](const Vec3& q) { return glm::dot(p - q, p - q); };
   int face = -1;
+  Vec3 foot(0);
   OnTriangle::Part part = OnTriangle::Face;
   double best = std::numeric_limits<double>::infinity();
   const auto look_at = [&](int t) {
@@ -128,9 +129,7 @@ bool ToleranceCheck::find_anchor(const Placement& place) {
     const OnTriangle on = closest_on_triangle(p, a, b, d);
     const double distance2 = square_from(on.point);
     if (!(distance2 < best)) return;
-    best = distance2, face = t, part = on.part;
-    // A shade inside of the triangle, so that a plane through the anchor always leaves it over an edge.
-    anchor_ = {on.point + 1e-3 * ((a + b + d) / 3.0 - on.point), 3 * t, false};
+    best = distance2, face = t, part = on.part, foot = on.point;
   };
   look_at(triangle_of(square_from(other.point) < square_from(anchor_.point) ? other.half : anchor_.half));
   for (int last = -1; face != last && part != OnTriangle::Face;) {
@@ -145,6 +144,9 @@ bool ToleranceCheck::find_anchor(const Placement& place) {
          half = half_edges_.adjacency.twin(previous_half(half)))
       look_at(triangle_of(half));
   }
+  // A shade inside of the triangle, so that a plane through the anchor always leaves it over an edge.
+  const Vec3 centre = (old_point(3 * face) + old_point(3 * face + 1) + old_point(3 * face + 2)) / 3.0;
+  anchor_ = {foot + 1e-3 * (centre - foot), 3 * face, false};
   anchor_distance_ = glm::length(p - anchor_.point);
   return anchor_distance_ <= tolerance_;
 }
