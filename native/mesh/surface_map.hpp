@@ -17,10 +17,9 @@ namespace riffler {
 ///  - An old vertex goes to a point of a new face; one of a border to a point of the border.
 ///  - Along an old edge whose ends go to two faces there must be a point near what these have in common, an edge or a
 ///    vertex; otherwise the edge is divided.
-///  - A triangle goes to one face, or to two with their common edge or vertex, or to three round a vertex that is near
-///  a
-///    point of it; otherwise it is divided. Each piece has all its corners near one face, and points near a triangle
-///    are a convex set: so the linear map of the piece moves no point farther than its corners.
+///  - A triangle goes to one face, or to two with their common edge or vertex, or to three round a vertex near a point
+///    of it; otherwise it is divided. Each piece has all its corners near one face, and points near a triangle are a
+///    convex set: so the linear map of the piece moves no point farther than its corners.
 class SurfaceMap {
  public:
   /// A piece of a new face, that a piece of an old triangle or edge goes to.
