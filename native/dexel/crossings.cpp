@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "geom/bulk.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
@@ -59,46 +60,6 @@ bool Projection::beyond(const Vertex& low, const Vertex& high, int row, int colu
   return left > right;
 }
 
-void Projection::cross(const Vec3i& corners, std::uint32_t triangle, int first, int last,
-                       std::vector<BandCrossing>& out) const {
-  const Vertex *a = &vertices_[corners.x], *b = &vertices_[corners.y], *c = &vertices_[corners.z];
-  // Sorted by u without jumps, which a processor could not foresee.
-  int parity = 1;
-  const auto order = [&parity](const Vertex*& low, const Vertex*& high) {
-    const bool swap = high->u < low->u;
-    const Vertex* const lower = swap ? high : low;
-    high = swap ? low : high;
-    low = lower;
-    parity = swap ? -parity : parity;
-  };
-  order(a, b), order(b, c), order(a, b);
-
-  // The long edge ac against ab, then against bc. Half-open: a row belongs to an edge where u(low) ≤ row < u(high), so
-  // that an edge of constant u never counts.
-  const double inverse = 1 / (c->u - a->u), slope = (c->v - a->v) * inverse;
-  for (const bool upper : {false, true}) {
-    const Vertex &low = upper ? *b : *a, &high = upper ? *c : *b;
-    int row = std::max(first, low.row);
-    const int end = std::min(last, high.row);
-    if (row >= end) continue;
-    const double inverse_part = 1 / (high.u - low.u), slope_part = (high.v - low.v) * inverse_part;
-    for (; row < end; ++row) {
-      const double v_whole = a->v + (row - a->u) * slope, v_part = low.v + (row - low.u) * slope_part;
-      const int c_whole = column(*a, *c, row, v_whole), c_part = column(low, high, row, v_part);
-      if (c_whole == c_part) continue;
-      const std::int32_t sign = c_part < c_whole ? -parity : parity;
-      const double z_whole = a->z + (row - a->u) * inverse * (c->z - a->z);
-      const double z_part = low.z + (row - low.u) * inverse_part * (high.z - low.z);
-      const double width = v_part - v_whole, rise = z_part - z_whole;
-      const std::uint32_t offset = static_cast<std::uint32_t>(row - first) * static_cast<std::uint32_t>(nv_);
-      for (int k = std::min(c_whole, c_part); k < std::max(c_whole, c_part); ++k) {
-        const double t = width == 0 ? 0 : std::clamp((k - v_whole) / width, 0.0, 1.0);
-        out.push_back({{z_whole + t * rise, triangle, sign}, offset + static_cast<std::uint32_t>(k)});
-      }
-    }
-  }
-}
-
 Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) : rows_(rows_per_band) {
   const std::size_t bands = static_cast<std::size_t>((projection.nu() + rows_ - 1) / rows_);
   const std::size_t n = mesh.triangles.size();
@@ -106,21 +67,25 @@ Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) 
   const std::size_t grain = std::max<std::size_t>(1 << 14, n / 64 + 1), chunks = (n + grain - 1) / grain;
   std::vector<std::size_t> places(chunks * bands, 0);
 
-  const auto visit = [&](std::size_t begin, std::size_t end, const auto& body) {
+  // The first band of each triangle and how many there are, found in one go.
+  struct Reach {
+    std::int32_t first, count;
+  };
+  BulkVector<Reach> reaches(n);
+  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kAhead = 16;
+    std::size_t* place = places.data() + begin / grain * bands;
     for (std::size_t t = begin; t < end; ++t) {
       if (t + kAhead < n) projection.prefetch(mesh.triangles[t + kAhead]);
       const Vec3i& corners = mesh.triangles[t];
       const auto &a = projection.vertex(corners.x), &b = projection.vertex(corners.y),
                  &c = projection.vertex(corners.z);
-      if ((a.row == b.row && b.row == c.row) || (a.column == b.column && b.column == c.column)) continue;
-      const int from = std::min({a.row, b.row, c.row}) / rows_, to = (std::max({a.row, b.row, c.row}) - 1) / rows_;
-      for (int k = from; k <= to; ++k) body(static_cast<std::size_t>(k), static_cast<std::uint32_t>(t));
+      const int low = std::min({a.row, b.row, c.row}), high = std::max({a.row, b.row, c.row});
+      const bool none = (low == high) | ((a.column == b.column) & (b.column == c.column));
+      const int first = low / rows_;
+      reaches[t] = {first, none ? 0 : (high - 1) / rows_ - first + 1};
+      for (int k = 0; k < reaches[t].count; ++k) ++place[first + k];
     }
-  };
-  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
-    std::size_t* place = places.data() + begin / grain * bands;
-    visit(begin, end, [&](std::size_t band, std::uint32_t) { ++place[band]; });
   });
   begin_.assign(bands + 1, 0);
   std::size_t total = 0;
@@ -132,27 +97,46 @@ Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) 
   triangles_.resize(total);
   parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
     std::size_t* place = places.data() + begin / grain * bands;
-    visit(begin, end, [&](std::size_t band, std::uint32_t t) { triangles_[place[band]++] = t; });
+    for (std::size_t t = begin; t < end; ++t)
+      for (int k = 0; k < reaches[t].count; ++k)
+        triangles_[place[reaches[t].first + k]++] = static_cast<std::uint32_t>(t);
   });
 }
 
-void sort_by_column(const std::vector<BandCrossing>& crossings, std::size_t columns, std::vector<Crossing>& sorted,
+void BandCrossings::grow(std::size_t more) {
+  const std::size_t size = 2 * z_.size() + more;
+  z_.resize(size), names_.resize(size);
+}
+
+void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::vector<Crossing>& sorted,
                     std::vector<std::uint32_t>& begin) {
   begin.assign(columns + 1, 0);
-  for (const BandCrossing& c : crossings) ++begin[c.column + 1];
+  const std::size_t n = crossings.size();
+  for (std::size_t k = 0; k < n; ++k) ++begin[crossings.column(k) + 1];
   for (std::size_t k = 0; k < columns; ++k) begin[k + 1] += begin[k];
-  sorted.resize(crossings.size());
+  sorted.resize(n);
   // Filling moves each begin to its end, which is the next column's begin; shifted back below.
-  for (const BandCrossing& c : crossings) sorted[begin[c.column]++] = c.crossing;
+  for (std::size_t k = 0; k < n; ++k) sorted[begin[crossings.column(k)]++] = crossings[k];
   for (std::size_t k = columns; k > 0; --k) begin[k] = begin[k - 1];
   begin[0] = 0;
-  for (std::size_t k = 0; k < columns; ++k)
-    for (std::uint32_t i = begin[k] + 1; i < begin[k + 1]; ++i) {
+  const auto before = [](const Crossing& a, const Crossing& b) {
+    return (a.z < b.z) | ((a.z == b.z) & (a.source < b.source));
+  };
+  for (std::size_t k = 0; k < columns; ++k) {
+    const std::uint32_t from = begin[k], to = begin[k + 1];
+    if (to - from == 2) {  // most columns: without a jump that could not be foreseen
+      const Crossing a = sorted[from], b = sorted[from + 1];
+      const bool swap = before(b, a);
+      sorted[from + swap] = a, sorted[from + !swap] = b;
+      continue;
+    }
+    for (std::uint32_t i = from + 1; i < to; ++i) {
       const Crossing c = sorted[i];
       std::uint32_t j = i;
-      for (; j > begin[k] && c.z < sorted[j - 1].z; --j) sorted[j] = sorted[j - 1];
+      for (; j > from && before(c, sorted[j - 1]); --j) sorted[j] = sorted[j - 1];
       sorted[j] = c;
     }
+  }
 }
 
 }  // namespace riffler

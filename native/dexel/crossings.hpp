@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dexel/grid.hpp"
+#include "geom/bulk.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {
@@ -20,10 +22,38 @@ struct Crossing {
 };
 inline constexpr std::uint32_t kOpening = 0x80000000U;
 
-/// A crossing and the column of a band that it belongs to.
-struct BandCrossing {
-  Crossing crossing;
-  std::uint32_t column;  ///< (row − first row) · nv + column
+/// Crossings of a band of rows and the columns that they belong to, (row − first row) · nv + column.
+class BandCrossings {
+ public:
+  /// Where a crossing's sign and its column stand, above its source.
+  static constexpr std::int64_t kLeaves = std::int64_t{1} << 32;
+  static constexpr int kColumnShift = 33;
+
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
+  void add(const Crossing& c, std::uint32_t column) {
+    const auto [z, name] = room(1);
+    *z = c.z, *name = (static_cast<std::int64_t>(column) << kColumnShift) | (c.sign < 0 ? kLeaves : 0) | c.source;
+    added(1);
+  }
+  Crossing operator[](std::size_t k) const {
+    return {z_[k], static_cast<std::uint32_t>(names_[k]), (names_[k] & kLeaves) != 0 ? -1 : 1};
+  }
+  std::uint32_t column(std::size_t k) const { return static_cast<std::uint32_t>(names_[k] >> kColumnShift); }
+
+  /// Where the next crossings are to be written, with room for so many: z and the rest.
+  std::pair<double*, std::int64_t*> room(std::size_t more) {
+    if (z_.size() < size_ + more) grow(more);
+    return {z_.data() + size_, names_.data() + size_};
+  }
+  void added(std::size_t n) { size_ += n; }
+
+ private:
+  void grow(std::size_t more);
+
+  BulkVector<double> z_;
+  BulkVector<std::int64_t> names_;
+  std::size_t size_ = 0;
 };
 
 /// A mesh in the cyclic frame of a grid, in cells: ray (i, j) stands at the integers u = i, v = j. u and v are rounded
@@ -41,8 +71,9 @@ class Projection {
 
   int nu() const { return nu_; }
   int nv() const { return nv_; }
+  double slack() const { return slack_; }
   const Vertex& vertex(int index) const { return vertices_[index]; }
-  const std::vector<Vertex>& vertices() const { return vertices_; }
+  const BulkVector<Vertex>& vertices() const { return vertices_; }
   void prefetch(const Vec3i& corners) const {
     for (int k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[corners[k]]);
   }
@@ -61,9 +92,6 @@ class Projection {
     return std::clamp(ceiling, 0, nv_);
   }
 
-  /// Appends the crossings of one triangle with rows first ≤ row < last.
-  void cross(const Vec3i& corners, std::uint32_t triangle, int first, int last, std::vector<BandCrossing>& out) const;
-
  private:
   /// v* > column, in integers.
   bool beyond(const Vertex& low, const Vertex& high, int row, int column) const;
@@ -71,7 +99,7 @@ class Projection {
   int nu_, nv_;
   double lattice_;  // lattice points per cell, a power of two
   double slack_;    // more than the rounding error of an edge's v at a row, cells
-  std::vector<Vertex> vertices_;
+  BulkVector<Vertex> vertices_;
 };
 
 /// Triangles by bands of rows: those that may cross a column with a row in band k, in the order of the mesh.
@@ -88,12 +116,12 @@ class Bands {
  private:
   int rows_;
   std::vector<std::size_t> begin_;
-  std::vector<std::uint32_t> triangles_;
+  BulkVector<std::uint32_t> triangles_;
 };
 
-/// Crossings of a band sorted by column and, within one, by z (stable). `begin` has one entry more than there are
+/// Crossings of a band sorted by column, within one by z, and then by source. `begin` has one entry more than there are
 /// columns.
-void sort_by_column(const std::vector<BandCrossing>& crossings, std::size_t columns, std::vector<Crossing>& sorted,
+void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::vector<Crossing>& sorted,
                     std::vector<std::uint32_t>& begin);
 
 }  // namespace riffler

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dexel/boundary.hpp"
+#include "dexel/crossing_lanes.hpp"
 #include "dexel/crossings.hpp"
 #include "dexel/flatness.hpp"
 #include "dexel/openings.hpp"
@@ -70,14 +71,14 @@ class Filler {
 
  private:
   struct Scratch {
-    std::vector<BandCrossing> unsorted;
+    BandCrossings unsorted;
     std::vector<Crossing> sorted, repaired;
     std::vector<std::uint32_t> begin;
   };
 
   int rows_per_band() const;
   void tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders, Tally& tally) const;
-  void add_passages(int first, int last, std::vector<BandCrossing>& out) const;
+  void add_passages(int first, int last, BandCrossings& out) const;
   void fill(std::span<const Crossing> crossings, TileBuilder& builder) const;
   bool repair(int row, int column, std::span<const Crossing> crossings, std::vector<Crossing>& out) const;
   void look(std::span<const Crossing> crossings, Tally& tally) const;
@@ -134,14 +135,7 @@ void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& bu
   for (int first = first_row; first < end_row; first += bands_.rows()) {
     const int last = std::min(end_row, first + bands_.rows());
     scratch.unsorted.clear();
-    const std::span<const std::uint32_t> band = bands_.band(first / bands_.rows());
-    // Triangles in no order would cost a wait for each of their corners.
-    constexpr std::size_t kAhead = 16;
-    for (std::size_t k = 0; k < band.size(); ++k) {
-      if (k + 2 * kAhead < band.size()) __builtin_prefetch(&mesh_.triangles[band[k + 2 * kAhead]]);
-      if (k + kAhead < band.size()) projection_.prefetch(mesh_.triangles[band[k + kAhead]]);
-      projection_.cross(mesh_.triangles[band[k]], band[k], first, last, scratch.unsorted);
-    }
+    find_crossings(mesh_.triangles, bands_.band(first / bands_.rows()), projection_, first, last, scratch.unsorted);
     add_passages(first, last, scratch.unsorted);
     const std::size_t columns = static_cast<std::size_t>(last - first) * static_cast<std::size_t>(nv);
     sort_by_column(scratch.unsorted, columns, scratch.sorted, scratch.begin);
@@ -168,14 +162,14 @@ void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& bu
   }
 }
 
-void Filler::add_passages(int first, int last, std::vector<BandCrossing>& out) const {
+void Filler::add_passages(int first, int last, BandCrossings& out) const {
   const auto by_row = [](const Passage& p, int row) { return p.row < row; };
   const auto begin = std::lower_bound(passages_.begin(), passages_.end(), first, by_row);
   const auto end = std::lower_bound(begin, passages_.end(), last, by_row);
   for (auto p = begin; p != end; ++p) {
     const auto source = kOpening | static_cast<std::uint32_t>(p - passages_.begin());
     const auto column = static_cast<std::uint32_t>(p->row - first) * static_cast<std::uint32_t>(grid_.nv());
-    out.push_back({{p->z, source, p->sign}, column + static_cast<std::uint32_t>(p->column)});
+    out.add({p->z, source, p->sign}, column + static_cast<std::uint32_t>(p->column));
   }
 }
 

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <numeric>
 #include <random>
 
 #include "dexel/boundary.hpp"
 #include "dexel/boundary_field.hpp"
+#include "dexel/crossing_lanes.hpp"
 #include "dexel/crossings.hpp"
 #include "dexel/field.hpp"
 #include "dexel/from_mesh.hpp"
@@ -16,6 +18,12 @@ namespace riffler {
 namespace {
 
 using namespace shapes;
+
+std::vector<std::uint32_t> all_of(const Mesh& mesh) {
+  std::vector<std::uint32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
 
 TEST(Boundary, OfClosedMeshesIsEmpty) {
   const Mesh solid = box(Vec3(0), Vec3(1));
@@ -225,13 +233,12 @@ TEST(FromOpenMesh, BoundaryWindingMakesTheWindingNumber) {
   const auto loops = find_boundary(mesh).loops;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
-      std::vector<BandCrossing> crossings;
-      for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        projection.cross(mesh.triangles[t], static_cast<std::uint32_t>(t), i, i + 1, crossings);
+      BandCrossings crossings;
+      find_crossings(mesh.triangles, all_of(mesh), projection, i, i + 1, crossings);
       for (const double z : {0.3, 1.7, 2.2, 2.9, 3.1, 5.0}) {
         int n = 0;
-        for (const BandCrossing& c : crossings)
-          if (static_cast<int>(c.column) == j && c.crossing.z < z) n += c.crossing.sign;
+        for (std::size_t k = 0; k < crossings.size(); ++k)
+          if (static_cast<int>(crossings.column(k)) == j && crossings[k].z < z) n += crossings[k].sign;
         const double w = n + boundary_winding(loops, projection, 1, i, j, z);
         EXPECT_NEAR(w, winding_number(mesh, Vec3(1 + i + 1e-9, 1 + j + 1e-8, z)), 1e-6) << i << " " << j << " " << z;
       }
@@ -320,10 +327,9 @@ TEST(FromOpenMesh, PassagesAndCrossingsSumToZero) {
   const Projection projection(mesh, grid);
   const auto loops = find_boundary(mesh).loops;
   std::vector<int> sums(static_cast<std::size_t>(grid.nu()) * grid.nv(), 0);
-  std::vector<BandCrossing> crossings;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    projection.cross(mesh.triangles[t], static_cast<std::uint32_t>(t), 0, grid.nu(), crossings);
-  for (const BandCrossing& c : crossings) sums[c.column] += c.crossing.sign;
+  BandCrossings crossings;
+  find_crossings(mesh.triangles, all_of(mesh), projection, 0, grid.nu(), crossings);
+  for (std::size_t k = 0; k < crossings.size(); ++k) sums[crossings.column(k)] += crossings[k].sign;
   const auto passages = find_passages(mesh, loops, projection, grid);
   for (const Passage& p : passages) sums[static_cast<std::size_t>(p.row) * grid.nv() + p.column] += p.sign;
   EXPECT_GT(passages.size(), 100);

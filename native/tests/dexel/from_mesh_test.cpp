@@ -6,6 +6,7 @@
 #include <random>
 
 #include "dexel/shapes.hpp"
+#include "sweep/kernels.hpp"
 
 namespace riffler {
 namespace {
@@ -45,8 +46,8 @@ std::vector<std::uint8_t> bytes_of(const Volume& volume) {
   return bytes;
 }
 
-/// The same for 1, 2 and 4 threads.
-void expect_same_for_any_threads(const Mesh& mesh, const Frame& frame) {
+/// The same for 1, 2 and 4 threads and on every instruction set.
+void expect_same_everywhere(const Mesh& mesh, const Frame& frame) {
   std::vector<std::uint8_t> first;
   for (const char* threads : {"1", "2", "4"}) {
     setenv("RIFFLER_THREADS", threads, 1);
@@ -55,6 +56,11 @@ void expect_same_for_any_threads(const Mesh& mesh, const Frame& frame) {
     EXPECT_TRUE(bytes == first) << threads << " threads";
   }
   unsetenv("RIFFLER_THREADS");
+  for (const std::string& name : instruction_sets()) {
+    use_instruction_set(name);
+    EXPECT_TRUE(bytes_of(from_mesh(mesh, frame)) == first) << name;
+  }
+  use_instruction_set("");
 }
 
 TEST(FromMesh, AlignedBoxIsTheBlockAtAnyOffset) {
@@ -195,15 +201,18 @@ TEST(FromMesh, RandomClosedMeshesAgreeWithTheirWindingNumber) {
   }
 }
 
-TEST(FromMesh, SameBytesForAnyNumberOfThreads) {
+TEST(FromMesh, SameBytesForAnyNumberOfThreadsAndInstructionSet) {
   const Mesh mesh = joined(sphere({0, 0, 0}, 10, 50), box({5, 5, 5}, {12, 12, 12}));
-  expect_same_for_any_threads(mesh, frame_of(mesh, 150, "xyz"));
+  expect_same_everywhere(mesh, frame_of(mesh, 150, "xyz"));
   const Mesh open = open_box({0, 0, 0}, {10, 8, 6});
-  expect_same_for_any_threads(open, frame_of(open, 100, "xyz", 3));
+  expect_same_everywhere(open, frame_of(open, 100, "xyz", 3));
   Mesh torn = mesh;
   std::mt19937_64 random(3);
   std::erase_if(torn.triangles, [&](const Vec3i&) { return random() % 30 == 0; });
-  expect_same_for_any_threads(torn, frame_of(torn, 80, "xyz", 1));
+  expect_same_everywhere(torn, frame_of(torn, 80, "xyz", 1));
+  // Crossings at one place, and rays on edges and vertices.
+  const Mesh twice = joined(box({0, 0, 0}, {8, 8, 8}), box({0, 0, 0}, {8, 4, 8}));
+  expect_same_everywhere(twice, Frame{{Vec3(-1.5), Vec3(9.5)}, 1, "xyz"});
 }
 
 TEST(FromMesh, BoxSmallerOrElsewhere) {
