@@ -44,7 +44,7 @@ BoundaryPieces::BoundaryPieces(const std::vector<std::vector<Vec3>>& loops) {
                          start + (k + n - 1) % n,
                          start + (k + 1) % n,
                          edge,
-                         {0.5 * (e.a + e.b), 0.5 * edge, 0, 0, Vec3(0)}});
+                         {0.5 * (e.a + e.b), 0.5 * edge, 0, 0, Vec3(0), {}}});
     }
     add_chains(start, size());
   }
@@ -63,10 +63,10 @@ void BoundaryPieces::add_ends(const Piece& piece) {
 
 /// Of the edges and the chord that closes them.
 BoundaryPieces::Surface BoundaryPieces::span(int first, int last) const {
-  Surface out{Vec3(0), 0, 0, 0, Vec3(0)};
+  Surface out{Vec3(0), 0, 0, 0, Vec3(0), {}};
   Box3 box;
   for (int k = first; k < last; ++k) box.add(edges_[k].a), box.add(edges_[k].b);
-  out.centre = 0.5 * (box.lower + box.upper);
+  out.centre = 0.5 * (box.lower + box.upper), out.box = box;
   Mat3 moment(0);
   const auto add = [&](const Vec3& from, const Vec3& to) {
     const Vec3 a = from - out.centre, b = to - out.centre, vector = 0.5 * glm::cross(a, b);

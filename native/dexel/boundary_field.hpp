@@ -24,6 +24,7 @@ class BoundaryPieces {
     Vec3 centre;  // of a ball around it
     double radius, area, far_enough;
     Vec3 vector;
+    Box3 box;  // around it
   };
   struct Piece {
     int first, last;     // its edges

@@ -73,6 +73,18 @@ void LocalExpansion::add(const SourceSum& sources) {
     for (int j = 0; j < kSide; ++j) rows_[r][j] += more.rows_[r][j];
 }
 
+double LocalExpansion::deviation(const Vec3& half) const {
+  double sum = -std::abs(constant()), z = 1;
+  for (int k = 0; k <= kDegree; ++k, z *= half.z) {
+    double x = z;
+    for (int i = 0; i + k <= kDegree; ++i, x *= half.x) {
+      double y = x;
+      for (int j = 0; i + j + k <= kDegree; ++j, y *= half.y) sum += std::abs(rows_[row(k, i)][j]) * y;
+    }
+  }
+  return sum;
+}
+
 // By Taylor's formula with the second derivatives' bounds within ± half: of a term of degree n they sum up to n (n −
 // 1).
 double LocalExpansion::curved(const Vec3& half) const {

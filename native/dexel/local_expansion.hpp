@@ -23,6 +23,8 @@ class LocalExpansion {
   /// Adds what sources about the centre give, all but the constant.
   void add(const SourceSum& sources);
 
+  /// Bound of how far the polynomial is from its constant within ± half.
+  double deviation(const Vec3& half) const;
   /// Within a box of sides `half` (not ± half) that lies within ± half: bound of how far the polynomial is from its
   /// tangent plane at that box's centre.
   double curved(const Vec3& half) const;

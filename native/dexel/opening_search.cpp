@@ -6,6 +6,8 @@ namespace riffler {
 
 namespace {
 
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::size_t kFew = 32;  // pieces near by that are looked at one by one
 constexpr double kShortest = 1.0 / (1 << 20);        // cells: a piece of a column at an edge is not halved further
 constexpr double kRoot = 1e-9;                       // cells: where the search along a column ends
 constexpr double kLevel = 1e-6, kLevelBound = 2e-3;  // of K: measured and proven deviation from ½ that counts as none
@@ -44,6 +46,30 @@ void OpeningSearch::block(const Block& block, const Tangent& tangent, const Surr
   parts(block, around, [&](const Block& part, const Tangent& t) { this->block(part, t, around, depth + 1); });
 }
 
+void OpeningSearch::look(const Block& block, const Surroundings& around) {
+  field_.fill(pieces_, around);
+  loops_.clear(), rest_ = -1;
+  if (around.near.size() > kFew) return;
+  for (const int k : around.near) {
+    if (!pieces_[k].is_loop()) return;
+    loops_.push_back(&pieces_[k].surface);
+  }
+  rest_ = 0.5 - kSlack - std::abs(around.far.constant()) - around.far.deviation(block.half());
+}
+
+// A surface is seen under a solid angle of its area over the square of its distance, at most.
+bool OpeningSearch::outshone(const Block& part) const {
+  const Vec3 centre = part.centre(), half = part.half();
+  double rest = 4 * kPi * rest_;
+  for (std::size_t k = 0; rest > 0 && k < loops_.size(); ++k) {
+    const BoundaryPieces::Surface& s = *loops_[k];
+    const Vec3 gap = glm::max(glm::max(centre - half - s.box.upper, s.box.lower - centre - half), Vec3(0));
+    const double square = glm::dot(gap, gap);
+    rest = square > 0 ? rest - s.area / square : -1;
+  }
+  return rest > 0;
+}
+
 void OpeningSearch::set(FieldPoints& points, std::size_t k, const Block& block) {
   const Vec3 centre = block.centre();
   points.x[k] = centre.x, points.y[k] = centre.y, points.z[k] = centre.z;
@@ -57,7 +83,7 @@ void OpeningSearch::set(FieldPoints& points, std::size_t k, const Piece& piece, 
 }
 
 void OpeningSearch::leaf(const Block& block, const Tangent& tangent, const Surroundings& around) {
-  field_.fill(pieces_, around);
+  look(block, around);
   curved_ = around.far.curvature_along(block.half());
   columns(block, tangent, around.far.curved(block.half()));
   while (!segments_.empty() || !doubts_.empty()) {

@@ -46,7 +46,7 @@ class OpeningSearch {
   /// Calls body for the parts of a block, whose surroundings are `around`, in which K may pass ½.
   template <class Body>
   void parts(const Block& block, const Surroundings& around, const Body& body) {
-    field_.fill(pieces_, around);
+    look(block, around);
     parts(block, around.far.curved(block.half()), body);
   }
 
@@ -82,7 +82,10 @@ class OpeningSearch {
   void parts(const Block& block, double curved, const Body& body) {
     std::array<Block, kPoints> parts;
     std::size_t count = 0;
-    halves(block, kLeaf, [&](const Block& part) { parts[count++] = part; });
+    halves(block, kLeaf, [&](const Block& part) {
+      if (!outshone(part)) parts[count++] = part;
+    });
+    if (count == 0) return;
     FieldPoints points;
     for (std::size_t k = 0; k < kPoints; ++k) set(points, k, parts[std::min(k, count - 1)]);
     FieldValues values;
@@ -125,6 +128,10 @@ class OpeningSearch {
     int steps;
   };
 
+  /// Takes up the surroundings of a block that is about to be divided.
+  void look(const Block& block, const Surroundings& around);
+  /// Whether |K| stays below ½ in a part of the block looked at, if only because the loops near by are seen as small.
+  bool outshone(const Block& part) const;
   static void set(FieldPoints& points, std::size_t k, const Block& block);
   static void set(FieldPoints& points, std::size_t k, const Piece& piece, double z);
   /// A block that is searched in its own surroundings to the end.
@@ -150,6 +157,8 @@ class OpeningSearch {
   std::vector<Passage>& out_;
   std::deque<Surroundings> levels_;  // of the blocks that enclose the present one
   Field field_;
+  std::vector<const BoundaryPieces::Surface*> loops_;  // near, where there are no other pieces
+  double rest_ = 1;                                    // what they may have of |K| before it may be ½; < 0: unknown
   double curved_ = 0;  // of the polynomial along the leaf's columns
   std::vector<Piece> segments_;
   std::vector<Doubt> doubts_;
