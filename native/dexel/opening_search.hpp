@@ -159,7 +159,7 @@ class OpeningSearch {
   Field field_;
   std::vector<const BoundaryPieces::Surface*> loops_;  // near, where there are no other pieces
   double rest_ = 1;                                    // what they may have of |K| before it may be ½; < 0: unknown
-  double curved_ = 0;  // of the polynomial along the leaf's columns
+  double curved_ = 0;                                  // of the polynomial along the leaf's columns
   std::vector<Piece> segments_;
   std::vector<Doubt> doubts_;
   std::vector<Root> roots_;
