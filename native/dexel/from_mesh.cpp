@@ -263,14 +263,6 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
   const auto rounded = [&](double z) {
     return static_cast<int>(std::lround(boundary_winding(loops_, projection_, h, row, column, z)));
   };
-  std::vector<double> samples;
-  for (std::size_t k = 0; k + 1 < crossings.size(); ++k) samples.push_back(0.5 * (crossings[k].z + crossings[k + 1].z));
-  const double first = crossings.front().z, last = crossings.back().z, reach = 2 * most(box_.size()) + h;
-  for (double step = h; step < reach; step *= 2) {
-    samples.insert(samples.begin(), first - step);
-    samples.push_back(last + step);
-  }
-
   out.clear();
   for (const Crossing& c : crossings)
     if ((c.source & kOpening) == 0) out.push_back(c);
@@ -278,19 +270,43 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
     for (; change > 0; --change) out.push_back({z, kRepaired, 1});
     for (; change < 0; ++change) out.push_back({z, kRepaired, -1});
   };
-  int before = rounded(samples.front());
-  step(samples.front(), before);
-  for (std::size_t k = 1; k < samples.size(); ++k) {
-    const int after = rounded(samples[k]);
-    double z0 = samples[k - 1], z1 = samples[k];
-    while (after != before && z1 - z0 > 1e-6 * h) {
-      const double z = 0.5 * (z0 + z1);
-      if (z <= z0 || z >= z1) break;
-      (rounded(z) == before ? z0 : z1) = z;
+  double z = crossings.front().z;
+  const double reach = 2 * most(box_.size()) + h;
+  for (double above = h; above < reach; above *= 2) z = crossings.front().z - above;
+  int before = rounded(z);
+  step(z, before);
+  // From z to `next`, where it may be that a passage is known.
+  const auto go = [&](double next, const Crossing* known) {
+    if (!(next > z)) return;
+    const int after = rounded(next);
+    if (known && after - before == known->sign) {
+      out.push_back(*known);
+    } else if (after != before) {
+      double z0 = z, z1 = next;
+      while (z1 - z0 > 1e-6 * h) {
+        const double middle = 0.5 * (z0 + z1);
+        if (middle <= z0 || middle >= z1) break;
+        (rounded(middle) == before ? z0 : z1) = middle;
+      }
+      step(0.5 * (z0 + z1), after - before);
     }
-    step(0.5 * (z0 + z1), after - before);
-    before = after;
+    z = next, before = after;
+  };
+  for (double below = 0.5 * (crossings.front().z - z); below > 0.5 * h; below *= 0.5)
+    go(crossings.front().z - below, nullptr);
+  const double aside = 0.5 * kThinnestOpening * h;
+  for (std::size_t k = 0; k < crossings.size(); ++k) {
+    const Crossing& c = crossings[k];
+    const double last = k + 1 < crossings.size() ? 0.5 * (c.z + crossings[k + 1].z) : c.z + h;
+    if ((c.source & kOpening) != 0) {
+      // Its partner may be what was lost: then only beside it does the winding number tell of both.
+      const double first = k > 0 ? 0.5 * (crossings[k - 1].z + c.z) : c.z - h;
+      go(std::max(c.z - aside, first), nullptr);
+      go(std::min(c.z + aside, last), &c);
+    }
+    go(last, nullptr);
   }
+  for (double above = 2 * h; above < reach; above *= 2) go(crossings.back().z + above, nullptr);
   std::stable_sort(out.begin(), out.end(), [](const Crossing& a, const Crossing& b) { return a.z < b.z; });
   sum = 0;
   for (const Crossing& c : out) sum += c.sign;
