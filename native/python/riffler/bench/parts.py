@@ -1,4 +1,4 @@
-"""Closed parts made in code, about 100 mm across: the surface of a cube in squares, each of two triangles, bent."""
+"""Parts made in code, closed and torn, about 100 mm across: the surface of a cube in squares of two triangles, bent."""
 
 from __future__ import annotations
 
@@ -39,6 +39,20 @@ def organic(triangles: int) -> Mesh:
     radius = 45 + 4 * np.sin(4 * x + 1) * np.sin(5 * y) + 1.5 * np.sin(13 * y + 2) * np.sin(11 * z)
     radius += 0.3 * np.sin(41 * x) * np.sin(37 * z) - 12 * np.exp(-12 * ((x - 0.7) ** 2 + (y - 0.5) ** 2))
     return Mesh(radius[:, None] * away, faces)
+
+
+def torn(mesh: Mesh, holes: int) -> Mesh:
+    """A mesh without `holes` of its triangles, here and there."""
+    keep = np.ones(len(mesh.triangles), bool)
+    keep[np.random.default_rng(1).choice(len(keep), holes, replace=False)] = False
+    return Mesh(mesh.vertices, np.asarray(mesh.triangles)[keep])
+
+
+def halved(mesh: Mesh) -> Mesh:
+    """What a mesh has on one side of an oblique plane."""
+    vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
+    side = vertices[triangles].mean(1) @ [0.6, 0.3, 0.742]
+    return Mesh(vertices, triangles[side < np.median(side)])
 
 
 def sharp(triangles: int) -> Mesh:
