@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "geom/each_once.hpp"
 #include "mesh/weld.hpp"
 
 namespace riffler {
@@ -199,8 +200,7 @@ class Buckets {
 std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, double tolerance) {
   std::vector<int> rim;
   for (const std::vector<int>& loop : boundary.loops) rim.insert(rim.end(), loop.begin(), loop.end());
-  std::sort(rim.begin(), rim.end());
-  rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
+  each_once(rim);
   Buckets buckets(tolerance, rim.size());
   std::vector<std::pair<int, Vec3>> moved;
   for (const int k : rim)

@@ -8,38 +8,18 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include <algorithm>
+#include "geom/lanes-inl.hpp"
 
-// Only operations that IEEE 754 rounds correctly are used and none is fused, so every instruction set gives the same
-// bits.
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 namespace {
 
-using Lanes = hn::CappedTag<double, 8>;
-using V = hn::Vec<Lanes>;
-using M = hn::Mask<Lanes>;
 using Whole = hn::RebindToSigned<Lanes>;
 using I = hn::Vec<Whole>;
-constexpr Lanes kD;
 constexpr Whole kI;
-
-HWY_INLINE V set(double x) {
-  return hn::Set(kD, x);
-}
-HWY_INLINE V add(V a, V b) {
-  return hn::Add(a, b);
-}
-HWY_INLINE V sub(V a, V b) {
-  return hn::Sub(a, b);
-}
-HWY_INLINE V mul(V a, V b) {
-  return hn::Mul(a, b);
-}
 
 struct Corner {
   V u, v, z;
@@ -163,13 +143,13 @@ class Group {
 
   /// The columns from `least` to `most`, `most` excluded.
   HWY_INLINE void emit(V least, V most, V v, V width, V z, V rise, V offset, M leaves, BandCrossings& out) const {
-    const M level = hn::Eq(width, hn::Zero(kD));
+    const M level = hn::Eq(width, zero());
     const V divisor = hn::IfThenElse(level, set(1), width);
     const I name = hn::Or(names_, hn::IfThenElseZero(hn::RebindMask(kI, leaves), hn::Set(kI, BandCrossings::kLeaves)));
     V column = least;
     M some = hn::Lt(column, most);
     do {
-      const V part = hn::Min(hn::Max(hn::Div(sub(column, v), divisor), hn::Zero(kD)), set(1));
+      const V part = hn::Min(hn::Max(hn::Div(sub(column, v), divisor), zero()), set(1));
       const V t = hn::IfThenZeroElse(level, part);
       const I place = hn::ConvertTo(kI, add(offset, column));
       double heights[kMost];

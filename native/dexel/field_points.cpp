@@ -8,41 +8,18 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include <limits>
+#include "geom/lanes-inl.hpp"
 
-// Only operations that IEEE 754 rounds correctly are used and none is fused, so every instruction set gives the same
-// bits.
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 namespace {
 
-using Lanes = hn::CappedTag<double, kPoints>;
-using V = hn::Vec<Lanes>;
-using M = hn::Mask<Lanes>;
-constexpr Lanes kD;
 constexpr double kPi = 3.14159265358979323846;
 /// Distances from an edge count as this at least, so that no power of their inverses overflows.
 constexpr double kNearest = 1e-60;
-
-HWY_INLINE V set(double x) {
-  return hn::Set(kD, x);
-}
-HWY_INLINE V add(V a, V b) {
-  return hn::Add(a, b);
-}
-HWY_INLINE V sub(V a, V b) {
-  return hn::Sub(a, b);
-}
-HWY_INLINE V mul(V a, V b) {
-  return hn::Mul(a, b);
-}
-HWY_INLINE V pick(M m, V yes, V no) {
-  return hn::IfThenElse(m, yes, no);
-}
 
 /// The argument of x + i y, within some 1e-15; 0 where both are 0.
 HWY_INLINE V argument(V y, V x) {
@@ -53,13 +30,13 @@ HWY_INLINE V argument(V y, V x) {
   const V ax = hn::Abs(x), ay = hn::Abs(y), low = hn::Min(ax, ay), high = hn::Max(ax, ay);
   const M steep = hn::Gt(low, mul(high, set(0.41421356237309503)));
   const V below = pick(steep, add(high, low), high);
-  const V t = hn::Div(pick(steep, sub(low, high), low), pick(hn::Gt(below, hn::Zero(kD)), below, set(1)));
+  const V t = hn::Div(pick(steep, sub(low, high), low), pick(hn::Gt(below, zero()), below, set(1)));
   const V square = mul(t, t);
   V sum = set(kTerms[9]);
   for (int k = 8; k >= 0; --k) sum = add(mul(sum, square), set(kTerms[k]));
-  V angle = add(mul(sum, t), pick(steep, set(kPi / 4), hn::Zero(kD)));
+  V angle = add(mul(sum, t), pick(steep, set(kPi / 4), zero()));
   angle = pick(hn::Gt(ay, ax), sub(set(kPi / 2), angle), angle);
-  angle = pick(hn::Lt(x, hn::Zero(kD)), sub(set(kPi), angle), angle);
+  angle = pick(hn::Lt(x, zero()), sub(set(kPi), angle), angle);
   return hn::CopySignToAbs(angle, y);
 }
 
@@ -68,7 +45,7 @@ struct Stereographic {
   V t, f;
 };
 HWY_INLINE Stereographic stereographic(V z, V rr, V length) {
-  const M below = hn::Lt(z, hn::Zero(kD));
+  const M below = hn::Lt(z, zero());
   return {pick(below, rr, add(length, z)), pick(below, sub(length, z), set(1))};
 }
 
@@ -84,7 +61,7 @@ HWY_INLINE Seen see(const PathPoint& p, V px, V py, V pz) {
   s.x = set(p.x), s.y = set(p.y), s.z = set(p.z);
   if (p.finite) s.x = sub(s.x, px), s.y = sub(s.y, py), s.z = sub(s.z, pz);
   s.rr = add(mul(s.x, s.x), mul(s.y, s.y));
-  const M over = hn::Eq(s.rr, hn::Zero(kD));
+  const M over = hn::Eq(s.rr, zero());
   s.x = pick(over, set(kNone), s.x), s.rr = pick(over, set(kNone * kNone), s.rr);
   s.square = add(s.rr, mul(s.z, s.z));
   s.length = hn::Sqrt(s.square);
@@ -97,10 +74,7 @@ struct Sums {
   V gx, gy, gz;
   V curvature, piece, closest;  // of the piece: sum, and 1 / distance²
 
-  static HWY_INLINE Sums none() {
-    const V zero = hn::Zero(kD);
-    return {set(1), zero, zero, zero, zero, zero, zero, zero};
-  }
+  static HWY_INLINE Sums none() { return {set(1), zero(), zero(), zero(), zero(), zero(), zero(), zero()}; }
 
   HWY_INLINE void rescale() {
     const V scale = hn::Div(set(1), add(add(hn::Abs(re), hn::Abs(im)), set(1e-300)));
@@ -117,8 +91,8 @@ struct Sums {
 
     const V product = mul(a.length, b.length), below = mul(product, add(product, add(dot, mul(a.z, b.z))));
     const V around = from.finite ? (to.finite ? add(a.length, b.length) : b.length) : a.length;
-    const M seen = hn::Gt(below, hn::Zero(kD));
-    const V weight = hn::Div(pick(seen, around, hn::Zero(kD)), pick(seen, below, set(1)));
+    const M seen = hn::Gt(below, zero());
+    const V weight = hn::Div(pick(seen, around, zero()), pick(seen, below, set(1)));
     gz = add(gz, mul(cross, weight));
     if constexpr (kFull) {
       gx = add(gx, mul(sub(mul(a.y, b.z), mul(a.z, b.y)), weight));
@@ -131,7 +105,7 @@ struct Sums {
   HWY_INLINE void bound(const PathPoint& to, const Seen& a, const Seen& b, V half_x, V half_y, V half_z) {
     const V ex = sub(b.x, a.x), ey = sub(b.y, a.y), ez = sub(b.z, a.z);
     const V along = add(add(mul(a.x, ex), mul(a.y, ey)), mul(a.z, ez));
-    const V t = hn::Min(hn::Max(mul(along, set(-to.inverse_square)), hn::Zero(kD)), set(1));
+    const V t = hn::Min(hn::Max(mul(along, set(-to.inverse_square)), zero()), set(1));
     const V qx = add(a.x, mul(t, ex)), qy = add(a.y, mul(t, ey)), qz = add(a.z, mul(t, ez));
     // From the point q of the edge that is nearest to the box's centre, the edge lies behind the plane across q. The
     // box reaches that far toward it.
@@ -143,7 +117,7 @@ struct Sums {
     closest = hn::Max(closest, square);
     if (!to.ends) return;
     curvature = add(curvature, hn::Min(piece, mul(set(to.area), mul(closest, closest))));
-    piece = closest = hn::Zero(kD);
+    piece = closest = zero();
   }
 };
 
@@ -153,10 +127,10 @@ constexpr int kSide = LocalExpansion::kDegree + 1;
 template <bool kFull>
 HWY_INLINE V far_field(const LocalExpansion& far, V x, V y, V z, V& gx, V& gy, V& gz) {
   V in_z[kSide], by_x[kSide], by_z[kSide];  // in y
-  for (int j = 0; j < kSide; ++j) in_z[j] = by_x[j] = by_z[j] = hn::Zero(kD);
+  for (int j = 0; j < kSide; ++j) in_z[j] = by_x[j] = by_z[j] = zero();
   for (int k = kSide - 1; k >= 0; --k) {
     V c[kSide], slope[kSide];
-    for (int j = 0; j < kSide; ++j) c[j] = slope[j] = hn::Zero(kD);
+    for (int j = 0; j < kSide; ++j) c[j] = slope[j] = zero();
     for (int i = kSide - 1 - k; i >= 0; --i) {
       const double* row = far.terms(k, i);
       for (int j = 0; i + j + k < kSide; ++j) {
@@ -169,8 +143,8 @@ HWY_INLINE V far_field(const LocalExpansion& far, V x, V y, V z, V& gx, V& gy, V
       if constexpr (kFull) by_x[j] = add(mul(by_x[j], z), slope[j]);
     }
   }
-  V value = hn::Zero(kD);
-  gx = gy = gz = hn::Zero(kD);
+  V value = zero();
+  gx = gy = gz = zero();
   for (int j = kSide - 1; j >= 0; --j) {
     if constexpr (kFull) gx = add(mul(gx, y), by_x[j]), gy = add(mul(gy, y), value);
     gz = add(mul(gz, y), by_z[j]);
@@ -237,9 +211,9 @@ void FieldVariation(std::span<const PathPoint> path, const FieldPoints& points, 
     const V half = hn::LoadU(kD, points.half_z + at);
     V rest = hn::LoadU(kD, slopes + at);  // of the slope
     V up[2], down[2];                     // below and above
-    for (const int side : {0, 1}) up[side] = down[side] = hn::Zero(kD);
+    for (const int side : {0, 1}) up[side] = down[side] = zero();
     M vertex = hn::FirstN(kD, 0);
-    const V none = hn::Zero(kD);
+    const V none = zero();
     Seen a{none, none, none, none, none, none};
     Stereographic s{none, none}, s_end[2] = {s, s};
     for (std::size_t k = 0; k < path.size(); ++k) {
@@ -257,8 +231,8 @@ void FieldVariation(std::span<const PathPoint> path, const FieldPoints& points, 
       if (p.joined && path[k - 1].finite) {
         const V dot = add(mul(a.x, b.x), mul(a.y, b.y)), cross = sub(mul(a.x, b.y), mul(a.y, b.x));
         const V product = mul(a.length, b.length), below = mul(product, add(product, add(dot, mul(a.z, b.z))));
-        const M seen = hn::Gt(below, hn::Zero(kD));
-        const V weight = hn::Div(pick(seen, add(a.length, b.length), hn::Zero(kD)), pick(seen, below, set(1)));
+        const M seen = hn::Gt(below, zero());
+        const V weight = hn::Div(pick(seen, add(a.length, b.length), zero()), pick(seen, below, set(1)));
         rest = sub(rest, mul(mul(cross, weight), set(1 / (4 * kPi))));
         const V f = mul(s.f, t.f), re = add(mul(s.t, t.t), mul(f, dot)), im = mul(f, cross);
         for (const int side : {0, 1}) {
@@ -266,10 +240,10 @@ void FieldVariation(std::span<const PathPoint> path, const FieldPoints& points, 
           const V x = add(mul(s_end[side].t, t_end[side].t), mul(g, dot)), y = mul(g, cross);
           const V change = argument(sub(mul(y, re), mul(x, im)), add(mul(x, re), mul(y, im)));
           // On a column through the edge K may turn either way: that is not for rounding to decide.
-          const M either = hn::Eq(cross, hn::Zero(kD));
+          const M either = hn::Eq(cross, zero());
           const V size = hn::Abs(change);
-          up[side] = add(up[side], pick(hn::Or(either, hn::Gt(change, hn::Zero(kD))), size, hn::Zero(kD)));
-          down[side] = add(down[side], pick(hn::Or(either, hn::Lt(change, hn::Zero(kD))), size, hn::Zero(kD)));
+          up[side] = add(up[side], pick(hn::Or(either, hn::Gt(change, zero())), size, zero()));
+          down[side] = add(down[side], pick(hn::Or(either, hn::Lt(change, zero())), size, zero()));
         }
       }
       a = b, s = t, s_end[0] = t_end[0], s_end[1] = t_end[1];

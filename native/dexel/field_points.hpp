@@ -4,11 +4,12 @@
 #include <span>
 
 #include "dexel/local_expansion.hpp"
+#include "geom/lanes.hpp"
 
 namespace riffler {
 
 /// Points that are evaluated together.
-inline constexpr int kPoints = 8;
+inline constexpr int kPoints = kLanes;
 
 /// One point of the polylines that are near. Lengths in cells.
 struct PathPoint {

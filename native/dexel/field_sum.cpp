@@ -8,6 +8,8 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "geom/lanes-inl.hpp"
+
 #ifndef RIFFLER_SOURCE_LANES
 #define RIFFLER_SOURCE_LANES
 namespace riffler {
@@ -25,29 +27,11 @@ struct SourceLanes {
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 namespace {
 
-using Lanes = hn::CappedTag<double, kSourceLanes>;
-using V = hn::Vec<Lanes>;
-constexpr Lanes kD;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kGauss = 0.28867513459481287;  // 1 / (2 √3)
 constexpr int kOrder = kExpansionDegree + 1;
-
-HWY_INLINE V set(double x) {
-  return hn::Set(kD, x);
-}
-HWY_INLINE V add(V a, V b) {
-  return hn::Add(a, b);
-}
-HWY_INLINE V sub(V a, V b) {
-  return hn::Sub(a, b);
-}
-HWY_INLINE V mul(V a, V b) {
-  return hn::Mul(a, b);
-}
 
 constexpr int place(int n, int m) {
   return n * (n + 1) / 2 + m;
@@ -73,13 +57,13 @@ HWY_INLINE V add_harmonics(V x, V y, V z, V g, Harmonics& sum) {
     sum.re[k] = add(sum.re[k], mul(power[n], re));
     if (m > 0) sum.im[k] = add(sum.im[k], mul(power[n], im));
   };
-  V diagonal_re = root, diagonal_im = hn::Zero(kD);
+  V diagonal_re = root, diagonal_im = zero();
   for (int m = 0; m <= kOrder; ++m) {
     if (m > 0) {
       const V f = set(2.0 * m - 1), re = mul(f, diagonal_re), im = mul(f, diagonal_im);
       diagonal_re = sub(mul(u, re), mul(v, im)), diagonal_im = add(mul(u, im), mul(v, re));
     }
-    V before_re = hn::Zero(kD), before_im = hn::Zero(kD), re = diagonal_re, im = diagonal_im;
+    V before_re = zero(), before_im = zero(), re = diagonal_re, im = diagonal_im;
     put(m, m, re, im);
     for (int n = m + 1; n <= kOrder; ++n) {
       const V a = mul(set(2.0 * n - 1), w), b = mul(set((n - 1.0) * (n - 1) - m * m), inverse);
@@ -96,7 +80,7 @@ HWY_INLINE V add_harmonics(V x, V y, V z, V g, Harmonics& sum) {
 HWY_INLINE void turn(V az, V aa, V bz, V bb, V dot, V cross, V& re, V& im) {
   const auto project = [](V z, V rr, V& t, V& f) HWY_ATTR {
     const V length = hn::Sqrt(add(rr, mul(z, z)));
-    const auto below = hn::Lt(z, hn::Zero(kD));
+    const auto below = hn::Lt(z, zero());
     t = hn::IfThenElse(below, rr, add(length, z)), f = hn::IfThenElse(below, sub(length, z), set(1));
   };
   V ta, fa, tb, fb;
@@ -113,14 +97,14 @@ HWY_INLINE void turn(V az, V aa, V bz, V bb, V dot, V cross, V& re, V& im) {
 void SumSources(const SourceArrays& in, SourceLanes& out) {
   for (std::size_t at = 0; at < kSourceLanes; at += hn::Lanes(kD)) {
     V c_re[SourceSum::kTerms], c_im[SourceSum::kTerms];
-    for (int k = 0; k < SourceSum::kTerms; ++k) c_re[k] = c_im[k] = hn::Zero(kD);
-    V re = set(1), im = hn::Zero(kD), dipoles = hn::Zero(kD);
+    for (int k = 0; k < SourceSum::kTerms; ++k) c_re[k] = c_im[k] = zero();
+    V re = set(1), im = zero(), dipoles = zero();
     for (std::size_t k = at; k < in.n; k += kSourceLanes) {
       const auto load = [&](const double* p) HWY_ATTR { return hn::LoadU(kD, p + k); };
       const V ax = load(in.ax), ay = load(in.ay), az = load(in.az), wx = load(in.wx), wy = load(in.wy),
               wz = load(in.wz);
       Harmonics s;
-      for (int p = 0; p < kPlaces; ++p) s.re[p] = s.im[p] = hn::Zero(kD);
+      for (int p = 0; p < kPlaces; ++p) s.re[p] = s.im[p] = zero();
       V weight = set(1 / (4 * kPi));
       if (in.dipoles) {
         const V root = add_harmonics(ax, ay, az, set(1), s);

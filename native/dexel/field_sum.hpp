@@ -3,9 +3,11 @@
 
 #include <cstddef>
 
+#include "geom/lanes.hpp"
+
 namespace riffler {
 
-inline constexpr std::size_t kSourceLanes = 8;
+inline constexpr std::size_t kSourceLanes = kLanes;
 
 /// What is far from the origin, n a multiple of kSourceLanes:
 /// - edges from a to a + e, w = a × e;

@@ -56,7 +56,7 @@ class CycleSums {
       for (int n = entry.begin[c]; n < entry.begin[c + 1]; ++n) along += along_normal(entry.edge[n], hit(n));
       x += normal * (0.5 * (along - glm::dot(normal, x)) / agreement);
     }
-    return x.x >= 0 && x.x <= 1 && x.y >= 0 && x.y <= 1 && x.z >= 0 && x.z <= 1;
+    return FloatGrid::in_cell(x);
   }
 
  private:

@@ -4,12 +4,10 @@
 #include <cstdint>
 
 #include "dexel/tile.hpp"
+#include "geom/lanes.hpp"
 #include "sweep/first_look.hpp"
 
 namespace riffler {
-
-/// Rays are handled in groups of up to this many; arrays are padded by as much.
-inline constexpr int kLanes = 8;
 
 /// What a step takes from one ray: [near, far], and the motion's t at its two ends.
 struct RayCut {
