@@ -23,6 +23,8 @@ void bind_volume(py::module_& m);
 void bind_mesher(py::module_& m);
 void bind_program(py::module_& m);
 void bind_journal(py::module_& m);
+void bind_collide(py::module_& m);
+void bind_path(py::module_& m);
 void bind_bench(py::module_& m);
 
 /// A numpy array of doubles in C order; any array-like converts.

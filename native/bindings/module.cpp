@@ -22,5 +22,7 @@ PYBIND11_MODULE(_core, m) {
   bind_mesher(m);
   bind_program(m);
   bind_journal(m);
+  bind_collide(m);
+  bind_path(m);
   bind_bench(m);
 }

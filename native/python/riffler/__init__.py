@@ -5,6 +5,8 @@ Lengths in mm, angles in rad, times in s, forces in N. The names below are the p
 
 from ._core import (
     Cancelled,
+    Collider,
+    Contact,
     Cut,
     FormatError,
     Journal,
@@ -22,6 +24,8 @@ from ._core import (
 
 __all__ = [
     "Cancelled",
+    "Collider",
+    "Contact",
     "Cut",
     "FormatError",
     "Journal",

@@ -1,0 +1,25 @@
+// What a tool meets at a pose.
+#pragma once
+
+#include <vector>
+
+#include "geom/vec.hpp"
+
+namespace riffler {
+
+/// What of the assembly touches the part, or that it is a fixture which is touched, by whatever piece.
+enum class Touch : unsigned char { Cutter, Shank, Holder, Fixture };
+
+/// Force and torque act on the tool. All in the part frame.
+struct Contact {
+  Vec3 force{0};   ///< N, out of what is touched
+  Vec3 torque{0};  ///< N·mm, about the tip
+  /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
+  double depth = 0;
+  double missed_depth_bound = 0;
+  double checked = 1;          ///< share of the candidates that was looked at
+  std::vector<Vec3> points;    ///< contact points, the deepest first; empty where nothing touches
+  std::vector<Touch> touches;  ///< of the points
+};
+
+}  // namespace riffler

@@ -1,0 +1,25 @@
+// Paths of a ball, or of any cutter, along a part.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geom/vec.hpp"
+
+namespace riffler {
+
+/// A curve of ball centres, with what the ball touches at each. All arrays have one entry per point.
+struct PencilPath {
+  double radius = 0;  ///< of the ball, mm
+  bool closed = false;
+  std::vector<Vec3> centres;
+  std::vector<std::array<Vec3, 2>> contacts;  ///< each side keeps its place along the path
+  std::vector<std::array<Vec3, 2>> normals;   ///< of the part at the contacts, out of the material
+  std::vector<Vec3> axes;                     ///< tool axes, tip to spindle; empty until it is oriented
+
+  std::size_t size() const { return centres.size(); }
+  /// mm, of the closing edge too.
+  double length() const;
+};
+
+}  // namespace riffler
