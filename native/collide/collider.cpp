@@ -81,7 +81,7 @@ struct Search {
     const Vec3 centre = (t.a + t.b + t.c) / 3.0;
     const double radius = std::max({glm::length(t.a - centre), glm::length(t.b - centre), glm::length(t.c - centre)});
     const double f = look(centre);
-    if (f - radius >= best - 1e-5) return;
+    if (f - radius >= best - 2e-3) return;
     look(t.a), look(t.b), look(t.c);
     const Vec3 ab = 0.5 * (t.a + t.b), bc = 0.5 * (t.b + t.c), ca = 0.5 * (t.c + t.a);
     for (const Surface::Corners& s : {Surface::Corners{t.a, ab, ca}, {ab, t.b, bc}, {ca, bc, t.c}, {ab, bc, ca}})
