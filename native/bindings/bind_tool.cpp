@@ -1,6 +1,7 @@
 // riffler.Tool
 #include "bindings/bindings.hpp"
 #include "tool/cutters.hpp"
+#include "tool/outline.hpp"
 
 namespace riffler {
 
@@ -96,6 +97,28 @@ Tool from_dict(const py::dict& d) {
   return tool;
 }
 
+/// Edges of one part that follow each other make one polyline.
+py::list outline(const Tool& tool, double tolerance) {
+  if (!(tolerance > 0) || !std::isfinite(tolerance)) throw py::value_error("tolerance must be positive and finite");
+  constexpr const char* kNames[] = {"cutter", "shank", "holder"};
+  py::list out;
+  std::vector<Vec2> line;
+  Part part{};
+  const auto flush = [&] {
+    if (!line.empty()) out.append(py::make_tuple(kNames[static_cast<int>(part)], take<double>(std::move(line), 2)));
+    line.clear();
+  };
+  const Outline whole(tool);
+  for (const OutlineEdge& edge : whole.edges()) {
+    if (!line.empty() && (edge.part != part || edge.from != line.back())) flush();
+    const std::vector<Vec2> points = polyline(edge, tolerance);
+    line.insert(line.end(), points.begin() + (line.empty() ? 0 : 1), points.end());
+    part = edge.part;
+  }
+  flush();
+  return out;
+}
+
 }  // namespace
 
 void bind_tool(py::module_& m) {
@@ -136,6 +159,11 @@ centre_radius, centre_height) arcs, the shorter way round; a cylinder follows up
       .def_property_readonly("length", &Tool::length, "From the tip to the end of the cutter, mm.")
       .def_property_readonly("shank", [](const Tool& t) { return from_frusta(t.shank()); })
       .def_property_readonly("holder", [](const Tool& t) { return from_frusta(t.holder()); })
+      .def("outline", &outline, py::arg("tolerance") = 0.01,
+           R"(The outline of cutter, shank and holder together, from the tip upwards, for drawing.
+
+A list of (part, points): ``"cutter"``, ``"shank"`` or ``"holder"``, and a polyline (n, 2) of radius and height, mm, that
+stays within ``tolerance`` of it. What lies inside of another piece is left out.)")
       .def("__eq__", [](const Tool& a, const Tool& b) { return to_dict(a).equal(to_dict(b)); })
       .def("__hash__", [](const Tool& t) { return py::hash(py::str(to_dict(t))); })
       .def("__repr__",

@@ -40,4 +40,7 @@ class Outline {
   std::vector<OutlineEdge> edges_;
 };
 
+/// The edge as a polyline that stays within `tolerance` mm of it, both ends included.
+std::vector<Vec2> polyline(const OutlineEdge& edge, double tolerance);
+
 }  // namespace riffler

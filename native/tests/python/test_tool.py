@@ -104,3 +104,19 @@ def test_shank_and_holder_never_cut():
     a = riffler.Volume.block([0, 0, 0], [20, 20, 30], 0.5)
     b = riffler.Volume.block([0, 0, 0], [20, 20, 30], 0.5)
     assert np.array_equal(a.carve(tool, poses).removed, b.carve(riffler.Tool.ball(6, 10), poses).removed)
+
+
+def test_the_outline_is_that_of_the_pieces_within_its_tolerance():
+    tool = riffler.Tool.ball(6, 20).with_shank([(15, 4, 25, 4)]).with_holder([(25, 10, 60, 12)])
+    parts = tool.outline(tolerance=0.001)
+    assert [name for name, _ in parts] == ["cutter", "shank", "holder"]
+    points = {name: line for name, line in parts}
+    assert points["cutter"][0] == pytest.approx([0, 0], abs=1e-12)
+    assert points["cutter"][-1] == pytest.approx([3, 15], abs=1e-12)  # inside of the shank from here
+    assert points["holder"][-1] == pytest.approx([0, 60], abs=1e-12)
+    ball = points["cutter"][points["cutter"][:, 1] <= 3]
+    assert np.hypot(ball[:, 0], ball[:, 1] - 3) == pytest.approx(3, abs=1e-12)
+    middles = (ball[1:] + ball[:-1]) / 2
+    assert 0 < (3 - np.hypot(middles[:, 0], middles[:, 1] - 3)).max() <= 0.001
+    with pytest.raises(ValueError, match="tolerance"):
+        tool.outline(tolerance=0)
