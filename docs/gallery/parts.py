@@ -1,6 +1,6 @@
 """The parts of the gallery, lofted from curves in closed form: a mouse-like one and a sole-like one.
 
-Their valleys are edges of the loft, so the parts are exact there; elsewhere facets stay within a few hundredths of a mm.
+Their valleys are edges of the loft, so the parts are exact there; elsewhere facets stay within a few hundredths of mm.
 """
 
 from __future__ import annotations

@@ -110,7 +110,7 @@ def test_the_outline_is_that_of_the_pieces_within_its_tolerance():
     tool = riffler.Tool.ball(6, 20).with_shank([(15, 4, 25, 4)]).with_holder([(25, 10, 60, 12)])
     parts = tool.outline(tolerance=0.001)
     assert [name for name, _ in parts] == ["cutter", "shank", "holder"]
-    points = {name: line for name, line in parts}
+    points = dict(parts)
     assert points["cutter"][0] == pytest.approx([0, 0], abs=1e-12)
     assert points["cutter"][-1] == pytest.approx([3, 15], abs=1e-12)  # inside of the shank from here
     assert points["holder"][-1] == pytest.approx([0, 60], abs=1e-12)
