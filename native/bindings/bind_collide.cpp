@@ -1,9 +1,12 @@
 // Contact: Collider and what a query gives.
+#include <cmath>
 #include <memory>
+#include <mutex>
 
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
 #include "collide/collider.hpp"
+#include "geom/parallel.hpp"
 
 namespace riffler {
 
@@ -11,54 +14,181 @@ namespace {
 
 using NoGil = py::gil_scoped_release;
 
+bool same(const std::vector<Frustum>& a, const std::vector<Frustum>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Frustum& f, const Frustum& g) {
+    return f.z0 == g.z0 && f.r0 == g.r0 && f.z1 == g.z1 && f.r1 == g.r1;
+  });
+}
+
+/// Of the same shape, whatever they are called.
+bool same(const Tool& a, const Tool& b) {
+  const auto &s = a.profile().segments(), &t = b.profile().segments();
+  return std::equal(
+             s.begin(), s.end(), t.begin(), t.end(),
+             [](const ProfileSegment& p, const ProfileSegment& q) { return p.to == q.to && p.centre == q.centre; }) &&
+         same(a.shank(), b.shank()) && same(a.holder(), b.holder());
+}
+
+/// The tool ready for contact: those asked for last are kept, for all colliders.
+std::shared_ptr<const Assembly> prepared(const Tool& tool) {
+  constexpr std::size_t kMost = 8;
+  static std::mutex mutex;
+  static std::vector<std::shared_ptr<const Assembly>> kept;
+  const std::lock_guard lock(mutex);
+  for (const auto& a : kept)
+    if (same(a->tool(), tool)) return a;
+  if (kept.size() == kMost) kept.erase(kept.begin());
+  return kept.emplace_back(std::make_shared<const Assembly>(tool));
+}
+
+std::unique_ptr<Collider> make(const Mesh& part, const std::vector<SharedVolume*>& fixtures,
+                               const std::optional<double>& spacing, double stiffness, double holder_stiffness,
+                               double fixture_stiffness) {
+  Collider::Settings settings;
+  if (spacing && !(*spacing > 0)) throw py::value_error("spacing must be positive");
+  if (spacing) settings.spacing = *spacing;
+  settings.stiffness = stiffness, settings.holder_stiffness = holder_stiffness;
+  settings.fixture_stiffness = fixture_stiffness;
+  std::vector<Volume> volumes;
+  for (SharedVolume* v : fixtures) {
+    if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
+    volumes.push_back(Reading(*v).volume.snapshot());
+  }
+  const NoGil release;
+  return std::make_unique<Collider>(part, std::move(volumes), settings);
+}
+
+/// The row of `array` whose axis is not of unit length is named.
+std::vector<Pose> checked_poses(const Doubles& array) {
+  const std::vector<Pose> poses = to_poses(array, "poses");
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (!(std::abs(glm::length(poses[i].axis) - 1) <= 1e-6))
+      throw py::value_error("poses, row " + std::to_string(i) + ": the axis is not a unit vector");
+  return poses;
+}
+
+Pose one_pose(const Doubles& array) {
+  if (array.ndim() != 1 || array.shape(0) != 6) throw py::value_error("pose must be 6 numbers: tip xyz, unit axis xyz");
+  const double* p = array.data();
+  const Pose pose{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
+  if (!finite(pose.tip) || !finite(pose.axis)) throw py::value_error("pose: not finite");
+  if (!(std::abs(glm::length(pose.axis) - 1) <= 1e-6)) throw py::value_error("pose: the axis is not a unit vector");
+  return pose;
+}
+
+Contact query(const Collider& self, const Tool& tool, const Doubles& array, const std::optional<double>& budget_us) {
+  const Pose pose = one_pose(array);
+  if (budget_us && !(*budget_us >= 0)) throw py::value_error("budget_us must not be negative");
+  const std::shared_ptr<const Assembly> assembly = prepared(tool);
+  const NoGil release;
+  return self.query(*assembly, pose, budget_us ? std::optional(1e-6 * *budget_us) : std::nullopt);
+}
+
+/// Calls body(i, coherence) for all poses on all threads; neighbouring poses are near each other more often than not.
+template <class Body>
+void for_poses(std::size_t count, const Body& body) {
+  parallel_for(count, 64, [&](std::size_t begin, std::size_t end) {
+    Coherence coherence;
+    for (std::size_t i = begin; i < end; ++i) body(i, coherence);
+  });
+}
+
+std::vector<double> clearances(const Collider& self, const Tool& tool, const Doubles& array) {
+  const std::vector<Pose> poses = checked_poses(array);
+  const std::shared_ptr<const Assembly> assembly = prepared(tool);
+  std::vector<double> out(poses.size());
+  const NoGil release;
+  for_poses(poses.size(), [&](std::size_t i, Coherence& coherence) {
+    Counts counts;
+    out[i] = self.clearance(*assembly, poses[i], &coherence, counts);
+  });
+  return out;
+}
+
+py::tuple nearest(const Collider& self, const Tool& tool, const Doubles& array) {
+  const Pose pose = one_pose(array);
+  const std::shared_ptr<const Assembly> assembly = prepared(tool);
+  const Collider::Nearest at = [&] {
+    const NoGil release;
+    return self.nearest(*assembly, pose);
+  }();
+  return py::make_tuple(at.distance, from_vec3(at.point), name_of(at.touch));
+}
+
+std::string describe(const Collider& self) {
+  const Collider& c = self;
+  return "<riffler.Collider: " + std::to_string(c.triangles()) + " triangles, " + std::to_string(c.points()) +
+         " points " + py::cast<std::string>(py::str(py::float_(c.spacing()))) + " mm apart, " +
+         std::to_string(c.fixtures()) + " fixtures>";
+}
+
+void bind_contact(py::module_& m) {
+  py::class_<Contact>(m, "Contact", "What a tool meets at a pose: forces act on the tool, in the part's frame.")
+      .def_property_readonly(
+          "force", [](const Contact& c) { return from_vec3(c.force); }, "N, (3,): out of what is touched.")
+      .def_property_readonly(
+          "torque", [](const Contact& c) { return from_vec3(c.torque); }, "N·mm, (3,), about the tip.")
+      .def_readonly("depth", &Contact::depth, "mm; 0 where nothing is touched.")
+      .def_readonly("checked", &Contact::checked,
+                    "Share of the candidate triangles that was looked at; 1 without a budget.")
+      .def_readonly("missed_depth_bound", &Contact::missed_depth_bound,
+                    "mm: the true depth is at most depth + missed_depth_bound.")
+      .def_property_readonly(
+          "points", [](const Contact& c) { return from_vec3s(c.points); },
+          "(k, 3) mm: the deepest point, then the sample points and dexels that are in the tool.")
+      .def_property_readonly(
+          "parts",
+          [](const Contact& c) {
+            py::list names;
+            for (const Touch t : c.touches) names.append(name_of(t));
+            return names;
+          },
+          "What touches at each point: \"cutter\", \"shank\", \"holder\", or \"fixture\" where it is one that is "
+          "touched.")
+      .def("__repr__", [](const Contact& c) {
+        return "<riffler.Contact: depth " + py::cast<std::string>(py::str(py::float_(c.depth))) + " mm, force " +
+               py::cast<std::string>(py::str(py::float_(glm::length(c.force)))) + " N, " +
+               std::to_string(c.points.size()) + " points>";
+      });
+}
+
+}  // namespace
+
 const char* name_of(Touch touch) {
   constexpr const char* kNames[] = {"cutter", "shank", "holder", "fixture"};
   return kNames[static_cast<int>(touch)];
 }
 
-std::unique_ptr<Collider> make(const Mesh& part, const std::vector<SharedVolume*>& fixtures,
-                               const std::optional<double>& spacing) {
-  std::vector<Volume> volumes;
-  for (SharedVolume* v : fixtures) volumes.push_back(Reading(*v).volume.snapshot());
-  const NoGil release;
-  Collider::Settings settings;
-  if (spacing) settings.spacing = *spacing;
-  return std::make_unique<Collider>(part, std::move(volumes), settings);
-}
-
-std::vector<double> clearances(const Collider& self, const Tool& tool, const Doubles& array) {
-  const std::vector<Pose> poses = to_poses(array, "poses");
-  const NoGil release;
-  const Assembly assembly(tool);
-  std::vector<double> out;
-  for (const Pose& pose : poses) out.push_back(self.clearance(assembly, pose));
-  return out;
-}
-
-}  // namespace
-
 void bind_collide(py::module_& m) {
-  py::class_<Contact>(m, "Contact")
-      .def_property_readonly("force", [](const Contact& c) { return from_vec3(c.force); })
-      .def_property_readonly("torque", [](const Contact& c) { return from_vec3(c.torque); })
-      .def_readonly("depth", &Contact::depth)
-      .def_readonly("checked", &Contact::checked)
-      .def_readonly("missed_depth_bound", &Contact::missed_depth_bound)
-      .def_property_readonly("points", [](const Contact& c) { return from_vec3s(c.points); })
-      .def_property_readonly("parts", [](const Contact& c) {
-        py::list names;
-        for (const Touch t : c.touches) names.append(name_of(t));
-        return names;
-      });
-  py::class_<Collider>(m, "Collider")
+  bind_contact(m);
+  py::class_<Collider>(m, "Collider", R"(A part and its fixtures, against which tools are held; immutable.
+
+``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
+that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
+are N per mm of depth and mm² of surface against the cutter and against shank and holder, and N per mm³ of a
+fixture in the tool. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
+several threads and release the GIL.)")
       .def(py::init(&make), py::arg("part"), py::kw_only(), py::arg("fixtures") = py::list(),
-           py::arg("spacing") = py::none())
+           py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
+           py::arg("fixture_stiffness") = 10.0)
+      .def("query", &query, py::arg("tool"), py::arg("pose"), py::arg("budget_us") = py::none(),
+           R"(Force, torque, depth and where they are, as a Contact. After ``budget_us`` microseconds what is left is
+only bounded: see ``checked`` and ``missed_depth_bound``.)")
       .def(
           "clearance",
           [](const Collider& self, const Tool& tool, const Doubles& poses) {
             return take<double>(clearances(self, tool, poses));
           },
-          py::arg("tool"), py::arg("poses"));
+          py::arg("tool"), py::arg("poses"),
+          R"((n,) mm for poses (n, 6): the least signed distance between the part's surface and the union of cutter, shank
+and holder, negative where they overlap. Fixtures do not count. On all threads.)")
+      .def(
+          "nearest", &nearest, py::arg("tool"), py::arg("pose"),
+          R"((distance, point, part) for one pose, over part and fixtures: mm, (3,) mm on part or fixture, and what of the
+tool it is next to, or "fixture".)")
+      .def_property_readonly(
+          "spacing", [](const Collider& self) { return self.spacing(); }, "Of the points on the part, mm.")
+      .def("__repr__", &describe);
 }
 
 }  // namespace riffler

@@ -9,9 +9,11 @@
 #include <optional>
 #include <string>
 
+#include "collide/contact.hpp"
 #include "geom/pose.hpp"
 #include "geom/progress.hpp"
 #include "geom/vec.hpp"
+#include "plan/orientation.hpp"
 
 namespace riffler {
 
@@ -25,6 +27,9 @@ void bind_program(py::module_& m);
 void bind_journal(py::module_& m);
 void bind_collide(py::module_& m);
 void bind_path(py::module_& m);
+void bind_pencil(py::module_& m);
+void bind_strategies(py::module_& m);
+void bind_plan(py::module_& m);
 void bind_bench(py::module_& m);
 
 /// A numpy array of doubles in C order; any array-like converts.
@@ -42,6 +47,12 @@ py::array_t<double> from_vec3s(const std::vector<Vec3>& v);
 
 /// (n, 6): tip xyz, axis xyz; checked as by check_rows.
 std::vector<Pose> to_poses(const Doubles& array, const char* name);
+
+/// "cutter", "shank", "holder" or "fixture".
+const char* name_of(Touch touch);
+
+/// (axis, angle), or None: no limit.
+std::optional<AxisLimit> to_axis_limit(const py::object& object, bool project = false);
 
 /// Hands a vector's storage to numpy without a copy; shape (rows, columns), or (rows,) for columns = 0.
 template <class T, class V, class A>

@@ -1,171 +1,157 @@
 #include "collide/collider.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
 #include <stdexcept>
+#include <string>
 
+#include "collide/fixture.hpp"
+#include "collide/force.hpp"
+#include "collide/nearest_search.hpp"
+#include "collide/winding.hpp"
 #include "marching/to_mesh.hpp"
 
 namespace riffler {
 
 namespace {
 
-struct Ball {
-  Vec3 centre;
-  double radius;
-};
-
-/// Triangles in a complete tree of bounding spheres.
-struct Surface {
-  struct Corners {
-    Vec3 a, b, c;
+void check(const Collider::Settings& s) {
+  const auto check_one = [](double x, const char* name) {
+    if (!std::isfinite(x) || x < 0)
+      throw std::invalid_argument(std::string(name) + " must not be negative or not finite");
   };
-  std::vector<Corners> corners;
-  std::vector<Ball> balls;
-  std::size_t levels = 0;
+  check_one(s.spacing, "spacing"), check_one(s.coarse, "coarse"), check_one(s.stiffness, "stiffness");
+  check_one(s.holder_stiffness, "holder_stiffness"), check_one(s.fixture_stiffness, "fixture_stiffness");
+}
 
-  explicit Surface(const Mesh& mesh) {
-    std::vector<int> order(mesh.triangles.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::vector<Corners> all(order.size());
-    for (std::size_t t = 0; t < all.size(); ++t) {
-      const Vec3i& v = mesh.triangles[t];
-      all[t] = {mesh.vertices[v.x], mesh.vertices[v.y], mesh.vertices[v.z]};
-    }
-    while ((order.size() >> levels) > 4) ++levels;
-    balls.resize((std::size_t{2} << levels) - 1);
-    build(all, order, 0, 0, order.size(), 0);
-    for (const int t : order) corners.push_back(all[t]);
-  }
-
-  void build(const std::vector<Corners>& all, std::vector<int>& order, std::size_t node, std::size_t from,
-             std::size_t to, std::size_t level) {
-    Box3 box;
-    for (std::size_t i = from; i < to; ++i)
-      box.add(all[order[i]].a), box.add(all[order[i]].b), box.add(all[order[i]].c);
-    const Vec3 centre = (box.lower + box.upper) * 0.5, size = box.size();
-    double radius = 0;
-    for (std::size_t i = from; i < to; ++i)
-      for (const Vec3& p : {all[order[i]].a, all[order[i]].b, all[order[i]].c})
-        radius = std::max(radius, glm::length(p - centre));
-    balls[node] = {centre, radius};
-    if (level == levels) return;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::size_t middle = (from + to) / 2;
-    const auto key = [&](int t) { return all[t].a[axis] + all[t].b[axis] + all[t].c[axis]; };
-    std::nth_element(order.begin() + from, order.begin() + middle, order.begin() + to,
-                     [&](int i, int j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
-    build(all, order, 2 * node + 1, from, middle, level + 1);
-    build(all, order, 2 * node + 2, middle, to, level + 1);
-  }
-};
-
-struct Search {
-  const Outline& outline;
-  const Pose& pose;
-  double best = std::numeric_limits<double>::infinity();
-  Vec3 point{0};
-  Part part = Part::Cutter;
-
-  double look(const Vec3& p) {
-    const Vec3 d = p - pose.tip;
-    const double z = glm::dot(d, pose.axis);
-    const Outline::Nearest at = outline.nearest(glm::length(d - z * pose.axis), z);
-    if (at.distance < best) best = at.distance, point = p, part = at.part;
-    return at.distance;
-  }
-
-  void triangle(const Surface::Corners& t) {
-    const Vec3 centre = (t.a + t.b + t.c) / 3.0;
-    const double radius = std::max({glm::length(t.a - centre), glm::length(t.b - centre), glm::length(t.c - centre)});
-    const double f = look(centre);
-    if (f - radius >= best - 2e-3) return;
-    look(t.a), look(t.b), look(t.c);
-    const Vec3 ab = 0.5 * (t.a + t.b), bc = 0.5 * (t.b + t.c), ca = 0.5 * (t.c + t.a);
-    for (const Surface::Corners& s : {Surface::Corners{t.a, ab, ca}, {ab, t.b, bc}, {ca, bc, t.c}, {ab, bc, ca}})
-      triangle(s);
-  }
-
-  void surface(const Surface& s) {
-    std::vector<std::pair<double, std::size_t>> heap{{bound(s.balls[0]), 0}};
-    while (!heap.empty()) {
-      std::pop_heap(heap.begin(), heap.end(), std::greater<>());
-      const auto [low, node] = heap.back();
-      heap.pop_back();
-      if (low >= best) return;
-      std::size_t level = 0;
-      while ((std::size_t{2} << level) - 1 <= node) ++level;
-      if (level == s.levels) {
-        const std::size_t place = node + 1 - (std::size_t{1} << level), n = s.corners.size();
-        for (std::size_t i = (place * n) >> level; i < (((place + 1) * n) >> level); ++i) triangle(s.corners[i]);
-        continue;
-      }
-      for (const std::size_t child : {2 * node + 1, 2 * node + 2}) {
-        heap.emplace_back(bound(s.balls[child]), child);
-        std::push_heap(heap.begin(), heap.end(), std::greater<>());
-      }
-    }
-  }
-  double bound(const Ball& b) { return look_only(b.centre) - b.radius; }
-  double look_only(const Vec3& p) const {
-    const Vec3 d = p - pose.tip;
-    const double z = glm::dot(d, pose.axis);
-    return outline.nearest(glm::length(d - z * pose.axis), z).distance;
-  }
-};
-
-}  // namespace
-
-Assembly::Assembly(const Tool& tool) : tool_(tool), outline_(tool), reach_(0) {
-  for (const OutlineEdge& e : outline_.edges()) {
-    reach_ = std::max({reach_, glm::length(e.from), glm::length(e.to)});
-    if (e.centre) reach_ = std::max(reach_, glm::length(*e.centre) + std::abs(e.bulge));
+Mesh mesh_of(const Volume& volume, std::size_t index) {
+  try {
+    return to_mesh(volume);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument("fixtures, volume " + std::to_string(index) + ": " + e.what());
   }
 }
 
+}  // namespace
+
 struct Collider::Data {
   Surface part;
-  std::vector<Surface> fixtures;
+  SamplePoints points;
+  std::vector<Fixture> fixtures;
+  std::vector<const Surface*> surfaces;  // the part's first
   Settings settings;
+
+  Data(const Mesh& mesh, const Settings& s) : part(mesh), points(part, s.spacing), settings(s) {}
+
+  NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
+                              Coherence* coherence, Counts& counts) const;
 };
 
 Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings) {
+  check(settings);
   validate(part);
-  if (part.empty()) throw std::invalid_argument("a part without triangles");
-  data_ = std::make_unique<Data>(Data{Surface(part), {}, settings});
-  for (const Volume& v : fixtures)
-    if (const Mesh m = to_mesh(v); !m.empty()) data_->fixtures.emplace_back(m);
+  if (part.empty()) throw std::invalid_argument("part: a mesh without triangles");
+  data_ = std::make_unique<Data>(part, settings);
+  data_->fixtures.reserve(fixtures.size());
+  for (std::size_t i = 0; i < fixtures.size(); ++i)
+    if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) data_->fixtures.emplace_back(fixtures[i], m);
+  data_->surfaces.push_back(&data_->part);
+  for (const Fixture& f : data_->fixtures) data_->surfaces.push_back(&f.surface());
 }
 Collider::~Collider() = default;
 Collider::Collider(Collider&&) noexcept = default;
 Collider& Collider::operator=(Collider&&) noexcept = default;
 
+/// The least distance from the part, or from part and fixtures.
+NearestSearch::Found Collider::Data::search(const Assembly& assembly, const ToolFrame& frame, bool all,
+                                            Deadline deadline, Coherence* coherence, Counts& counts) const {
+  const std::span<const Surface* const> some(surfaces.data(), all ? surfaces.size() : 1);
+  NearestSearch search(assembly, frame);
+  if (coherence && coherence->known && coherence->surface < some.size() &&
+      coherence->triangle < some[coherence->surface]->size()) {
+    const Corners& c = some[coherence->surface]->corners(coherence->triangle);
+    TriangleSearch last(assembly.runs());
+    last.bound({frame.to_tool(c.a), frame.to_tool(c.b), frame.to_tool(c.c)});
+    search.limit(last.least().distance);
+  }
+  NearestSearch::Found found = search(some, deadline, counts);
+  if (coherence) *coherence = {found.surface, found.triangle, true};
+  if (!all) return found;
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    if (!fixtures[i].near(assembly, frame, 0)) continue;
+    for (const Vec2& p : assembly.deepest()) {
+      const double depth = assembly.outline().nearest(p.x, p.y).distance;
+      const Vec3 place(p.x, 0, p.y);
+      if (depth >= found.least.distance || !fixtures[i].holds(frame.to_part(place))) continue;
+      found.least = {depth, place, assembly.part_at(p.y)};
+      found.surface = i + 1, found.low = std::min(found.low, depth);
+    }
+  }
+  return found;
+}
+
 double Collider::clearance(const Assembly& assembly, const Pose& pose) const {
-  Search search{assembly.outline(), pose};
-  search.surface(data_->part);
-  return search.best;
+  Counts counts;
+  return clearance(assembly, pose, nullptr, counts);
+}
+
+double Collider::clearance(const Assembly& assembly, const Pose& pose, Coherence* coherence, Counts& counts) const {
+  return data_->search(assembly, ToolFrame(pose), false, {}, coherence, counts).least.distance;
 }
 
 Collider::Nearest Collider::nearest(const Assembly& assembly, const Pose& pose) const {
-  Search search{assembly.outline(), pose};
-  search.surface(data_->part);
-  Touch touch = static_cast<Touch>(search.part);
-  for (const Surface& s : data_->fixtures) {
-    const double before = search.best;
-    search.surface(s);
-    if (search.best < before) touch = Touch::Fixture;
-  }
-  return {search.best, search.point, touch};
+  const ToolFrame frame(pose);
+  Counts counts;
+  const NearestSearch::Found found = data_->search(assembly, frame, true, {}, nullptr, counts);
+  return {found.least.distance, frame.to_part(found.least.point),
+          found.surface > 0 ? Touch::Fixture : static_cast<Touch>(found.least.part)};
 }
 
-Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double>) const {
+Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget) const {
+  Counts counts;
+  return query(assembly, pose, budget, nullptr, counts);
+}
+
+Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Coherence* coherence,
+                        Counts& counts) const {
+  // Most of a budget is for the depth: what is not summed of the force is taken from coarser points.
+  const auto until = [start = Deadline::Clock::now(), &budget](double share) {
+    return budget ? Deadline(start + std::chrono::duration_cast<Deadline::Clock::duration>(
+                                         std::chrono::duration<double>(share * *budget)))
+                  : Deadline();
+  };
+  const ToolFrame frame(pose);
+  const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), coherence, counts);
   Contact out;
-  const Nearest at = nearest(assembly, pose);
-  if (at.distance >= 0) return out;
-  out.depth = -at.distance, out.points = {at.point}, out.touches = {at.touch};
+  out.depth = std::max(0.0, -found.least.distance), out.checked = found.checked;
+  // Nothing of the tool is deeper than it is wide; and the search's own slack is part of what may be missed.
+  const double most = std::min(-found.low + found.slack, assembly.max_radius());
+  out.missed_depth_bound = std::max(0.0, most - out.depth);
+  if (!(found.least.distance < 0)) return out;
+  out.points.push_back(frame.to_part(found.least.point));
+  out.touches.push_back(found.surface > 0 ? Touch::Fixture : static_cast<Touch>(assembly.part_at(found.least.point.z)));
+  const Settings& s = data_->settings;
+  Deadline deadline = until(1);
+  add_force(assembly, frame, data_->points, {s.stiffness, s.holder_stiffness}, s.coarse, deadline, out, counts);
+  for (const Fixture& f : data_->fixtures)
+    if (f.near(assembly, frame, 0)) f.add_force(assembly, frame, s.fixture_stiffness, deadline, out, counts);
   return out;
+}
+
+bool Collider::inside_part(const Vec3& p) const {
+  return std::abs(winding_number(data_->part, p)) > 0.5;
+}
+
+double Collider::spacing() const {
+  return data_->points.spacing();
+}
+std::size_t Collider::triangles() const {
+  return data_->part.size();
+}
+std::size_t Collider::points() const {
+  return data_->points.size();
+}
+std::size_t Collider::fixtures() const {
+  return data_->fixtures.size();
 }
 
 }  // namespace riffler

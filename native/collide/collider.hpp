@@ -5,57 +5,69 @@
 #include <optional>
 #include <vector>
 
+#include "collide/assembly.hpp"
 #include "collide/contact.hpp"
 #include "dexel/volume.hpp"
 #include "geom/pose.hpp"
 #include "mesh/mesh.hpp"
-#include "tool/outline.hpp"
 
 namespace riffler {
 
-/// A tool made ready for contact: prepare it once, use it for many poses, from any number of threads.
-class Assembly {
- public:
-  explicit Assembly(const Tool& tool);
-
-  const Tool& tool() const { return tool_; }
-  const Outline& outline() const { return outline_; }
-  /// Largest distance of any of its points from the tip, mm.
-  double reach() const { return reach_; }
-
- private:
-  Tool tool_;
-  Outline outline_;
-  double reach_;
+/// What a query remembers for the next one, whose pose is near; owned by the caller, one for each series of poses. It
+/// saves work and changes no bit of any result.
+struct Coherence {
+  std::size_t surface = 0, triangle = 0;
+  bool known = false;
 };
 
-/// Immutable after construction; queries may run on several threads.
+/// Immutable after construction; queries may run on several threads. Poses whose tip is not finite or whose axis is
+/// not of unit length (to 1e-6) are a std::invalid_argument.
 class Collider {
  public:
   struct Settings {
-    double spacing = 0;    ///< of the points on the part against the cutter, mm; 0: chosen from the part
-    double stiffness = 1;  ///< k of (4.7), N per mm of depth and mm² of surface
+    double spacing = 0;             ///< of the points on the part, mm; 0: √(its area / 100 000)
+    double coarse = 4;              ///< away from the cutter, points are this many times as far apart
+    double stiffness = 1;           ///< k of (4.7) against the cutter, N per mm of depth and mm² of surface
+    double holder_stiffness = 10;   ///< the same against shank and holder (4.4.3: tracing weak, collision strong)
+    double fixture_stiffness = 10;  ///< k_D of (4.9), N per mm³ of a fixture in the tool
   };
-  /// Copies nothing of the volumes but pointers to their tiles. std::invalid_argument for an empty or invalid mesh.
+  /// Copies nothing of the volumes but pointers to their tiles. std::invalid_argument for an empty or invalid mesh, for
+  /// settings that are negative or not finite, and where a fixture has no mesh (marching/to_mesh.hpp), naming it. An
+  /// empty fixture is nothing, and ignored.
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings);
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures = {}) : Collider(part, std::move(fixtures), {}) {}
   ~Collider();
   Collider(Collider&&) noexcept;
   Collider& operator=(Collider&&) noexcept;
 
-  /// `budget`: seconds, after which what is left is only bounded.
+  /// Force, torque, depth and where: the deepest point first, then the sample points that are in the tool. `budget`:
+  /// seconds by the monotonic clock, after which what is left is only bounded; without it the result is always the
+  /// same.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget = {}) const;
+  Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Coherence* coherence,
+                Counts& counts) const;
 
   /// Least signed distance between the part's surface and the union of cutter, shank and holder; negative where they
-  /// overlap, to the union's outer surface. mm, exact to rounding.
+  /// overlap, to the union's outer surface. mm, exact to 1e-9 or rounding.
   double clearance(const Assembly& assembly, const Pose& pose) const;
-  /// As clearance, over the part and the fixtures, and where it is.
+  double clearance(const Assembly& assembly, const Pose& pose, Coherence* coherence, Counts& counts) const;
+  /// As clearance, over the part and the fixtures, and where it is. A fixture is solid: in the middle of one a tool is
+  /// as deep as it is thick.
   struct Nearest {
     double distance;
     Vec3 point;   ///< of part or fixture
     Touch touch;  ///< what of the tool it is next to, or Fixture
   };
   Nearest nearest(const Assembly& assembly, const Pose& pose) const;
+
+  /// Whether a point is in the part's material, by its winding number (collide/winding.hpp): a tool that the part has
+  /// swallowed whole touches none of its surface. Looks at every triangle.
+  bool inside_part(const Vec3& p) const;
+
+  double spacing() const;
+  std::size_t triangles() const;
+  std::size_t points() const;
+  std::size_t fixtures() const;
 
  private:
   struct Data;

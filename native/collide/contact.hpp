@@ -10,6 +10,15 @@ namespace riffler {
 /// What of the assembly touches the part, or that it is a fixture which is touched, by whatever piece.
 enum class Touch : unsigned char { Cutter, Shank, Holder, Fixture };
 
+/// Work that a call did.
+struct Counts {
+  std::size_t nodes = 0;      ///< bounding spheres looked at
+  std::size_t triangles = 0;  ///< looked at by themselves
+  std::size_t cells = 0;      ///< places on triangles where the tool's distance was taken
+  std::size_t points = 0;     ///< sample points of the force
+  std::size_t dexels = 0;     ///< rays of fixtures
+};
+
 /// Force and torque act on the tool. All in the part frame.
 struct Contact {
   Vec3 force{0};   ///< N, out of what is touched

@@ -10,13 +10,6 @@ namespace riffler {
 
 namespace {
 
-/// Of a curve whose height rises.
-double radius_at(const OutlineEdge& e, double z) {
-  if (!e.centre) return e.from.x + (e.to.x - e.from.x) * ((z - e.from.y) / (e.to.y - e.from.y));
-  const double up = z - e.centre->y, r = std::abs(e.bulge), half = std::sqrt(std::max(0.0, (r - up) * (r + up)));
-  return std::max(0.0, e.centre->x + (e.bulge > 0 ? half : -half));
-}
-
 bool reaches(const OutlineEdge& e, double z) {
   return e.from.y <= z && z <= e.to.y;
 }
@@ -133,6 +126,12 @@ class Search {
 };
 
 }  // namespace
+
+double radius_at(const OutlineEdge& e, double z) {
+  if (!e.centre) return e.from.x + (e.to.x - e.from.x) * ((z - e.from.y) / (e.to.y - e.from.y));
+  const double up = z - e.centre->y, r = std::abs(e.bulge), half = std::sqrt(std::max(0.0, (r - up) * (r + up)));
+  return std::max(0.0, e.centre->x + (e.bulge > 0 ? half : -half));
+}
 
 Outline::Outline(const Tool& tool) {
   const std::vector<OutlineEdge> curves = curves_of(tool);

@@ -16,6 +16,9 @@ struct OutlineEdge {
   Part part;         ///< what it belongs to
 };
 
+/// Radius of an edge whose height rises, at a height between its ends.
+double radius_at(const OutlineEdge& e, double z);
+
 /// Signed distance of a solid of revolution in space: for a point at height ζ and ρ from the axis it is that of (ρ, ζ)
 /// in the half-plane, exact outside and inside, for the union of all pieces.
 class Outline {

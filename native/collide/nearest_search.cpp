@@ -1,0 +1,88 @@
+#include "collide/nearest_search.hpp"
+
+#include <algorithm>
+
+namespace riffler {
+
+NearestSearch::NearestSearch(const Assembly& assembly, const ToolFrame& frame)
+    : assembly_(assembly), frame_(frame), triangles_(assembly.runs()), slack_(0) {
+  heap_.reserve(512);
+}
+
+void NearestSearch::push(const Entry& e) {
+  if (e.low > limit_ + slack_) return;
+  heap_.push_back(e);
+  std::push_heap(heap_.begin(), heap_.end());
+}
+
+void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts) {
+  const SphereTree& tree = surface.tree();
+  const SphereGroup& spheres = tree.group(e.index);
+  double distance[kLanes];
+  centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
+  counts.nodes += kLanes;
+  // Every sphere has a point of the surface in it.
+  for (int k = 0; k < kLanes; ++k) limit_ = std::min(limit_, distance[k] + std::abs(spheres.radius[k]));
+  const bool items = tree.holds_items(e.index);
+  const std::size_t first = items ? tree.first_item(e.index) : kLanes * e.index + 1;
+  for (int k = 0; k < kLanes; ++k)
+    if (spheres.radius[k] >= 0)
+      push({distance[k] - spheres.radius[k], static_cast<std::uint32_t>(first + k), e.surface,
+            items ? Entry::Triangle : Entry::Group});
+}
+
+void NearestSearch::test(const Surface& surface, const Entry& e, Counts& counts) {
+  const Corners& c = surface.corners(e.index);
+  const Corners t{frame_.to_tool(c.a), frame_.to_tool(c.b), frame_.to_tool(c.c)};
+  const double before = triangles_.least().distance;
+  if (e.kind == Entry::Triangle) {
+    ++counts.triangles;
+    const double low = triangles_.bound(t);
+    if (low < triangles_.least().distance - slack_) {
+      // Sharper than the sphere: others may come first now.
+      if (!heap_.empty() && low > heap_.front().low)
+        push({std::max(low, e.low), e.index, e.surface, Entry::Looked});
+      else
+        triangles_.search(t);
+    }
+  } else {
+    triangles_.search(t);
+  }
+  if (triangles_.least().distance < before) best_surface_ = e.surface, best_triangle_ = e.index;
+}
+
+NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> surfaces, Deadline deadline,
+                                               Counts& counts) {
+  double size = glm::length(frame_.tip);
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    const SphereGroup& root = surfaces[s]->tree().group(0);
+    for (int k = 0; k < kLanes; ++k)
+      if (root.radius[k] >= 0) size = std::max(size, glm::length(root.sphere(k).centre) + root.radius[k]);
+    heap_.push_back({-std::numeric_limits<double>::infinity(), 0, static_cast<std::uint16_t>(s), Entry::Group});
+  }
+  slack_ = TriangleSearch::slack(size);
+  const std::size_t before = counts.triangles;
+  while (!heap_.empty() && heap_.front().low < triangles_.least().distance - slack_ && !deadline.passed()) {
+    std::pop_heap(heap_.begin(), heap_.end());
+    const Entry e = heap_.back();
+    heap_.pop_back();
+    if (e.kind == Entry::Group)
+      open(*surfaces[e.surface], e, counts);
+    else
+      test(*surfaces[e.surface], e, counts);
+  }
+  counts.cells += triangles_.cells();
+  Found found{triangles_.least(), best_surface_, best_triangle_, triangles_.low(), slack_, 1};
+  if (heap_.empty() || heap_.front().low >= found.low - slack_) return found;
+  // Cut short: what is left in the heap, as far as it matters.
+  const double tested = static_cast<double>(counts.triangles - before);
+  double left = 0;
+  for (const Entry& e : heap_)
+    if (e.low < found.low - slack_)
+      left += e.kind == Entry::Group ? static_cast<double>(surfaces[e.surface]->tree().under(e.index)) : 1;
+  found.checked = tested / (tested + left);
+  found.low = std::min(found.low, heap_.front().low);
+  return found;
+}
+
+}  // namespace riffler

@@ -1,0 +1,60 @@
+// The least signed distance between a tool and surfaces, best first.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collide/assembly.hpp"
+#include "collide/contact.hpp"
+#include "collide/deadline.hpp"
+#include "collide/surface.hpp"
+
+namespace riffler {
+
+/// Nodes and triangles in the order of their lower bounds f(centre) − radius, f being the tool's signed distance, which
+/// never changes by more than one moves. So nothing is opened whose bound is above the result.
+class NearestSearch {
+ public:
+  struct Found {
+    TriangleSearch::Least least;
+    std::size_t surface = 0, triangle = 0;  ///< index of the surface, place of the triangle in its tree
+    double low;                             ///< no point is nearer; least.distance where not cut short
+    double slack;                           ///< rounding, and what was not looked for: 1e-10 mm
+    double checked;                         ///< triangles tested, as a share of those that could matter
+  };
+
+  NearestSearch(const Assembly& assembly, const ToolFrame& frame);
+
+  /// What the search may take for granted: a distance that is reached somewhere. Changes nothing but its work.
+  void limit(double distance) { limit_ = distance; }
+  Found operator()(std::span<const Surface* const> surfaces, Deadline deadline, Counts& counts);
+
+ private:
+  struct Entry {
+    double low;
+    std::uint32_t index;  // of a group, or place of a triangle
+    std::uint16_t surface;
+    enum Kind : std::uint16_t { Triangle, Looked, Group } kind;
+
+    /// Later in the heap; ties are decided by what is there, so the order is always the same.
+    bool operator<(const Entry& o) const {
+      if (low != o.low) return low > o.low;
+      if (kind != o.kind) return kind > o.kind;
+      return surface != o.surface ? surface > o.surface : index > o.index;
+    }
+  };
+
+  void push(const Entry& e);
+  void open(const Surface& surface, const Entry& e, Counts& counts);
+  void test(const Surface& surface, const Entry& e, Counts& counts);
+  double useful() const { return std::min(limit_, triangles_.least().distance); }
+
+  const Assembly& assembly_;
+  const ToolFrame& frame_;
+  TriangleSearch triangles_;
+  double limit_ = std::numeric_limits<double>::infinity(), slack_;
+  std::vector<Entry> heap_;
+  std::size_t best_surface_ = 0, best_triangle_ = 0;
+};
+
+}  // namespace riffler

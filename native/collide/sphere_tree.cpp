@@ -1,0 +1,122 @@
+#include "collide/sphere_tree.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "geom/parallel.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// Rounding must not leave a corner outside.
+double grown(double radius, const Vec3& centre) {
+  const double far = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
+  return radius * (1 + 1e-14) + 1e-15 * far;
+}
+
+}  // namespace
+
+SphereGroup::SphereGroup() {
+  for (int k = 0; k < kLanes; ++k) put(k, {Vec3(0), -std::numeric_limits<double>::infinity()});
+}
+
+Sphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  // Of the longest side where the opposite corner lies in its sphere, otherwise the circle through all three.
+  const double ab = glm::dot(b - a, b - a), bc = glm::dot(c - b, c - b), ca = glm::dot(a - c, a - c);
+  const auto over = [](const Vec3& p, const Vec3& q, const Vec3& r) {
+    const Vec3 centre = 0.5 * (p + q);
+    return Sphere{centre,
+                  std::max(glm::length(p - centre), std::max(glm::length(q - centre), glm::length(r - centre)))};
+  };
+  const bool first = ab >= bc && ab >= ca, second = !first && bc >= ca;
+  const Sphere wide = first ? over(a, b, c) : second ? over(b, c, a) : over(c, a, b);
+  if (2 * std::max({ab, bc, ca}) >= ab + bc + ca) return wide;
+  const Vec3 n = glm::cross(b - a, c - a);
+  const Vec3 centre = a + (glm::cross(n, b - a) * ca + glm::cross(c - a, n) * ab) / (2 * glm::dot(n, n));
+  const double radius = std::max({glm::length(a - centre), glm::length(b - centre), glm::length(c - centre)});
+  return radius < wide.radius ? Sphere{centre, radius} : wide;
+}
+
+SphereTree::SphereTree(const Items& items) : order_(items.count) {
+  std::iota(order_.begin(), order_.end(), 0U);
+  std::size_t leaves = 1;
+  while (items.count > kLanes * leaves) first_leaf_ += leaves, leaves *= kLanes, ++levels_;
+  groups_.resize(first_leaf_ + leaves);
+  sort(items);
+  bound(items);
+}
+
+std::size_t SphereTree::first_under(std::size_t g) const {
+  std::size_t level = 0, begin = 0, wide = 1;
+  while (g >= begin + wide) begin += wide, wide *= kLanes, ++level;
+  return first(level, g - begin);
+}
+
+std::size_t SphereTree::under(std::size_t g) const {
+  std::size_t level = 0, begin = 0, wide = 1;
+  while (g >= begin + wide) begin += wide, wide *= kLanes, ++level;
+  return first(level, g - begin + 1) - first(level, g - begin);
+}
+
+void SphereTree::sort(const Items& items) {
+  const std::size_t n = order_.size();
+  std::vector<Vec3> centres(n);
+  parallel_for(n, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Box3 box = items.box(i);
+      centres[i] = 0.5 * (box.lower + box.upper);
+    }
+  });
+  // Each node is halved three times, at the median along its longest side. Ties are decided by the index: the tree is
+  // the same whatever nth_element does.
+  const auto at = [&](std::size_t half, std::size_t place) {
+    return order_.begin() + static_cast<std::ptrdiff_t>((place * n) >> half);
+  };
+  for (std::size_t half = 0; half < 3 * levels_; ++half)
+    parallel_for(std::size_t{1} << half, 1, [&](std::size_t place, std::size_t) {
+      Box3 box;
+      for (auto i = at(half, place); i != at(half, place + 1); ++i) box.add(centres[*i]);
+      const Vec3 size = box.size();
+      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+      std::nth_element(at(half, place), at(half + 1, 2 * place + 1), at(half, place + 1),
+                       [&](std::uint32_t i, std::uint32_t j) {
+                         const double x = centres[i][axis], y = centres[j][axis];
+                         return x != y ? x < y : i < j;
+                       });
+    });
+}
+
+void SphereTree::bound(const Items& items) {
+  const std::size_t leaves = groups_.size() - first_leaf_;
+  parallel_for(leaves, 1 << 10, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      const std::size_t from = first(levels_, leaf), to = first(levels_, leaf + 1);
+      std::sort(order_.begin() + static_cast<std::ptrdiff_t>(from), order_.begin() + static_cast<std::ptrdiff_t>(to));
+      for (std::size_t i = from; i < to; ++i) {
+        Sphere s = items.sphere(order_[i]);
+        s.radius = grown(s.radius, s.centre);
+        groups_[first_leaf_ + leaf].put(static_cast<int>(i - from), s);
+      }
+    }
+  });
+  std::size_t begin = 0, wide = 1;
+  for (std::size_t level = 1; level <= levels_; ++level) {
+    parallel_for(wide * kLanes, 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t place = from; place < to; ++place) {
+        const std::size_t low = first(level, place);
+        const std::span<const std::uint32_t> some(order_.data() + low, first(level, place + 1) - low);
+        Box3 box;
+        for (const std::uint32_t i : some) box.add(items.box(i));
+        const Vec3 centre = items.centre ? items.centre(some) : 0.5 * (box.lower + box.upper);
+        double radius = 0;
+        for (const std::uint32_t i : some) radius = std::max(radius, items.reach(i, centre));
+        groups_[begin + place / kLanes].put(static_cast<int>(place % kLanes), {centre, grown(radius, centre)});
+      }
+    });
+    begin += wide, wide *= kLanes;
+  }
+}
+
+}  // namespace riffler

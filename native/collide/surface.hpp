@@ -1,0 +1,29 @@
+// The triangles of a part or of a fixture's shape, in a tree.
+#pragma once
+
+#include <vector>
+
+#include "collide/sphere_tree.hpp"
+#include "collide/triangle_search.hpp"
+#include "mesh/mesh.hpp"
+
+namespace riffler {
+
+class Surface {
+ public:
+  explicit Surface(const Mesh& mesh) : Surface(corners_of(mesh)) {}
+
+  const SphereTree& tree() const { return tree_; }
+  /// By place in the tree.
+  const Corners& corners(std::size_t place) const { return corners_[place]; }
+  std::size_t size() const { return corners_.size(); }
+
+ private:
+  explicit Surface(const std::vector<Corners>& corners);
+  static std::vector<Corners> corners_of(const Mesh& mesh);
+
+  SphereTree tree_;
+  std::vector<Corners> corners_;
+};
+
+}  // namespace riffler

@@ -1,0 +1,237 @@
+#include "collide/triangle_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace riffler {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double farthest(const Corners& t, const Vec3& p) {
+  const auto square = [&](const Vec3& q) { return glm::dot(q - p, q - p); };
+  return std::sqrt(std::max({square(t.a), square(t.b), square(t.c)}));
+}
+
+double size_of(const Corners& t) {
+  double size = 0;
+  for (const Vec3& p : {t.a, t.b, t.c}) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return size;
+}
+
+/// Least over a triangle of the greater of two linear functions, given at its corners: at a corner, or where a side
+/// crosses the line on which they are equal.
+double least_of_greater(const std::array<double, 3>& f, const std::array<double, 3>& g) {
+  double least = kInfinity;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    least = std::min(least, std::max(f[i], g[i]));
+    const double here = f[i] - g[i], there = f[j] - g[j];
+    if ((here < 0) == (there < 0)) continue;
+    const double s = here / (here - there), at = f[i] + s * (f[j] - f[i]);
+    least = std::min(least, std::min(at, g[i] + s * (g[j] - g[i])));
+  }
+  return least;
+}
+
+/// A quadratic about a point: value + slope · e + ½ e · bend e.
+struct Quadratic {
+  double value;
+  Vec3 slope;
+  Mat3 bend;
+
+  double operator()(const Vec3& e) const { return value + glm::dot(slope, e) + 0.5 * glm::dot(e, bend * e); }
+};
+
+Quadratic mix(const Quadratic& a, const Quadratic& b, double share) {
+  return {a.value + share * (b.value - a.value), a.slope + share * (b.slope - a.slope),
+          a.bend + share * (b.bend - a.bend)};
+}
+
+/// Where a convex quadratic about `middle` is least on a triangle.
+Vec3 least_place(const Quadratic& q, const Vec3& middle, const Corners& t) {
+  const Vec3 e1 = t.b - t.a, e2 = t.c - t.a, from = t.a - middle;
+  const Vec3 h1 = q.bend * e1, h2 = q.bend * e2, slope = q.slope + q.bend * from;
+  const double a = glm::dot(e1, h1), b = glm::dot(e1, h2), c = glm::dot(e2, h2), det = a * c - b * b;
+  if (det > 1e-12 * a * c) {
+    const double f = -glm::dot(slope, e1), g = -glm::dot(slope, e2);
+    const double s = (c * f - b * g) / det, u = (a * g - b * f) / det;
+    if (s >= 0 && u >= 0 && s + u <= 1) return t.a + s * e1 + u * e2;
+  }
+  Vec3 best = t.a;
+  double least = kInfinity;
+  const std::array<Vec3, 3> corner{t.a, t.b, t.c};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 p = corner[i], e = corner[(i + 1) % 3] - p;
+    const double down = -glm::dot(q.slope + q.bend * (p - middle), e), bend = glm::dot(e, q.bend * e);
+    const double s = down <= 0 ? 0 : down >= bend ? 1 : down / bend;
+    const Vec3 at = s == 1 ? corner[(i + 1) % 3] : p + s * e;
+    if (const double value = q(at - middle); value < least) least = value, best = at;
+  }
+  return best;
+}
+
+/// Where the greater of two of them is least: the mean of both that has its least place where they are equal.
+Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, const Corners& t) {
+  double low = 0, high = 1;
+  Vec3 place = least_place(f, middle, t);
+  if (f(place - middle) >= g(place - middle)) return place;
+  place = least_place(g, middle, t);
+  if (g(place - middle) >= f(place - middle)) return place;
+  for (int k = 0; k < 40; ++k) {
+    const double share = 0.5 * (low + high);
+    place = least_place(mix(f, g, share), middle, t);
+    (f(place - middle) > g(place - middle) ? high : low) = share;
+  }
+  // A level mean has many such places: the one sought lies between those of a little more of either.
+  const Vec3 p = least_place(mix(f, g, low), middle, t), q = least_place(mix(f, g, high), middle, t);
+  const double here = f(p - middle) - g(p - middle), there = f(q - middle) - g(q - middle);
+  return here == there ? p : p + std::clamp(here / (here - there), 0.0, 1.0) * (q - p);
+}
+
+}  // namespace
+
+TriangleSearch::Look TriangleSearch::look(const Vec3& p) {
+  ++cells_;
+  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+  Look l{p, rho > 0 ? Vec3(p.x / rho, p.y / rho, 0) : Vec3(0), {}, {rho, p.z}, {}};
+  l.at = runs_.at(l.place, at_.data());
+  l.gradient = l.at.normal.x * l.radial + Vec3(0, 0, l.at.normal.y);
+  if (l.at.distance < least_.distance) least_ = {l.at.distance, p, l.at.part};
+  return l;
+}
+
+double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& from, double radius) const {
+  const OutlineRuns::RunAt& at = at_[run];
+  using Slope = OutlineRuns::Slope;
+  const auto gradient = [&](const Slope& s) { return s.normal.x * from.radial + Vec3(0, 0, s.normal.y); };
+  const double reach = at.reach;
+  const auto plane = [&](const Slope& s) {
+    const Vec3 g = gradient(s);
+    const auto value = [&](const Vec3& p) { return s.distance + glm::dot(g, p - from.point); };
+    return std::array<double, 3>{value(t.a), value(t.b), value(t.c)};
+  };
+  const auto single = [&](const Slope& s) {
+    // The ball that touches the foot from outside and does not enter the run's solid; of a convex one, a half-space.
+    if (reach < kInfinity) {
+      const double far = s.distance - radius;
+      if (s.distance >= reach) return far;
+      return std::max(far, reach - farthest(t, from.point + (reach - s.distance) * gradient(s)));
+    }
+    const std::array<double, 3> values = plane(s);
+    return std::min({values[0], values[1], values[2]});
+  };
+  if (!at.inside && at.closed.distance >= radius) return single(at.closed);
+  // No point is deeper than a given foot is far from it, which as a negative number is concave: a plane through its
+  // values at the corners is below. Nor deeper than a straight step that it faces.
+  const Vec3 foot = from.at.foot.x * from.radial + Vec3(0, 0, from.at.foot.y);
+  const std::array<double, 3> away{-glm::length(t.a - foot), -glm::length(t.b - foot), -glm::length(t.c - foot)};
+  if (!runs_.behind_ends(run, at, from.place, radius)) {
+    if (!at.inside)
+      if (const double closed = single(at.closed); closed >= 0) return closed;
+    return least_of_greater(away, at.margin >= radius ? plane(at.facing) : away);
+  }
+  if (reach < kInfinity) return at.inside ? single({-at.from_run, at.behind[0].normal}) : single(at.closed);
+  const std::array<double, 3> first = plane(at.behind[0]);
+  const double by_steps = least_of_greater(first, plane(at.behind[1]));
+  return from.at.distance < 0 ? std::max(by_steps, least_of_greater(first, away)) : by_steps;
+}
+
+double TriangleSearch::lower(const Corners& t, const Look& from) const {
+  const double radius = farthest(t, from.point);
+  double by_runs = kInfinity;
+  for (std::size_t j = 0; j < runs_.size(); ++j) by_runs = std::min(by_runs, run_bound(j, t, from, radius));
+  return std::max(by_runs, from.at.distance - radius);
+}
+
+double TriangleSearch::bound(const Corners& t) {
+  return lower(t, look((t.a + t.b + t.c) / 3.0));
+}
+
+/// Newton's method on the triangle, as long as the distance falls. Inside, near an inner corner of the tool, the
+/// distance is the greater of two.
+TriangleSearch::Look TriangleSearch::downhill(const Corners& t, Look from) {
+  const double enough = 0.1 * slack(size_of(t));
+  const auto model = [&](const OutlineRuns::Slope& s) {
+    const Vec3 meridian = Vec3(0, 0, s.normal.x) - s.normal.y * from.radial, round(-from.radial.y, from.radial.x, 0);
+    const double around = std::max(0.0, s.normal.x) / std::max(from.place.x, 1e-9);
+    return Quadratic{s.distance, s.normal.x * from.radial + Vec3(0, 0, s.normal.y),
+                     s.curvature * glm::outerProduct(meridian, meridian) + around * glm::outerProduct(round, round)};
+  };
+  for (int step = 0; step < 10; ++step) {
+    const OutlineRuns::RunAt& run = at_[from.at.run];
+    const bool two = run.inside && run.behind[1].distance != run.behind[0].distance &&
+                     run.behind[1].distance + farthest(t, from.point) > run.behind[0].distance;
+    const Vec3 next = two ? least_place(model(run.behind[0]), model(run.behind[1]), from.point, t)
+                          : least_place(model(from.at), from.point, t);
+    if (next == from.point) break;
+    const Look there = look(next);
+    const double won = from.at.distance - there.at.distance;
+    if (won > 0 || (won == 0 && step == 0)) from = there;
+    if (won <= enough) break;
+  }
+  return from;
+}
+
+/// Halves a cell across its longest side; false where rounding leaves nothing to halve.
+bool TriangleSearch::halve(const Corners& s, double low) {
+  const double ab = glm::length(s.b - s.a), bc = glm::length(s.c - s.b), ca = glm::length(s.a - s.c);
+  const double longest = std::max({ab, bc, ca});
+  if (longest <= 1e-15 * size_of(s)) return false;
+  if (glm::length(glm::cross(s.b - s.a, s.c - s.a)) <= 1e-12 * longest) {  // no thicker than that: a line
+    const auto [p, q] = ab == longest ? std::pair(s.a, s.b) : bc == longest ? std::pair(s.b, s.c) : std::pair(s.c, s.a);
+    const Vec3 m = 0.5 * (p + q);
+    push({{p, m, m}, low}), push({{m, q, q}, low});
+    return true;
+  }
+  if (ab == longest) {
+    const Vec3 m = 0.5 * (s.a + s.b);
+    push({{s.a, m, s.c}, low}), push({{m, s.b, s.c}, low});
+  } else if (bc == longest) {
+    const Vec3 m = 0.5 * (s.b + s.c);
+    push({{s.a, s.b, m}, low}), push({{s.a, m, s.c}, low});
+  } else {
+    const Vec3 m = 0.5 * (s.c + s.a);
+    push({{s.a, s.b, m}, low}), push({{m, s.b, s.c}, low});
+  }
+  return true;
+}
+
+void TriangleSearch::push(const Cell& cell) {
+  heap_.push_back(cell);
+  std::push_heap(heap_.begin(), heap_.end());
+}
+
+void TriangleSearch::search(const Corners& t) {
+  const double near = slack(size_of(t));
+  const std::size_t most = cells_ + kMostCells;
+  heap_.assign(1, {t, -kInfinity});
+  while (!heap_.empty() && heap_.front().low < least_.distance - near) {
+    if (cells_ > most) {
+      left_ = std::min(left_, heap_.front().low);
+      return;
+    }
+    std::pop_heap(heap_.begin(), heap_.end());
+    const Cell cell = heap_.back();
+    heap_.pop_back();
+    const Look middle = look((cell.t.a + cell.t.b + cell.t.c) / 3.0);
+    double low = std::max(cell.low, lower(cell.t, middle));
+    const auto done = [&] { return low >= least_.distance - near; };
+    if (done()) continue;
+    const Look lowest = downhill(cell.t, middle);
+    if (lowest.point != middle.point) low = std::max(low, lower(cell.t, look(lowest.point)));
+    if (done()) continue;
+    // The axis is a kink, too, which Newton's method overshoots.
+    if (lowest.place.x < farthest(cell.t, lowest.point)) {
+      const Quadratic square{0, middle.place.x * middle.radial, Mat3(1, 0, 0, 0, 1, 0, 0, 0, 0)};
+      low = std::max(low, lower(cell.t, look(least_place(square, middle.point, cell.t))));
+      if (done()) continue;
+    }
+    halve(cell.t, low);
+  }
+}
+
+}  // namespace riffler

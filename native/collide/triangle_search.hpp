@@ -1,0 +1,76 @@
+// The least signed distance between a tool and a triangle.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "collide/outline_runs.hpp"
+#include "geom/vec.hpp"
+
+namespace riffler {
+
+/// In the tool's frame.
+struct Corners {
+  Vec3 a, b, c;
+};
+
+/// Branch and bound, exact to rounding: the distance is followed downhill to its least place on a cell, where the
+/// tangent planes of the tool's runs (outline_runs.hpp) prove that nothing is lower, or the cell is halved. Keeps the
+/// least of all triangles seen, so that later ones are done sooner.
+class TriangleSearch {
+ public:
+  struct Least {
+    double distance = std::numeric_limits<double>::infinity();
+    Vec3 point{0};  ///< in the tool's frame
+    Part part = Part::Cutter;
+  };
+
+  /// Refers to `runs`.
+  explicit TriangleSearch(const OutlineRuns& runs) : runs_(runs), at_(runs.size()) {}
+
+  const Least& least() const { return least_; }
+  /// What a lower place must be below the least to be looked for: 1e-10 mm, or rounding in coordinates of this size.
+  static double slack(double size) { return 1e-10 + 1e-15 * size; }
+
+  /// A lower bound over the triangle from one look at its middle, which may lower the least.
+  double bound(const Corners& t);
+  void search(const Corners& t);
+
+  /// No place on any triangle is lower than this: the least, or less where kMostCells did not suffice. That happens
+  /// deep in a tool where three of its surfaces are equally near.
+  double low() const { return std::min(left_, least_.distance); }
+  static constexpr std::size_t kMostCells = 4000;
+
+  std::size_t cells() const { return cells_; }
+
+ private:
+  /// A look at a point: the distance there, in space.
+  struct Look {
+    Vec3 point, radial, gradient;
+    Vec2 place;
+    OutlineRuns::At at;
+  };
+
+  struct Cell {
+    Corners t;
+    double low;
+    bool operator<(const Cell& o) const { return low > o.low; }
+  };
+
+  Look look(const Vec3& p);
+  double lower(const Corners& t, const Look& from) const;
+  double run_bound(std::size_t run, const Corners& t, const Look& from, double radius) const;
+  Look downhill(const Corners& t, Look from);
+
+  void push(const Cell& cell);
+  bool halve(const Corners& cell, double low);
+
+  const OutlineRuns& runs_;
+  std::vector<OutlineRuns::RunAt> at_;  // of the last look
+  Least least_;
+  std::vector<Cell> heap_;
+  std::size_t cells_ = 0;
+  double left_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace riffler

@@ -1,0 +1,159 @@
+#include "collide/triangle_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include "collide/outline_lanes.hpp"
+#include "collide/tools.hpp"
+#include "mesh/closest.hpp"
+#include "stress/random.hpp"
+
+namespace riffler {
+namespace {
+
+using stress::Random;
+
+double distance_at(const Outline& outline, const Vec3& p) {
+  return outline.nearest(std::hypot(p.x, p.y), p.z).distance;
+}
+
+/// A place on the tool's surface, or in it, and round it.
+Vec3 place_near(const Outline& outline, Random& random) {
+  const OutlineEdge& e = outline.edges()[random.below(static_cast<int>(outline.edges().size()))];
+  const Vec2 p = glm::mix(e.from, e.to, random.uniform());
+  const double angle = random.uniform(0, 6.3), reach = random.power_of_ten(-4, 1);
+  return Vec3(p.x * std::cos(angle), p.x * std::sin(angle), p.y) + reach * random.uniform() * random.direction();
+}
+
+Corners triangle_near(const Outline& outline, Random& random) {
+  const Vec3 p = place_near(outline, random);
+  const double size = random.power_of_ten(-3, 1.7);
+  const auto corner = [&] { return p + size * random.uniform(-1, 1) * random.direction(); };
+  Corners t{corner(), corner(), corner()};
+  switch (random.below(8)) {
+    case 0:  // a needle
+      t.c = glm::mix(t.a, t.b, random.uniform()) + 1e-7 * random.direction();
+      break;
+    case 1:  // level
+      t.a.z = t.b.z = t.c.z = p.z;
+      break;
+    case 2:  // upright
+      t.b = t.a + Vec3(0, 0, size), t.c = t.a + size * random.square_to({0, 0, 1});
+      break;
+    case 3:  // through the axis
+      t.a.x = t.a.y = 0;
+      break;
+    case 4:  // without area
+      t.c = random.one_in(2) ? t.b : glm::mix(t.a, t.b, 0.25);
+      break;
+    default:
+      break;
+  }
+  return t;
+}
+
+Vec3 on(const Corners& t, double s, double u) {
+  if (s + u > 1) s = 1 - s, u = 1 - u;
+  return t.a + s * (t.b - t.a) + u * (t.c - t.a);
+}
+
+/// By all the ways there are to a triangle, since projecting onto a needle's plane goes wrong.
+double off_triangle(const Vec3& p, const Corners& t) {
+  double least = glm::length(closest_on_triangle(p, t.a, t.b, t.c).point - p);
+  for (const auto& [a, b] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)})
+    least = std::min(least, glm::length(closest_on_triangle(p, a, b, b).point - p));
+  return least;
+}
+
+/// The least distance that many points find, the last of them ever nearer to the best.
+double sampled(const Outline& outline, const Corners& t, Random& random) {
+  Vec2 best{0, 0};
+  double least = distance_at(outline, t.a);
+  const auto look = [&](double s, double u) {
+    s = std::clamp(s, 0.0, 1.0), u = std::clamp(u, 0.0, 1 - s);
+    if (const double d = distance_at(outline, on(t, s, u)); d < least) least = d, best = {s, u};
+  };
+  for (int i = 0; i <= 24; ++i)
+    for (int j = 0; i + j <= 24; ++j) look(i / 24.0, j / 24.0);
+  for (double step = 0.05; step > 1e-10; step *= 0.93)
+    look(best.x + step * random.uniform(-1, 1), best.y + step * random.uniform(-1, 1));
+  return least;
+}
+
+TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
+  std::uint64_t seed = 1;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const Outline outline(tool);
+    const OutlineRuns runs(outline.edges());
+    Random random(++seed);
+    std::size_t most = 0, all = 0;
+    for (int n = 0; n < 1500; ++n) {
+      const Corners t = triangle_near(outline, random);
+      TriangleSearch search(runs);
+      search.search(t);
+      const TriangleSearch::Least& found = search.least();
+      ASSERT_LE(search.low(), sampled(outline, t, random) + 1e-9) << n;
+      ASSERT_GE(search.low(), found.distance - (found.distance < -1 ? 1e-4 : 1e-9)) << n << " " << found.distance;
+      ASSERT_NEAR(found.distance, distance_at(outline, found.point), 1e-12) << n;
+      ASSERT_LE(off_triangle(found.point, t), 1e-10) << n;
+      most = std::max(most, search.cells()), all += search.cells();
+    }
+    EXPECT_LE(most, TriangleSearch::kMostCells + 40);
+    EXPECT_LE(all, 1500U * 40);
+  }
+}
+
+TEST(TriangleSearch, BoundsFromOneLookAreNeverAboveTheLeast) {
+  std::uint64_t seed = 100;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const Outline outline(tool);
+    const OutlineRuns runs(outline.edges());
+    Random random(++seed);
+    for (int n = 0; n < 3000; ++n) {
+      const Corners t = triangle_near(outline, random);
+      TriangleSearch one(runs), search(runs);
+      search.search(t);
+      ASSERT_LE(one.bound(t), search.least().distance + 1e-9) << n;
+    }
+  }
+}
+
+TEST(OutlineRuns, HaveTheOutlinesDistances) {
+  std::uint64_t seed = 200;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const Outline outline(tool);
+    const OutlineRuns runs(outline.edges());
+    std::vector<OutlineRuns::RunAt> of(runs.size());
+    Random random(++seed);
+    for (int n = 0; n < 5000; ++n) {
+      const Vec3 p = place_near(outline, random);
+      const double rho = std::hypot(p.x, p.y);
+      const Outline::Nearest expected = outline.nearest(rho, p.z);
+      ASSERT_NEAR(runs.at({rho, p.z}, of.data()).distance, expected.distance, 1e-12);
+    }
+  }
+}
+
+TEST(OutlineLanes, HaveTheOutlinesDistances) {
+  std::uint64_t seed = 300;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const Outline outline(tool);
+    std::vector<LaneEdge> edges(outline.edges().begin(), outline.edges().end());
+    Random random(++seed);
+    for (int n = 0; n < 1000; ++n) {
+      const ToolFrame frame({10.0 * random.direction(), random.direction()});
+      SphereGroup group;
+      for (int k = 0; k < kLanes; ++k) group.put(k, {frame.to_part(place_near(outline, random)), 0});
+      double distance[kLanes];
+      centre_distances(edges, frame, group, distance);
+      for (int k = 0; k < kLanes; ++k)
+        ASSERT_NEAR(distance[k], distance_at(outline, frame.to_tool(group.sphere(k).centre)), 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace riffler
