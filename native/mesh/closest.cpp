@@ -155,10 +155,12 @@ void Closest::descend(const Vec3& p, double& bound, const Visit& visit) const {
   }
 }
 
-Closest::Hit Closest::operator()(const Vec3& p, double limit) const {
+template <class Keep>
+Closest::Hit Closest::nearest(const Vec3& p, double limit, const Keep& keep) const {
   Hit hit;
   double bound = limit * limit;
   descend(p, bound, [&](std::size_t i) {
+    if (!keep(corners_[i])) return false;
     const OnTriangle on = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
     const double d2 = square(p - on.point);
     if (d2 < bound || (d2 == bound && (hit.triangle < 0 || id_[i] < hit.triangle))) {
@@ -171,6 +173,31 @@ Closest::Hit Closest::operator()(const Vec3& p, double limit) const {
   return hit;
 }
 
+Closest::Hit Closest::operator()(const Vec3& p, double limit) const {
+  return nearest(p, limit, [](const Corners&) { return true; });
+}
+
+Closest::Hit Closest::above(const Vec3& p, double limit, const Above& plane) const {
+  const auto rises = [&](const Vec3& corner) { return glm::dot(corner - plane.origin, plane.up) > plane.height; };
+  return nearest(p, limit, [&](const Corners& c) {
+    if (!rises(c.a) && !rises(c.b) && !rises(c.c)) return false;
+    const Vec3 normal = glm::cross(c.b - c.a, c.c - c.a);
+    return glm::dot(normal, plane.up) <= plane.cosine * glm::length(normal);
+  });
+}
+
+void Closest::gather(const Vec3& p, double limit, std::vector<Hit>& hits) const {
+  double bound = limit * limit;
+  descend(p, bound, [&](std::size_t i) {
+    const auto& [a, b, c] = corners_[i];
+    // Most triangles of a leaf at the rim are out by their own box, which costs a tenth of the nearest point.
+    if (square_to_box(p, {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}) > bound) return false;
+    const OnTriangle on = closest_on_triangle(p, a, b, c);
+    if (const double d2 = square(p - on.point); d2 <= bound) hits.push_back({on.point, std::sqrt(d2), id_[i], on.part});
+    return false;
+  });
+}
+
 bool Closest::within(const Vec3& p, double limit) const {
   double bound = limit * limit;
   bool found = false;
@@ -181,9 +208,14 @@ bool Closest::within(const Vec3& p, double limit) const {
   return found;
 }
 
-double Closest::distance_to(int t, const Vec3& p) const {
+Closest::Hit Closest::on(int t, const Vec3& p) const {
   const Corners& c = corners_[slot_[t]];
-  return glm::length(p - closest_on_triangle(p, c.a, c.b, c.c).point);
+  const OnTriangle on = closest_on_triangle(p, c.a, c.b, c.c);
+  return {on.point, glm::length(p - on.point), t, on.part};
+}
+
+double Closest::distance_to(int t, const Vec3& p) const {
+  return on(t, p).distance;
 }
 
 void Closest::prepare_sides(const Mesh& mesh) {

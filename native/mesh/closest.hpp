@@ -35,6 +35,20 @@ class Closest {
   Hit operator()(const Vec3& p, double limit = std::numeric_limits<double>::infinity()) const;
   /// Whether any point of the mesh is at most `limit` away; cheaper than the nearest one.
   bool within(const Vec3& p, double limit) const;
+  /// Adds every triangle that is at most `limit` away to `hits`, with its own nearest point; in an order that does not
+  /// depend on the number of threads.
+  void gather(const Vec3& p, double limit, std::vector<Hit>& hits) const;
+  /// The plane of a contact, and which triangles could hold a ball that lies on it.
+  struct Above {
+    Vec3 origin, up;  // up: unit
+    double height;    // mm above the plane that a triangle rises at least
+    double cosine;    // of the angle between its normal and `up`, at most
+  };
+  /// The nearest point, if nearer than `limit`, of the triangles that rise and turn that far; any turn counts for those
+  /// without area.
+  Hit above(const Vec3& p, double limit, const Above& plane) const;
+  /// The nearest point of triangle `t`.
+  Hit on(int t, const Vec3& p) const;
   /// Distance to triangle `t`: an upper bound of the distance to the mesh.
   double distance_to(int t, const Vec3& p) const;
 
@@ -48,6 +62,8 @@ class Closest {
   };
 
   void build(const std::vector<Corners>& corners);
+  template <class Keep>
+  Hit nearest(const Vec3& p, double limit, const Keep& keep) const;
   void prepare_sides(const Mesh& mesh);
   std::size_t first(std::size_t level, std::size_t place) const { return (place * id_.size()) >> level; }
   template <class Visit>

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "geom/vec.hpp"
@@ -16,6 +18,8 @@ struct PencilPath {
   std::vector<std::array<Vec3, 2>> contacts;  ///< each side keeps its place along the path
   std::vector<std::array<Vec3, 2>> normals;   ///< of the part at the contacts, out of the material
   std::vector<Vec3> axes;                     ///< tool axes, tip to spindle; empty until it is oriented
+  std::map<std::size_t, Vec3> keys;           ///< what the axes were interpolated from, by number of the point
+  std::string interpolation;                  ///< by which rule; see plan/orientation.hpp
 
   std::size_t size() const { return centres.size(); }
   /// mm, of the closing edge too.

@@ -35,6 +35,40 @@ double slow_distance(const Vec3& p, const Mesh& mesh) {
   return best;
 }
 
+TEST(Closest, GathersAllTrianglesThatAreNearAndFindsTheNearestThatRisesAboveAPlane) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> coordinate(-20, 20);
+  Mesh mesh = torus_mesh(10, 4, 40, 30);
+  mesh.triangles.emplace_back(3, 3, 400);  // without area: it counts however it is turned
+  const Closest closest(mesh);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
+    const double limit = closest(p).distance + std::abs(coordinate(random)) / 4;
+    const Vec3 origin{coordinate(random) / 4, coordinate(random) / 4, 0};
+    const Vec3 up = glm::normalize(Vec3{coordinate(random), coordinate(random), coordinate(random)});
+    std::vector<Closest::Hit> hits;
+    closest.gather(p, limit, hits);
+    std::vector<double> truth(mesh.triangles.size());
+    std::size_t near = 0;
+    double above = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Vec3 &a = mesh.vertices[mesh.triangles[t].x], &b = mesh.vertices[mesh.triangles[t].y],
+                 &c = mesh.vertices[mesh.triangles[t].z];
+      truth[t] = triangle_distance(p, a, b, c);
+      near += truth[t] <= limit ? 1 : 0;
+      const Vec3 n = glm::cross(b - a, c - a);
+      const double rise = std::max({glm::dot(a - origin, up), glm::dot(b - origin, up), glm::dot(c - origin, up)});
+      if (rise > 0.5 && glm::dot(n, up) <= 0.3 * glm::length(n)) above = std::min(above, truth[t]);
+    }
+    EXPECT_EQ(hits.size(), near);
+    for (const Closest::Hit& hit : hits) EXPECT_NEAR(hit.distance, truth[hit.triangle], 1e-12);
+    const Closest::Hit hit = closest.above(p, 100, {origin, up, 0.5, 0.3});
+    EXPECT_NEAR(hit.distance, above, 1e-12);
+    if (hit.triangle < 0) continue;
+    EXPECT_NEAR(closest.on(hit.triangle, p).distance, above, 1e-12);
+  }
+}
+
 TEST(Closest, AgreesWithEveryTriangleTried) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> coordinate(-20, 20);

@@ -1,0 +1,57 @@
+// Pencil cuts.
+#include <memory>
+
+#include "bindings/bindings.hpp"
+#include "plan/passes.hpp"
+#include "plan/pencil.hpp"
+#include "tool/tool.hpp"
+
+namespace riffler {
+
+namespace {
+
+py::dict to_dict(const PencilStats& s) {
+  using namespace py::literals;
+  return py::dict("balls"_a = s.balls, "entered"_a = s.entered, "starts"_a = s.starts, "stuck"_a = s.stuck,
+                  "faceting"_a = s.faceting, "edges"_a = s.edges, "traces"_a = s.traces, "steps"_a = s.steps,
+                  "cut"_a = s.cut);
+}
+
+py::dict find(const Mesh& part, const Tool& tool, const PencilOptions& options, const py::object& callable) {
+  PencilResult result;
+  {
+    const Progress progress = to_progress(callable);
+    const py::gil_scoped_release release;
+    result = pencil(part, 0.5 * tool.diameter(), options, progress);
+  }
+  py::list paths;
+  for (PencilPath& path : result.paths) paths.append(std::make_shared<PencilPath>(std::move(path)));
+  py::list ends;
+  for (const auto& [first, last] : result.ends) ends.append(py::make_tuple(first, last));
+  using namespace py::literals;
+  return py::dict("paths"_a = paths, "ends"_a = ends, "rest_area"_a = result.rest_area,
+                  "rest_areas"_a = take<double>(std::move(result.rest_areas)), "stats"_a = to_dict(result.stats),
+                  "reason"_a = result.reason);
+}
+
+}  // namespace
+
+void bind_pencil(py::module_& m) {
+  m.def("stepover_of_scallop", &stepover_of_scallop, py::arg("radius"), py::arg("height"));
+  m.def(
+      "pencil",
+      [](const Mesh& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,
+         double minimum_length, int passes, std::optional<double> stepover, double overthickness,
+         const py::object& progress) {
+        PencilOptions options;
+        options.tolerance = tolerance, options.bitangency_angle = bitangency_angle;
+        options.minimum_length = minimum_length, options.passes = passes, options.stepover = stepover;
+        options.overthickness = overthickness;
+        return find(part, tool, options, progress);
+      },
+      py::arg("part"), py::arg("tool"), py::kw_only(), py::arg("tolerance"), py::arg("bitangency_angle"),
+      py::arg("minimum_length"), py::arg("passes"), py::arg("stepover"), py::arg("overthickness"), py::arg("progress"),
+      "For riffler.plan.pencil.");
+}
+
+}  // namespace riffler

@@ -1,0 +1,102 @@
+#include "plan/contact_net.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "geom/parallel.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr std::size_t kGrain = 256;
+
+/// A strip between two sides, from `a` to `b` and from `c` to `d`; where a triangle begins, a = c. Unlike triangles,
+/// strips stay as many as their length asks for when they are halved, however thin they are.
+struct Cell {
+  Vec3 a, b, c, d;
+
+  Vec3 middle() const { return 0.25 * (a + b + c + d); }
+  double reach(const Vec3& from) const {
+    return std::max({glm::length(a - from), glm::length(b - from), glm::length(c - from), glm::length(d - from)});
+  }
+  double length() const { return std::max(glm::length(b - a), glm::length(d - c)); }
+  double width() const { return std::max(glm::length(c - a), glm::length(d - b)); }
+  double area() const { return 0.5 * (glm::length(glm::cross(b - a, c - a)) + glm::length(glm::cross(b - d, c - d))); }
+  std::array<Cell, 2> halves() const {
+    if (length() >= width()) {
+      const Vec3 m = 0.5 * (a + b), n = 0.5 * (c + d);
+      return {Cell{a, m, c, n}, Cell{m, b, n, d}};
+    }
+    const Vec3 m = 0.5 * (a + c), n = 0.5 * (b + d);
+    return {Cell{a, b, m, n}, Cell{m, n, c, d}};
+  }
+};
+
+/// A triangle as a strip that ends at its shortest edge.
+Cell strip_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double ab = glm::length(b - a), bc = glm::length(c - b), ca = glm::length(a - c);
+  if (bc <= ab && bc <= ca) return {a, b, a, c};
+  return ca <= ab ? Cell{b, c, b, a} : Cell{c, a, c, b};
+}
+
+/// The net on one triangle.
+struct Triangle {
+  const RollingBall& ball;
+  double spacing, depth, cosine;
+  int id;
+  std::vector<Unreached>& points;
+  std::size_t balls = 0;
+
+  void try_all(const Cell& whole) {
+    const Vec3& normal = ball.normal(id);
+    std::vector<Cell> stack{whole};
+    while (!stack.empty()) {
+      const Cell cell = stack.back();
+      stack.pop_back();
+      const Vec3 middle = cell.middle();
+      const double around = cell.reach(middle);
+      // Moving the ball by `around` changes its distance from what is above its plane by no more than that.
+      const double radius = ball.radius();
+      const Closest::Hit hit =
+          ball.part().above(middle + radius * normal, radius + around, {middle, normal, depth, cosine});
+      ++balls;
+      if (hit.triangle < 0) continue;
+      const double entered = radius - hit.distance;
+      if (entered < around && std::max(cell.length(), cell.width()) > spacing) {
+        const auto [first, second] = cell.halves();
+        stack.push_back(second), stack.push_back(first);
+      } else if (entered > depth) {
+        points.push_back({middle, normal, entered, id, cell.area()});
+      }
+    }
+  }
+};
+
+}  // namespace
+
+ContactNet contact_net(const Mesh& part, const RollingBall& ball, double spacing, double depth, double angle,
+                       const Progress& progress) {
+  const std::size_t n = part.triangles.size(), chunks = (n + kGrain - 1) / kGrain;
+  const double cosine = std::cos(0.99 * angle);
+  ContactNet net;
+  std::vector<std::vector<Unreached>> points(chunks);
+  std::vector<std::size_t> balls(chunks, 0);
+  parallel_for(
+      n, kGrain,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+          if (ball.normal(static_cast<int>(t)) == Vec3(0)) continue;
+          const Vec3i& v = part.triangles[t];
+          Triangle triangle{ball, spacing, depth, cosine, static_cast<int>(t), points[begin / kGrain]};
+          triangle.try_all(strip_of(part.vertices[v.x], part.vertices[v.y], part.vertices[v.z]));
+          balls[begin / kGrain] += triangle.balls;
+        }
+      },
+      progress);
+  for (const auto& some : points) net.points.insert(net.points.end(), some.begin(), some.end());
+  for (const std::size_t some : balls) net.balls += some;
+  return net;
+}
+
+}  // namespace riffler

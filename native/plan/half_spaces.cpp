@@ -1,0 +1,92 @@
+#include "plan/half_spaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler {
+
+namespace {
+
+constexpr double kParallel = 1e-9;  // sine of an angle below which a line runs along a plane
+
+/// Where the box's lowest point is along one axis; the middle where that axis does not count.
+double lowest_in_box(double up, double reach) {
+  return std::abs(up) < kParallel ? 0 : up > 0 ? -reach : reach;
+}
+
+/// The lowest point on the edge line of spaces[i], within the spaces before it.
+std::optional<Lowest2> lowest_on_edge(std::span<const HalfSpace<Vec2>> spaces, std::size_t i, const Vec2& up,
+                                      double reach, double slack) {
+  const double length2 = glm::dot(spaces[i].along, spaces[i].along);
+  const Vec2 foot = spaces[i].along * (spaces[i].least / length2);
+  const Vec2 way = Vec2(-spaces[i].along.y, spaces[i].along.x) / std::sqrt(length2);
+  double low = -4 * reach, high = 4 * reach;
+  int at_low = -1, at_high = -1;
+  const auto clip = [&](const Vec2& along, double least, int id) {
+    const double rate = glm::dot(along, way), need = least - glm::dot(along, foot);
+    if (std::abs(rate) < kParallel) return need <= slack;
+    if (const double t = need / rate; rate > 0) {
+      if (t > low) low = t, at_low = id;
+    } else if (t < high) {
+      high = t, at_high = id;
+    }
+    return true;
+  };
+  for (const double side : {-1.0, 1.0})
+    if (!clip({side, 0}, -reach, -1) || !clip({0, side}, -reach, -1)) return {};
+  for (std::size_t k = 0; k < i; ++k)
+    if (!clip(spaces[k].along, spaces[k].least, static_cast<int>(k))) return {};
+  if (low > high + slack) return {};
+  const double slope = glm::dot(up, way);
+  if (std::abs(slope) < kParallel) {
+    const double t = std::clamp(0.0, std::min(low, high), std::max(low, high));
+    return Lowest2{foot + t * way, {static_cast<int>(i), t == low ? at_low : t == high ? at_high : -1}};
+  }
+  return Lowest2{foot + (slope > 0 ? low : high) * way, {static_cast<int>(i), slope > 0 ? at_low : at_high}};
+}
+
+}  // namespace
+
+std::optional<Lowest2> lowest(std::span<const HalfSpace<Vec2>> spaces, const Vec2& up, double reach, double slack) {
+  Lowest2 best{{lowest_in_box(up.x, reach), lowest_in_box(up.y, reach)}, {-1, -1}};
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    if (glm::dot(spaces[i].along, best.point) >= spaces[i].least - slack) continue;
+    if (glm::dot(spaces[i].along, spaces[i].along) < kParallel * kParallel) return {};
+    const std::optional<Lowest2> next = lowest_on_edge(spaces, i, up, reach, slack);
+    if (!next) return {};
+    best = *next;
+  }
+  return best;
+}
+
+std::optional<Lowest3> lowest(std::span<const HalfSpace<Vec3>> spaces, const Vec3& up, double reach, double slack) {
+  Lowest3 best{{lowest_in_box(up.x, reach), lowest_in_box(up.y, reach), lowest_in_box(up.z, reach)}, {-1, -1, -1}};
+  std::vector<HalfSpace<Vec2>> flat;
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    const Vec3& normal = spaces[i].along;
+    if (glm::dot(normal, best.point) >= spaces[i].least - slack) continue;
+    // In the plane of the one that is violated, the box's six sides first.
+    const Vec3 foot = normal * spaces[i].least;
+    const Vec3 p = glm::normalize(glm::cross(normal, std::abs(normal.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+    const Vec3 q = glm::cross(normal, p);
+    flat.clear();
+    const auto add = [&](const Vec3& along, double least) {
+      flat.push_back({{glm::dot(along, p), glm::dot(along, q)}, least - glm::dot(along, foot)});
+    };
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        Vec3 along(0);
+        along[axis] = side;
+        add(along, -reach);
+      }
+    for (std::size_t k = 0; k < i; ++k) add(spaces[k].along, spaces[k].least);
+    const std::optional<Lowest2> in_plane = lowest(flat, {glm::dot(up, p), glm::dot(up, q)}, 4 * reach, slack);
+    if (!in_plane) return {};
+    const auto id = [](int at) { return at < 6 ? -1 : at - 6; };
+    best = {foot + in_plane->point.x * p + in_plane->point.y * q,
+            {static_cast<int>(i), id(in_plane->active[0]), id(in_plane->active[1])}};
+  }
+  return best;
+}
+
+}  // namespace riffler

@@ -1,0 +1,35 @@
+// Linear programs in two and three unknowns.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geom/vec.hpp"
+
+namespace riffler {
+
+/// The points x with dot(along, x) ≥ least.
+template <class Vector>
+struct HalfSpace {
+  Vector along;
+  double least;
+};
+
+/// The point of all `spaces`, and of the box |x_k| ≤ reach, that is lowest along `up`. `active` are the half-spaces
+/// whose planes meet there, -1 for a side of the box. Incremental (Seidel, Discrete Comput. Geom. 6 (1991) 423), in
+/// the order given: it is fast where the half-spaces that matter come first. `slack` is what counts as rounding.
+struct Lowest2 {
+  Vec2 point;
+  std::array<int, 2> active;
+};
+std::optional<Lowest2> lowest(std::span<const HalfSpace<Vec2>> spaces, const Vec2& up, double reach, double slack);
+
+struct Lowest3 {
+  Vec3 point;
+  std::array<int, 3> active;
+};
+std::optional<Lowest3> lowest(std::span<const HalfSpace<Vec3>> spaces, const Vec3& up, double reach, double slack);
+
+}  // namespace riffler

@@ -1,0 +1,18 @@
+// Passes beside a valley, on both of its sides.
+#pragma once
+
+#include <vector>
+
+#include "plan/path.hpp"
+#include "plan/valley.hpp"
+
+namespace riffler {
+
+/// Distance (mm) between passes of a ball on a plane that leave ridges of `height` (mm) between them.
+double stepover_of_scallop(double radius, double height);
+
+/// `count` passes at multiples of `stepover` (mm) on each side of a traced valley, away from it: balls that touch the
+/// part at one point, which stands for both contacts. A pass ends where the ball cannot be, and goes on behind.
+std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& valley, int count, double stepover);
+
+}  // namespace riffler

@@ -1,0 +1,235 @@
+#include "plan/pencil.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "geom/parallel.hpp"
+#include "mesh/smooth.hpp"
+#include "plan/passes.hpp"
+#include "plan/valley_index.hpp"
+#include "plan/valley_starts.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// The lengths that a search goes by, mm.
+struct Scales {
+  double spacing;  ///< of the net: the strip beside the flattest valley's bottom that the ball cannot reach
+  double depth;    ///< what a ball may enter before its contact counts as unreached
+  double touch;    ///< of cracks that are none
+
+  Scales(const Mesh& part, double radius, double tolerance) {
+    const Box3 box = bounds(part);
+    const double largest = glm::length(glm::max(glm::abs(box.lower), glm::abs(box.upper)));
+    spacing = std::clamp(std::sqrt(2 * tolerance * radius), 0.02 * radius, 0.25 * radius);
+    depth = 1e-3 * std::min(tolerance, radius) + 1e-12 * largest;
+    touch = 0.1 * std::min(tolerance, 0.01 * radius) + 1e-12 * largest;
+  }
+};
+
+/// Places that seem to lie on one valley, as the first of each group.
+std::vector<std::size_t> one_of_each(const std::vector<Station>& places, double near) {
+  std::vector<std::size_t> parent(places.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto root = [&](std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  const auto alike = [&](const Station& a, const Station& b) {
+    constexpr double kTurn = 0.4;
+    const auto far = [&](int i) { return glm::length(a.feet[0].away - b.feet[i].away) > kTurn; };
+    const auto far_too = [&](int i) { return glm::length(a.feet[1].away - b.feet[i].away) > kTurn; };
+    return glm::length(a.centre - b.centre) <= near && !((far(0) || far_too(1)) && (far(1) || far_too(0)));
+  };
+  Cubes<std::size_t> cubes(near);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3& c = places[i].centre;
+    cubes.look(c - Vec3(near), c + Vec3(near), [&](std::size_t j) {
+      const std::size_t a = root(i), b = root(j);
+      if (a != b && alike(places[i], places[j])) parent[std::max(a, b)] = std::min(a, b);
+    });
+    cubes.add(c, c, i);
+  }
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (root(i) == i) out.push_back(i);
+  return out;
+}
+
+/// Valleys in rounds: one of each group of starts is followed, starts that then lie on a valley are done.
+class Tracing {
+ public:
+  Tracing(const RollingBall& ball, const ValleyTracer& tracer, const ValleyRules& rules, double near)
+      : ball_(ball),
+        tracer_(tracer),
+        near_(near),
+        index_(0.5 * ball.radius(), 2 * rules.tolerance, 2 * rules.jump),
+        corners_(1e-3 * ball.radius()) {}
+
+  std::vector<Valley> run(std::vector<Station> pending, PencilStats& stats, const Progress& progress) {
+    const std::size_t all = std::max<std::size_t>(1, pending.size());
+    while (!pending.empty()) {
+      const double done_share = 1 - static_cast<double>(std::min(all, pending.size())) / static_cast<double>(all);
+      report(progress, done_share);
+      const std::vector<std::size_t> chosen = one_of_each(pending, near_);
+      std::vector<Valley> traced(chosen.size());
+      std::vector<std::size_t> steps(chosen.size(), 0);
+      parallel_for(
+          chosen.size(), 1,
+          [&](std::size_t i, std::size_t) { traced[i] = tracer_.trace(pending[chosen[i]], steps[i]); },
+          progress ? Progress([&](double) { return progress(done_share); }) : Progress());
+      std::vector<Station> more;
+      for (std::size_t i = 0; i < traced.size(); ++i) {
+        ++stats.traces, stats.steps += steps[i];
+        if (index_.covers(traced[i])) continue;
+        index_.add(traced[i]);
+        meet(traced[i], more);
+        valleys_.push_back(std::move(traced[i]));
+      }
+      std::vector<char> done(pending.size(), 0);
+      for (const std::size_t i : chosen) done[i] = 1;
+      for (std::size_t i = 0; i < pending.size(); ++i)
+        if (!done[i] && !index_.covers(pending[i])) more.push_back(pending[i]);
+      std::erase_if(more, [&](const Station& s) { return index_.covers(s); });
+      pending = std::move(more);
+    }
+    return std::move(valleys_);
+  }
+
+ private:
+  /// Gives corners that were reached from several valleys one place, and starts at the ways out of a new one.
+  void meet(Valley& valley, std::vector<Station>& more) {
+    for (int end = 0; end < 2; ++end) {
+      if (valley.ends[end] != ValleyEnd::Corner) continue;
+      Vec3& centre = (end ? valley.stations.back() : valley.stations.front()).centre;
+      const double same = 1e-6 * ball_.radius();
+      std::optional<Vec3> known;
+      corners_.look(centre - Vec3(same), centre + Vec3(same), [&](const Vec3& c) {
+        if (!known && glm::length(c - centre) <= same) known = c;
+      });
+      if (known) {
+        centre = *known;
+        continue;
+      }
+      corners_.add(centre, centre, centre);
+      for (const Station& station : tracer_.branches(centre)) more.push_back(station);
+    }
+  }
+
+  const RollingBall& ball_;
+  const ValleyTracer& tracer_;
+  double near_;
+  ValleyIndex index_;
+  Cubes<Vec3> corners_;
+  std::vector<Valley> valleys_;
+};
+
+PencilPath path_of(const Valley& valley, double radius) {
+  PencilPath path;
+  path.radius = radius, path.closed = valley.closed();
+  for (const Station& s : valley.stations) {
+    path.centres.push_back(s.centre);
+    path.contacts.push_back({s.feet[0].point, s.feet[1].point});
+    path.normals.push_back(s.normals);
+  }
+  return path;
+}
+
+const char* name_of(ValleyEnd end) {
+  constexpr const char* kNames[] = {"loop", "corner", "part", "faded", "cut"};
+  return kNames[static_cast<int>(end)];
+}
+
+std::string reason_of(const PencilStats& stats, const PencilOptions& options) {
+  if (stats.entered == 0) return "the ball reaches every point of the part: nothing is concave for its radius";
+  std::string reason = "the ball cannot reach " + std::to_string(stats.entered) + " of " + std::to_string(stats.balls) +
+                       " contact points, but rests on no two faces there";
+  if (stats.faceting > 0)
+    reason += "; gaps within the tolerance or angles too small: " + std::to_string(stats.faceting);
+  if (stats.edges > 0) reason += "; on sharp or open edges: " + std::to_string(stats.edges);
+  if (stats.stuck > 0) reason += "; no room for it: " + std::to_string(stats.stuck);
+  if (options.minimum_length > 0) reason += "; or paths are shorter than the minimum length";
+  return reason;
+}
+
+void count(const ContactNet& net, const ValleyStarts& starts, PencilResult& result) {
+  PencilStats& stats = result.stats;
+  stats.balls = net.balls, stats.entered = net.points.size();
+  stats.starts = starts.pressed, stats.stuck = starts.stuck;
+  stats.faceting = starts.faceting, stats.edges = starts.edges;
+  for (std::size_t i = 0; i < net.points.size(); ++i) {
+    if (!starts.is_rest[i]) continue;
+    result.rest_area += net.points[i].area;
+    result.rest_areas[net.points[i].triangle] += net.points[i].area;
+  }
+}
+
+void check(double radius, const PencilOptions& options) {
+  const auto positive = [](double x, const char* name) {
+    if (!(x > 0) || !std::isfinite(x)) throw std::invalid_argument(std::string(name) + " must be positive and finite");
+  };
+  positive(radius, "radius");
+  positive(options.tolerance, "tolerance");
+  if (const auto& angle = options.bitangency_angle; angle && !(*angle > 0 && *angle < 3.14159))
+    throw std::invalid_argument("bitangency_angle must be between 0 and pi");
+  if (!(options.minimum_length >= 0) || !std::isfinite(options.minimum_length))
+    throw std::invalid_argument("minimum_length must not be negative, and finite");
+  if (!(options.overthickness >= 0) || !std::isfinite(options.overthickness))
+    throw std::invalid_argument("overthickness must not be negative, and finite");
+  if (options.passes < 1 || options.passes > 1000) throw std::invalid_argument("passes must be from 1 to 1000");
+  if (options.stepover) positive(*options.stepover, "stepover");
+}
+
+}  // namespace
+
+double bitangency_angle_of_gap(double radius, double gap) {
+  return 2 * std::acos(radius / (radius + gap));
+}
+
+PencilResult pencil(const Mesh& part, double radius, const PencilOptions& options, const Progress& progress) {
+  check(radius, options);
+  validate(part);
+  if (part.empty()) throw std::invalid_argument("part: a mesh without triangles has no valleys");
+  const double wide = radius + options.overthickness;
+  const Scales scales(part, wide, options.tolerance);
+  const RollingBall ball(part, wide, scales.touch);
+  report(progress, 0.05);
+
+  PencilResult result;
+  ValleyRules rules;
+  rules.tolerance = options.tolerance;
+  const double gap_angle = bitangency_angle_of_gap(wide, options.tolerance);
+  rules.jump = std::min(gap_angle, kFeatureAngle);
+  rules.least_angle = options.bitangency_angle.value_or(gap_angle);
+  rules.least_gap = options.bitangency_angle ? 0 : options.tolerance;
+  const ContactNet net =
+      contact_net(part, ball, scales.spacing, scales.depth, rules.least_angle, riffler::part(progress, 0.05, 0.4));
+  result.rest_areas.assign(part.triangles.size(), 0);
+  const ValleyTracer tracer(ball, rules);
+  ValleyStarts starts = valley_starts(tracer, net.points, std::max(2 * scales.spacing, wide / 6), 4 * scales.spacing,
+                                      riffler::part(progress, 0.4, 0.8));
+  count(net, starts, result);
+  Tracing tracing(ball, tracer, rules, 6 * scales.spacing);
+  const double stepover = options.stepover.value_or(stepover_of_scallop(radius, std::min(radius, options.tolerance)));
+  std::optional<RollingBall> narrow;
+  if (options.overthickness > 0) narrow.emplace(part, radius, scales.touch);
+  for (Valley& valley : tracing.run(std::move(starts.stations), result.stats, riffler::part(progress, 0.8, 1))) {
+    if (narrow) valley = laid_into(valley, *narrow);
+    const std::vector<PencilPath> passes = passes_beside(narrow ? *narrow : ball, valley, options.passes - 1, stepover);
+    simplify(valley, options.tolerance);
+    PencilPath path = path_of(valley, radius);
+    for (const ValleyEnd end : valley.ends) result.stats.cut += end == ValleyEnd::Cut ? 1 : 0;
+    if (path.length() < options.minimum_length || path.size() < 2) continue;
+    result.paths.push_back(std::move(path));
+    result.ends.push_back({name_of(valley.ends[0]), name_of(valley.ends[1])});
+    for (const PencilPath& pass : passes) result.paths.push_back(pass), result.ends.push_back({"pass", "pass"});
+  }
+  if (result.paths.empty()) result.reason = reason_of(result.stats, options);
+  report(progress, 1);
+  return result;
+}
+
+}  // namespace riffler

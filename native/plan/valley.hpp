@@ -1,0 +1,75 @@
+// One valley: the curve along which the ball touches two sides, traced from one place on it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "plan/contact_net.hpp"
+#include "plan/rolling_ball.hpp"
+
+namespace riffler {
+
+/// What makes a valley.
+struct ValleyRules {
+  double tolerance;    ///< mm, of the polyline
+  double jump;         ///< rad: sides that differ by less are facets of one
+  double least_angle;  ///< rad between the directions to the two sides; below it is no valley
+  double least_gap;    ///< mm between the ball and the valley's bottom; below it is no valley; 0: any
+};
+
+/// Why a valley ends where it does.
+enum class ValleyEnd : unsigned char {
+  Loop,
+  Corner,  ///< a third side holds the ball
+  Part,    ///< a contact leaves over a sharp edge or an open one
+  Faded,   ///< the sides come too near to one another
+  Cut,     ///< too many stations: something is wrong with the part there
+};
+
+struct Valley {
+  std::vector<Station> stations;
+  std::array<ValleyEnd, 2> ends{ValleyEnd::Cut, ValleyEnd::Cut};
+  bool closed() const { return ends[0] == ValleyEnd::Loop; }
+};
+
+class ValleyTracer {
+ public:
+  ValleyTracer(const RollingBall& ball, const ValleyRules& rules) : ball_(ball), rules_(rules) {}
+
+  /// What became of a start.
+  enum class Found { Valley, Stuck, Faded, Unfaced };
+  /// From where a ball cannot reach to where it is held: the ball that touches there and a second place, however small,
+  /// grown to its full size.
+  Found start(const Unreached& from, Station& station) const;
+  /// From a corner along the edge of its free cone that sides `a` and `b` make; empty where that is no valley.
+  std::optional<Station> leave(const Vec3& corner, const Foot& a, const Foot& b, const Vec3& way) const;
+
+  /// Both ways from `seed`. `steps` counts the balls that were set.
+  Valley trace(const Station& seed, std::size_t& steps) const;
+
+  /// Ways out of a corner: all pairs of its feet along which the ball can leave it.
+  std::vector<Station> branches(const Vec3& corner) const;
+
+ private:
+  enum class Event { None, Jump, Unfaced, Faded };
+
+  bool is_deep(const Station& station) const;
+  Event accept(const RollingBall::Seat& seat, const Station* like, Station& station) const;
+  Event advance(const Station& from, double sign, double length, Station& to) const;
+  std::optional<Station> corner_near(const Station& last, double sign, double within) const;
+  bool is_home(const Station& seed, double sign, const Station& last, const Station& next, bool& has_left) const;
+  double bend_of_first(const Station& from, double sign, double step, const Station& to) const;
+  ValleyEnd follow(const Station& seed, double sign, std::vector<Station>& out, std::size_t& steps) const;
+
+  const RollingBall& ball_;
+  ValleyRules rules_;
+};
+
+/// The valley of a larger ball with `ball` laid into it: in the plane across, as deep as it goes. Stations where it has
+/// no face to rest on are left out.
+Valley laid_into(const Valley& valley, const RollingBall& ball);
+
+/// Drops stations that lie on straight lines between others, centres to `tolerance` / 4 and contacts to `tolerance`.
+void simplify(Valley& valley, double tolerance);
+
+}  // namespace riffler
