@@ -24,5 +24,8 @@ PYBIND11_MODULE(_core, m) {
   bind_journal(m);
   bind_collide(m);
   bind_path(m);
+  bind_pencil(m);
+  bind_strategies(m);
+  bind_plan(m);
   bind_bench(m);
 }

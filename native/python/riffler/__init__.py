@@ -3,6 +3,7 @@
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """
 
+from . import plan
 from ._core import (
     Cancelled,
     Collider,
@@ -39,4 +40,5 @@ __all__ = [
     "Volume",
     "__version__",
     "machines",
+    "plan",
 ]

@@ -1,0 +1,206 @@
+// Planning with a tool: lift, drop, cutter locations, free orientations. For riffler.plan, which describes them.
+#include <limits>
+
+#include "bindings/bindings.hpp"
+#include "collide/collider.hpp"
+#include "geom/parallel.hpp"
+#include "plan/contact_location.hpp"
+#include "plan/cutter_locations.hpp"
+#include "plan/drop.hpp"
+#include "plan/least_tilt.hpp"
+#include "plan/lift.hpp"
+
+namespace riffler {
+
+namespace {
+
+using namespace py::literals;
+using NoGil = py::gil_scoped_release;
+
+std::vector<Vec3> to_vec3s(const Doubles& array, const char* name) {
+  const std::size_t n = check_rows(array, 3, name);
+  std::vector<Vec3> out(n);
+  for (std::size_t i = 0; i < n; ++i) out[i] = {array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]};
+  return out;
+}
+
+std::vector<Vec3> to_units(const Doubles& array, const char* name, std::size_t n) {
+  std::vector<Vec3> out = to_vec3s(array, name);
+  if (out.size() != n) throw py::value_error(std::string(name) + " must have " + std::to_string(n) + " rows");
+  for (std::size_t i = 0; i < n; ++i) out[i] = unit_axis(out[i], std::string(name) + ", row " + std::to_string(i));
+  return out;
+}
+
+/// Poses with unit axes.
+std::vector<Pose> to_unit_poses(const Doubles& array) {
+  std::vector<Pose> out = to_poses(array, "poses");
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i].axis = unit_axis(out[i].axis, "poses, row " + std::to_string(i) + ": the axis");
+  return out;
+}
+
+py::array_t<double> contact_locations(const Tool& tool, const Doubles& contacts, const Doubles& normals,
+                                      const Doubles& axes, const py::object& feeds) {
+  const std::vector<Vec3> at = to_vec3s(contacts, "contacts");
+  const std::vector<Vec3> n = to_units(normals, "normals", at.size()), o = to_units(axes, "axes", at.size());
+  std::vector<Vec3> feed(at.size(), Vec3(0));
+  if (!feeds.is_none()) feed = to_vec3s(py::cast<Doubles>(feeds), "feeds");
+  if (feed.size() != at.size()) throw py::value_error("feeds must have " + std::to_string(at.size()) + " rows");
+  const CutterSupport cutter(tool);
+  std::vector<Pose> out;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    try {
+      out.push_back(location_of_contact(cutter, at[i], n[i], o[i], feed[i]));
+    } catch (const std::invalid_argument& error) {
+      throw py::value_error("contacts, row " + std::to_string(i) + ": " + error.what());
+    }
+  }
+  return take<double>(std::move(out), 6);
+}
+
+py::list names_of(const std::vector<Touch>& touches) {
+  py::list out;
+  for (const Touch t : touches) out.append(name_of(t));
+  return out;
+}
+
+py::dict lift_all(const Tool& tool, const Doubles& array, const Collider& collider, double clearance, double tolerance,
+                  double max_lift, int max_evaluations, const py::object& callable) {
+  const std::vector<Pose> poses = to_unit_poses(array);
+  const LiftRule rule{clearance, tolerance, max_lift, max_evaluations};
+  validate(rule);
+  std::vector<Lift> lifts(poses.size());
+  {
+    const Progress progress = to_progress(callable);
+    const NoGil release;
+    const Assembly assembly(tool);
+    const auto body = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) lifts[i] = lift(collider, assembly, poses[i], rule);
+    };
+    parallel_for(poses.size(), 1, body, progress);
+  }
+  std::vector<double> height, before, after;
+  std::vector<std::uint8_t> free;
+  std::vector<int> evaluations;
+  std::vector<Vec3> points;
+  std::vector<Touch> touches;
+  for (const Lift& l : lifts) {
+    height.push_back(l.height), before.push_back(l.before), after.push_back(l.clearance);
+    free.push_back(l.free), evaluations.push_back(l.evaluations), points.push_back(l.point), touches.push_back(l.touch);
+  }
+  return py::dict("lift"_a = take<double>(std::move(height)), "free"_a = take<bool>(std::move(free)),
+                  "before"_a = take<double>(std::move(before)), "clearance"_a = take<double>(std::move(after)),
+                  "points"_a = from_vec3s(points), "pieces"_a = names_of(touches),
+                  "evaluations"_a = take<int>(std::move(evaluations)));
+}
+
+py::tuple drop_all(const Tool& tool, const Doubles& array, const Mesh& part, const py::object& axis,
+                   const py::object& callable) {
+  const std::vector<Vec3> points = to_vec3s(array, "points");
+  const Vec3 up = unit_axis(to_vec3(axis, "axis"), "axis");
+  std::vector<double> heights(points.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<Vec3> contacts(points.size(), Vec3(std::numeric_limits<double>::quiet_NaN()));
+  {
+    const Progress progress = to_progress(callable);
+    const NoGil release;
+    const std::vector<DropCutter::Landing> landings = DropCutter(part, tool, up)(points, progress);
+    for (std::size_t i = 0; i < landings.size(); ++i)
+      if (landings[i].touches) heights[i] = landings[i].height, contacts[i] = landings[i].point;
+  }
+  return py::make_tuple(take<double>(std::move(heights)), from_vec3s(contacts));
+}
+
+py::dict from_locations(const CutterLocations& found) {
+  std::vector<Pose> poses;
+  std::vector<std::int64_t> points;
+  std::vector<double> lift, before, clearance;
+  std::vector<Touch> touches;
+  for (const LocationRow& row : found.rows) {
+    poses.push_back(row.pose), points.push_back(row.point), lift.push_back(row.lift), before.push_back(row.before);
+    clearance.push_back(row.clearance), touches.push_back(row.touch);
+  }
+  py::list blocked, unsafe;
+  for (const BlockedPoint& b : found.blocked) blocked.append(py::make_tuple(b.point, b.reason));
+  for (const UnsafeWay& u : found.unsafe) unsafe.append(py::make_tuple(u.row, u.clearance, u.bound, u.reason));
+  return py::dict("cl"_a = take<double>(std::move(poses), 6), "points"_a = take<std::int64_t>(std::move(points)),
+                  "lift"_a = take<double>(std::move(lift)), "before"_a = take<double>(std::move(before)),
+                  "clearance"_a = take<double>(std::move(clearance)), "pieces"_a = names_of(touches),
+                  "blocked"_a = blocked, "unsafe"_a = unsafe, "least_clearance"_a = found.least_clearance,
+                  "bound"_a = found.bound, "evaluations"_a = found.evaluations, "ok"_a = found.good());
+}
+
+py::dict locate(const PencilPath& path, const Tool& tool, const Collider& collider, double clearance, double tolerance,
+                double max_lift, int max_inserted, const py::object& callable) {
+  CutterLocations found;
+  {
+    LocationRule rule;
+    rule.clearance = clearance, rule.tolerance = tolerance, rule.max_lift = max_lift, rule.max_inserted = max_inserted;
+    const Progress progress = to_progress(callable);
+    const NoGil release;
+    found = cutter_locations(path, Assembly(tool), collider, rule, progress);
+  }
+  return from_locations(found);
+}
+
+MapRule to_rule(const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
+                double tolerance, const py::object& limit) {
+  return {inclinations, tilts, clearance, tolerance, to_axis_limit(limit)};
+}
+
+py::dict from_map(const OrientationMap& map) {
+  std::vector<std::uint8_t> states;
+  for (const OrientationMap::State s : map.state) states.push_back(static_cast<std::uint8_t>(s));
+  const std::optional<std::size_t> least = map.least_tilt();
+  return py::dict("axes"_a = from_vec3s(map.axes), "clearance"_a = take<double>(std::vector<double>(map.clearance)),
+                  "state"_a = take<std::uint8_t>(std::move(states)), "pieces"_a = names_of(map.touch),
+                  "suggestion"_a = least ? py::object(from_vec3(map.axes[*least])) : py::object(py::none()),
+                  "reason"_a = map.why_none());
+}
+
+py::list maps(const PencilPath& path, const std::vector<std::size_t>& points, const Tool& tool,
+              const Collider& collider, const std::vector<double>& inclinations, const std::vector<double>& tilts,
+              double clearance, double tolerance, const py::object& limit, const py::object& callable) {
+  const MapRule rule = to_rule(inclinations, tilts, clearance, tolerance, limit);
+  std::vector<OrientationMap> found;
+  {
+    const Progress progress = to_progress(callable);
+    const NoGil release;
+    found = orientation_maps(path, points, Assembly(tool), collider, rule, progress);
+  }
+  py::list out;
+  for (const OrientationMap& map : found) out.append(from_map(map));
+  return out;
+}
+
+py::dict choose(const PencilPath& path, const Tool& tool, const Collider& collider,
+                const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
+                double tolerance, const py::object& limit, double max_change, double smoothness,
+                const py::object& callable) {
+  const TiltRule rule{to_rule(inclinations, tilts, clearance, tolerance, limit), max_change, smoothness};
+  TiltAnswer found;
+  {
+    const Progress progress = to_progress(callable);
+    const NoGil release;
+    found = least_tilt(path, Assembly(tool), collider, rule, progress);
+  }
+  return py::dict("found"_a = found.found, "axes"_a = from_vec3s(found.axes),
+                  "angles"_a = take<double>(std::move(found.angles)), "cost"_a = found.cost, "point"_a = found.point,
+                  "reason"_a = found.reason);
+}
+
+}  // namespace
+
+void bind_plan(py::module_& m) {
+  m.def("contact_locations", &contact_locations, "tool"_a, "contacts"_a, "normals"_a, "axes"_a, "feeds"_a);
+  m.def("lift", &lift_all, "tool"_a, "poses"_a, "collider"_a, py::kw_only(), "clearance"_a, "tolerance"_a, "max_lift"_a,
+        "max_evaluations"_a, "progress"_a);
+  m.def("drop", &drop_all, "tool"_a, "points"_a, "part"_a, "axis"_a, "progress"_a);
+  m.def("cutter_locations", &locate, "path"_a, "tool"_a, "collider"_a, py::kw_only(), "clearance"_a, "tolerance"_a,
+        "max_lift"_a, "max_inserted"_a, "progress"_a);
+  m.def("orientation_maps", &maps, "path"_a, "points"_a, "tool"_a, "collider"_a, py::kw_only(), "inclinations"_a,
+        "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "progress"_a);
+  m.def("least_tilt", &choose, "path"_a, "tool"_a, "collider"_a, py::kw_only(), "inclinations"_a, "tilts"_a,
+        "clearance"_a, "tolerance"_a, "limit"_a, "max_change"_a, "smoothness"_a, "progress"_a);
+}
+
+}  // namespace riffler

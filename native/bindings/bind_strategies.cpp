@@ -1,0 +1,91 @@
+// Strategies beside the pencil cut: engraving and swarf.
+#include <memory>
+
+#include "bindings/bindings.hpp"
+#include "plan/engrave.hpp"
+#include "plan/swarf.hpp"
+
+namespace riffler {
+
+namespace {
+
+using NoGil = py::gil_scoped_release;
+
+py::array_t<double> from_poses(const std::vector<Pose>& poses) {
+  py::array_t<double> out({static_cast<py::ssize_t>(poses.size()), py::ssize_t{6}});
+  auto to = out.mutable_unchecked<2>();
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      to(static_cast<py::ssize_t>(k), i) = poses[k].tip[i];
+      to(static_cast<py::ssize_t>(k), 3 + i) = poses[k].axis[i];
+    }
+  return out;
+}
+
+std::vector<std::vector<Vec3>> to_curves(const py::sequence& sequence) {
+  std::vector<std::vector<Vec3>> curves;
+  for (std::size_t c = 0; c < sequence.size(); ++c) {
+    const auto array = py::cast<Doubles>(sequence[c]);
+    const std::string name = "curves[" + std::to_string(c) + "]";
+    const std::size_t n = check_rows(array, 3, name.c_str());
+    const auto rows = array.unchecked<2>();
+    auto& curve = curves.emplace_back(n);
+    for (std::size_t k = 0; k < n; ++k)
+      for (int i = 0; i < 3; ++i) curve[k][i] = rows(static_cast<py::ssize_t>(k), i);
+  }
+  return curves;
+}
+
+py::list engraved(const Mesh& part, const py::sequence& sequence, const Tool& tool, const EngraveOptions& options,
+                  const py::object& callable) {
+  const std::vector<std::vector<Vec3>> curves = to_curves(sequence);
+  const Progress progress = to_progress(callable);
+  std::vector<Engraved> found;
+  {
+    const NoGil release;
+    found = engrave(part, curves, tool, options, progress);
+  }
+  py::list out;
+  for (const Engraved& e : found)
+    out.append(py::make_tuple(from_poses(e.poses), from_vec3s(e.contacts), from_vec3s(e.normals)));
+  return out;
+}
+
+py::dict cut_with_flank(const PencilPath& path, const Mesh& part, const Tool& tool, const SwarfOptions& options,
+                        const py::object& callable) {
+  const Progress progress = to_progress(callable);
+  Swarf found;
+  {
+    const NoGil release;
+    found = swarf(path, part, tool, options, progress);
+  }
+  py::list fits;
+  for (const auto& [first, last] : found.fits) fits.append(py::make_tuple(first, last));
+  using namespace py::literals;
+  return py::dict("path"_a = std::make_shared<PencilPath>(std::move(found.path)),
+                  "height"_a = take<double>(std::move(found.height)), "error"_a = take<double>(std::move(found.error)),
+                  "fits"_a = fits);
+}
+
+}  // namespace
+
+void bind_strategies(py::module_& m) {
+  m.def(
+      "engrave",
+      [](const Mesh& part, const py::sequence& curves, const Tool& tool, double depth, double inclination, double tilt,
+         double tolerance, double turn, double crease, double reach, const py::object& progress) {
+        return engraved(part, curves, tool, {depth, inclination, tilt, tolerance, turn, crease, reach}, progress);
+      },
+      py::arg("part"), py::arg("curves"), py::arg("tool"), py::kw_only(), py::arg("depth"), py::arg("inclination"),
+      py::arg("tilt"), py::arg("tolerance"), py::arg("turn"), py::arg("crease"), py::arg("reach"), py::arg("progress"),
+      "For riffler.plan.engrave.");
+  m.def(
+      "swarf",
+      [](const PencilPath& path, const Mesh& part, const Tool& tool, int side, std::optional<double> height,
+         double tolerance,
+         const py::object& progress) { return cut_with_flank(path, part, tool, {side, height, tolerance}, progress); },
+      py::arg("path"), py::arg("part"), py::arg("tool"), py::kw_only(), py::arg("side"), py::arg("height"),
+      py::arg("tolerance"), py::arg("progress"), "For riffler.plan.swarf.");
+}
+
+}  // namespace riffler

@@ -1,0 +1,81 @@
+#include "mesh/smooth_normals.hpp"
+
+#include <cmath>
+
+#include "geom/parallel.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr std::size_t kGrain = 1 << 14;
+
+/// The triangles at each vertex, in ascending order, as one list.
+struct Fans {
+  std::vector<std::size_t> begin;
+  std::vector<int> corner;  // 3 t + k
+
+  explicit Fans(const Mesh& mesh) : begin(mesh.vertices.size() + 1), corner(3 * mesh.triangles.size()) {
+    for (const Vec3i& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) ++begin[t[k] + 1];
+    for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k) corner[next[mesh.triangles[t][k]]++] = static_cast<int>(3 * t + k);
+  }
+};
+
+Vec3 unit(const Vec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : Vec3(0);
+}
+
+double angle_at(const std::array<Vec3, 3>& p, int k) {
+  const Vec3 a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+}  // namespace
+
+SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.triangles.size()) {
+  const Fans fans(mesh);
+  std::vector<Vec3> faces(corners_.size());
+  parallel_for(corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      auto& p = corners_[t].points;
+      for (int k = 0; k < 3; ++k) p[k] = mesh.vertices[mesh.triangles[t][k]];
+      faces[t] = unit(glm::cross(p[1] - p[0], p[2] - p[0]));
+    }
+  });
+  const double least = std::cos(crease);
+  parallel_for(corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      for (int k = 0; k < 3; ++k) {
+        const bool flat = faces[t] == Vec3(0);  // has no normal of its own: takes part in all of the fan
+        Vec3 sum{0};
+        const int vertex = mesh.triangles[t][k];
+        for (std::size_t i = fans.begin[vertex]; i < fans.begin[vertex + 1]; ++i) {
+          const int other = fans.corner[i] / 3;
+          if (flat || glm::dot(faces[t], faces[other]) >= least)
+            sum += angle_at(corners_[other].points, fans.corner[i] % 3) * faces[other];
+        }
+        const Vec3 normal = unit(sum);
+        corners_[t].normals[k] = normal == Vec3(0) ? faces[t] : normal;
+      }
+  });
+}
+
+Vec3 SmoothNormals::at(int t, const Vec3& p) const {
+  const auto& [q, n] = corners_[t];
+  const Vec3 across = glm::cross(q[1] - q[0], q[2] - q[0]);
+  const double area = glm::dot(across, across);
+  Vec3 sum{0};
+  for (int k = 0; k < 3; ++k) {
+    const double share =
+        area > 0 ? glm::dot(glm::cross(q[(k + 2) % 3] - q[(k + 1) % 3], p - q[(k + 1) % 3]), across) / area : 1.0 / 3;
+    sum += std::max(0.0, share) * n[k];
+  }
+  return unit(sum);
+}
+
+}  // namespace riffler

@@ -1,0 +1,182 @@
+#include "plan/cutter_locations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "geom/parallel.hpp"
+#include "plan/contact_location.hpp"
+#include "plan/lift.hpp"
+#include "plan/swept_check.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr const char* kOf[] = {"the cutter meets the part", "the shank meets the part", "the holder meets the part",
+                               "a fixture is in the way"};
+
+std::string text(const char* format, double value) {
+  char out[64];
+  std::snprintf(out, sizeof out, format, value);
+  return out;
+}
+
+std::string why_not_free(const Lift& lift, const LocationRule& rule) {
+  const std::string where =
+      std::string(kOf[static_cast<int>(lift.touch)]) + text(", clearance %.6g mm", lift.before) + " before any lift";
+  if (lift.swallowed) return where + ", and a lift only pushes the tool into the material";
+  return where + (lift.height > rule.max_lift ? text(", not free within %g mm along the axis", rule.max_lift)
+                                              : text(", not shown to be free, blocked up to %g mm", lift.height));
+}
+
+void check(const PencilPath& path, const LocationRule& rule) {
+  if (path.axes.size() != path.size() || path.axes.empty())
+    throw std::invalid_argument("path: has no axes; orient it first");
+  if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
+  if (!(rule.tolerance > 0) || !std::isfinite(rule.tolerance))
+    throw std::invalid_argument("tolerance must be positive and finite");
+  if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
+    throw std::invalid_argument("max_lift must be finite and not negative");
+  if (rule.max_inserted < 0) throw std::invalid_argument("max_inserted must not be negative");
+  if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
+}
+
+class Planner {
+ public:
+  Planner(const PencilPath& path, const Assembly& assembly, const Collider& collider, const LocationRule& rule)
+      : path_(path), assembly_(assembly), collider_(collider), rule_(rule), cutter_(assembly.tool()) {}
+
+  /// What became of one pose.
+  struct Try {
+    LocationRow row;
+    std::string blocked;
+    int evaluations = 0;
+  };
+  Try try_pose(const Pose& pose, std::ptrdiff_t point) const {
+    LiftRule how{rule_.clearance - 0.5 * rule_.tolerance, std::min(1e-9, 1e-3 * rule_.tolerance), rule_.max_lift, 1000};
+    const Lift found = lift(collider_, assembly_, pose, how);
+    const Pose at{pose.tip + found.height * pose.axis, pose.axis};
+    Try out{{at, point, found.height, found.before, found.clearance, found.touch}, {}, found.evaluations};
+    if (!found.free) out.blocked = why_not_free(found, rule_);
+    return out;
+  }
+  Try try_point(std::size_t k) const {
+    try {
+      return try_pose(location_on_path(cutter_, path_, k, path_.axes[k]), static_cast<std::ptrdiff_t>(k));
+    } catch (const std::invalid_argument& error) {
+      return {{}, error.what(), 0};
+    }
+  }
+
+  /// What lies between two rows.
+  struct Way {
+    std::vector<LocationRow> inserted;
+    std::vector<UnsafeWay> unsafe;  // rows counted from the way's first
+    double least = std::numeric_limits<double>::infinity(), bound = least;
+    std::size_t evaluations = 0;
+    int made = 0;  // rows to insert, those still ahead too
+  };
+  Way way(const LocationRow& from, const LocationRow& to) const {
+    Way out;
+    // The rows still to be joined, the last on top: no recursion, whatever the part is like.
+    std::vector<LocationRow> ahead{to};
+    LocationRow here = from;
+    while (!ahead.empty()) {
+      const LocationRow next = ahead.back();
+      if (std::optional<LocationRow> between = join(here, next, out)) {
+        ahead.push_back(*between);
+        continue;
+      }
+      here = next;
+      ahead.pop_back();
+      if (!ahead.empty()) out.inserted.push_back(here);
+    }
+    return out;
+  }
+
+ private:
+  /// A row to put between two, or nothing where the way between them is settled, for good or not.
+  std::optional<LocationRow> join(const LocationRow& from, const LocationRow& to, Way& out) const {
+    const auto unsafe = [&](double clearance, double bound, std::string reason) {
+      out.unsafe.push_back({out.inserted.size(), clearance, bound, std::move(reason)});
+      out.least = std::min(out.least, clearance), out.bound = std::min(out.bound, bound);
+      return std::nullopt;
+    };
+    if (glm::dot(from.pose.axis, to.pose.axis) < -1 + 1e-12)
+      return unsafe(std::min(from.clearance, to.clearance), -assembly_.reach(), "opposite axes: no motion joins them");
+    const Motion motion(from.pose, to.pose);
+    const Collider::Nearest start{from.clearance, {}, from.touch}, end{to.clearance, {}, to.touch};
+    const double wanted = rule_.clearance - rule_.tolerance;
+    const SweptCheck check = swept_check(collider_, assembly_, motion, wanted, rule_.max_evaluations, &start, &end);
+    out.evaluations += static_cast<std::size_t>(check.evaluations);
+    if (check.answer == SweptCheck::Answer::Clear) {
+      out.least = std::min(out.least, check.clearance), out.bound = std::min(out.bound, check.bound);
+      return std::nullopt;
+    }
+    if (check.answer == SweptCheck::Answer::Unknown)
+      return unsafe(check.clearance, check.bound, "the evaluations ran out");
+    if (out.made >= rule_.max_inserted)
+      return unsafe(check.clearance, check.bound,
+                    std::string(kOf[static_cast<int>(check.touch)]) + ", and no more points may be inserted");
+    const Try middle = try_pose(motion.at(check.at), -1);
+    out.evaluations += static_cast<std::size_t>(middle.evaluations);
+    if (!middle.blocked.empty()) return unsafe(check.clearance, check.bound, middle.blocked);
+    ++out.made;
+    return middle.row;
+  }
+
+  const PencilPath& path_;
+  const Assembly& assembly_;
+  const Collider& collider_;
+  const LocationRule& rule_;
+  const CutterSupport cutter_;
+};
+
+}  // namespace
+
+CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembly, const Collider& collider,
+                                 const LocationRule& rule, const Progress& progress) {
+  check(path, rule);
+  const Planner planner(path, assembly, collider, rule);
+  std::vector<Planner::Try> points(path.size());
+  parallel_for(
+      path.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) points[k] = planner.try_point(k);
+      },
+      part(progress, 0, 0.3));
+  CutterLocations out;
+  out.least_clearance = std::numeric_limits<double>::infinity();
+  std::vector<LocationRow> rows;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    out.evaluations += static_cast<std::size_t>(points[k].evaluations);
+    if (points[k].blocked.empty())
+      rows.push_back(points[k].row), out.least_clearance = std::min(out.least_clearance, points[k].row.clearance);
+    else
+      out.blocked.push_back({k, points[k].blocked});
+  }
+  if (path.closed && rows.size() > 1) rows.push_back(rows.front());
+  std::vector<Planner::Way> ways(rows.empty() ? 0 : rows.size() - 1);
+  parallel_for(
+      ways.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) ways[k] = planner.way(rows[k], rows[k + 1]);
+      },
+      part(progress, 0.3, 1));
+  out.bound = out.least_clearance;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    out.rows.push_back(rows[k]);
+    if (k == ways.size()) break;
+    const Planner::Way& way = ways[k];
+    for (UnsafeWay unsafe : way.unsafe) unsafe.row += out.rows.size() - 1, out.unsafe.push_back(unsafe);
+    out.rows.insert(out.rows.end(), way.inserted.begin(), way.inserted.end());
+    out.least_clearance = std::min(out.least_clearance, way.least), out.bound = std::min(out.bound, way.bound);
+    out.evaluations += way.evaluations;
+  }
+  return out;
+}
+
+}  // namespace riffler

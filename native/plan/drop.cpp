@@ -1,0 +1,121 @@
+#include "plan/drop.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "geom/parallel.hpp"
+#include "plan/cc_frame.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
+  validate(mesh);
+  if (mesh.empty()) throw std::invalid_argument("a part without triangles");
+  // Straight along z nothing is turned: coordinates stay what they are, to the bit.
+  const CcFrame frame = axis == Vec3(0, 0, 1) ? CcFrame{} : cc_frame({1, 0, 0}, unit_axis(axis, "axis"));
+  turn_ = Mat3(frame.x, frame.y, frame.z);
+  for (const ToolPiece& p : tool.assembly()) sides_.emplace_back(p.part, LowerSide(p.piece));
+  std::vector<Triangle> all;
+  all.reserve(mesh.triangles.size());
+  for (const Vec3i& t : mesh.triangles)
+    all.push_back({mesh.vertices[t.x] * turn_, mesh.vertices[t.y] * turn_, mesh.vertices[t.z] * turn_});
+  build(all);
+}
+
+void DropCutter::build(const std::vector<Triangle>& all) {
+  const std::size_t n = count_ = all.size();
+  while ((n >> levels_) > 4) ++levels_;
+  boxes_.resize((std::size_t{2} << levels_) - 1);
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  // Only the shadow counts for where a tool comes down: halved along x or y.
+  const auto split = [&](const auto& self, std::size_t node, std::size_t level, std::size_t place) -> void {
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first(level, place)),
+               end = order.begin() + static_cast<std::ptrdiff_t>(first(level, place + 1));
+    Box3& box = boxes_[node];
+    for (auto i = begin; i != end; ++i) box.add(all[*i].a), box.add(all[*i].b), box.add(all[*i].c);
+    if (level == levels_) return;
+    const int side = box.size().x >= box.size().y ? 0 : 1;
+    const auto key = [&](std::size_t t) { return all[t].a[side] + all[t].b[side] + all[t].c[side]; };
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(first(level + 1, 2 * place + 1));
+    std::nth_element(begin, middle, end,
+                     [&](std::size_t i, std::size_t j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
+    self(self, 2 * node + 1, level + 1, 2 * place), self(self, 2 * node + 2, level + 1, 2 * place + 1);
+  };
+  split(split, 0, 0, 0);
+  triangles_.reserve(n);
+  for (const std::size_t t : order) triangles_.push_back(all[t]);
+}
+
+/// One descent, best boxes first.
+struct DropCutter::Search {
+  const DropCutter& tree;
+  Vec2 at;
+  Stats counts{};
+  LowerSide::Stop stop{kNowhere, Vec3(0), false};
+  std::size_t side = 0;
+
+  /// No triangle in the box stops the tool higher.
+  double bound(std::size_t node) {
+    ++counts.boxes;
+    const Box3& box = tree.boxes_[node];
+    const double x = std::max({box.lower.x - at.x, at.x - box.upper.x, 0.0});
+    const double y = std::max({box.lower.y - at.y, at.y - box.upper.y, 0.0});
+    const double rho = std::hypot(x, y);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [part, lower] : tree.sides_)
+      if (rho <= lower.rim()) least = std::min(least, lower.height(rho));
+    return box.upper.z - least;
+  }
+
+  void leaf(std::size_t place) {
+    const Vec3 shift(at, 0);
+    for (std::size_t t = tree.first(tree.levels_, place); t < tree.first(tree.levels_, place + 1); ++t) {
+      ++counts.triangles;
+      const Triangle& tri = tree.triangles_[t];
+      for (std::size_t s = 0; s < tree.sides_.size(); ++s) {
+        const double before = stop.tip;
+        tree.sides_[s].second.meet(tri.a - shift, tri.b - shift, tri.c - shift, stop);
+        if (stop.touches && stop.tip != before) side = s;
+      }
+    }
+  }
+
+  void descend(std::size_t node, std::size_t level, std::size_t place) {
+    if (level == tree.levels_) return leaf(place);
+    const double low = bound(2 * node + 1), high = bound(2 * node + 2);
+    for (const bool second : {high > low, !(high > low)})
+      if ((second ? high : low) > stop.tip) descend(2 * node + 1 + second, level + 1, 2 * place + second);
+  }
+};
+
+DropCutter::Landing DropCutter::operator()(const Vec3& p, Stats* stats) const {
+  const Vec3 local = p * turn_;
+  Search search{*this, {local.x, local.y}};
+  if (search.bound(0) > kNowhere) search.descend(0, 0, 0);
+  if (stats) stats->boxes += search.counts.boxes, stats->triangles += search.counts.triangles;
+  if (!search.stop.touches) return {};
+  return {true, search.stop.tip, turn_ * (search.stop.point + Vec3(search.at, 0)), sides_[search.side].first};
+}
+
+std::vector<DropCutter::Landing> DropCutter::operator()(const std::vector<Vec3>& points,
+                                                        const Progress& progress) const {
+  std::vector<Landing> out(points.size());
+  parallel_for(
+      points.size(), 64,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) out[i] = (*this)(points[i]);
+      },
+      progress);
+  return out;
+}
+
+}  // namespace riffler

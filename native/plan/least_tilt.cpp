@@ -1,0 +1,156 @@
+#include "plan/least_tilt.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace riffler {
+
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// The free nodes of one point's map.
+struct Layer {
+  std::vector<Vec3> axes;
+  std::vector<double> angles;
+};
+
+/// Costs of the best way to every node of a layer, and from which node of the one before it comes.
+struct Step {
+  std::vector<double> cost;
+  std::vector<std::size_t> from;
+
+  bool reached() const {
+    return std::any_of(cost.begin(), cost.end(), [](double c) { return c < kNever; });
+  }
+};
+
+class Chain {
+ public:
+  Chain(std::vector<Layer> layers, const TiltRule& rule) : layers_(std::move(layers)), rule_(rule) {}
+
+  const Layer& layer(std::size_t k) const { return layers_[k % layers_.size()]; }
+
+  Step first(std::size_t k) const {
+    Step out{{}, std::vector<std::size_t>(layer(k).axes.size(), 0)};
+    for (const double a : layer(k).angles) out.cost.push_back(a * a);
+    return out;
+  }
+  /// Only node `i` of layer `k`.
+  Step only(std::size_t k, std::size_t i) const {
+    Step out = first(k);
+    for (std::size_t j = 0; j < out.cost.size(); ++j)
+      if (j != i) out.cost[j] = kNever;
+    return out;
+  }
+  Step next(const Step& before, std::size_t k) const {
+    const Layer &a = layer(k - 1), &b = layer(k);
+    const double least = std::cos(std::min(rule_.max_change, 3.2)) - 1e-12;
+    Step out{std::vector<double>(b.axes.size(), kNever), std::vector<std::size_t>(b.axes.size(), 0)};
+    for (std::size_t j = 0; j < b.axes.size(); ++j) {
+      for (std::size_t i = 0; i < a.axes.size(); ++i) {
+        if (!(before.cost[i] < out.cost[j]) || glm::dot(a.axes[i], b.axes[j]) < least) continue;
+        const double turn = angle_between(a.axes[i], b.axes[j]);
+        const double cost = before.cost[i] + rule_.smoothness * turn * turn;
+        if (turn <= rule_.max_change + 1e-12 && cost < out.cost[j]) out.cost[j] = cost, out.from[j] = i;
+      }
+      out.cost[j] += b.angles[j] * b.angles[j];
+    }
+    return out;
+  }
+
+  /// Steps over layers 0 … count − 1, starting from `start`; fewer where one is not reached.
+  std::vector<Step> run(Step start, std::size_t count) const {
+    std::vector<Step> out{std::move(start)};
+    while (out.size() < count && out.back().reached()) out.push_back(next(out.back(), out.size()));
+    return out;
+  }
+  static std::size_t best(const Step& step) {
+    return static_cast<std::size_t>(std::min_element(step.cost.begin(), step.cost.end()) - step.cost.begin());
+  }
+  /// The nodes that lead to `node` of the last step.
+  static std::vector<std::size_t> trace(const std::vector<Step>& steps, std::size_t node) {
+    std::vector<std::size_t> out(steps.size(), node);
+    for (std::size_t k = steps.size() - 1; k > 0; --k) out[k - 1] = steps[k].from[out[k]];
+    return out;
+  }
+
+ private:
+  std::vector<Layer> layers_;
+  const TiltRule& rule_;
+};
+
+/// A round that comes back to its first node: the nodes, one more than layers; empty where no start allows one.
+std::vector<std::size_t> best_round(const Chain& chain, std::size_t n) {
+  std::vector<std::size_t> starts(chain.layer(0).axes.size());
+  std::iota(starts.begin(), starts.end(), std::size_t{0});
+  const std::vector<Step> laps = chain.run(chain.first(0), 2 * n);
+  if (laps.size() < 2 * n) return {};
+  std::stable_sort(starts.begin(), starts.end(),
+                   [&](std::size_t a, std::size_t b) { return laps[n].cost[a] < laps[n].cost[b]; });
+  const std::size_t middle = Chain::trace(laps, Chain::best(laps.back()))[n];
+  std::rotate(starts.begin(), std::find(starts.begin(), starts.end(), middle), starts.end());
+  for (const std::size_t start : starts) {
+    const std::vector<Step> round = chain.run(chain.only(0, start), n + 1);
+    if (round.size() == n + 1 && round.back().cost[start] < kNever) return Chain::trace(round, start);
+  }
+  return {};
+}
+
+void check(const PencilPath& path, const TiltRule& rule) {
+  if (path.size() == 0) throw std::invalid_argument("path: has no points");
+  if (!(rule.max_change > 0) || !std::isfinite(rule.max_change))
+    throw std::invalid_argument("max_change must be positive and finite");
+  if (!(rule.smoothness >= 0) || !std::isfinite(rule.smoothness))
+    throw std::invalid_argument("smoothness must be finite and not negative");
+}
+
+TiltAnswer none(std::size_t point, std::string reason) {
+  TiltAnswer out;
+  out.point = point, out.reason = "point " + std::to_string(point) + ": " + std::move(reason);
+  return out;
+}
+
+}  // namespace
+
+TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Collider& collider, const TiltRule& rule,
+                      const Progress& progress) {
+  check(path, rule);
+  const std::size_t n = path.size();
+  std::vector<std::size_t> points(n);
+  std::iota(points.begin(), points.end(), std::size_t{0});
+  const std::vector<OrientationMap> maps = orientation_maps(path, points, assembly, collider, rule.map, progress);
+  std::vector<Layer> layers(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = 0; i < maps[k].axes.size(); ++i)
+      if (maps[k].state[i] == OrientationMap::State::Free)
+        layers[k].axes.push_back(maps[k].axes[i]),
+            layers[k].angles.push_back(angle_between(maps[k].axes[i], maps[k].frame.z));
+    if (layers[k].axes.empty()) return none(k, "no orientation is free: " + maps[k].why_none());
+  }
+  const Chain chain(std::move(layers), rule);
+  const std::vector<Step> steps = chain.run(chain.first(0), n);
+  if (!steps.back().reached())
+    return none(steps.size() - 1, "none of its free orientations is within max_change of those before it");
+  std::vector<std::size_t> nodes = Chain::trace(steps, Chain::best(steps.back()));
+  if (path.closed && n > 1) nodes = best_round(chain, n);
+  if (nodes.empty()) return none(0, "no free orientation here is met again within max_change after a round");
+  TiltAnswer out;
+  out.found = true;
+  const auto turned = [&](const Vec3& a, const Vec3& b) {
+    const double turn = angle_between(a, b);
+    out.cost += rule.smoothness * turn * turn;
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    out.axes.push_back(chain.layer(k).axes[nodes[k]]), out.angles.push_back(chain.layer(k).angles[nodes[k]]);
+    out.cost += out.angles[k] * out.angles[k];
+    if (k > 0) turned(out.axes[k - 1], out.axes[k]);
+  }
+  if (path.closed && n > 1) turned(out.axes.back(), out.axes.front());
+  return out;
+}
+
+}  // namespace riffler

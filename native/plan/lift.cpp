@@ -1,0 +1,106 @@
+#include "plan/lift.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "plan/point_lift.hpp"
+
+namespace riffler {
+
+namespace {
+
+class Climb {
+ public:
+  Climb(const Collider& collider, const Assembly& assembly, const Pose& pose, const LiftRule& rule)
+      : collider_(collider),
+        assembly_(assembly),
+        pose_(pose),
+        rule_(rule),
+        columns_(assembly.outline(), rule.clearance) {}
+
+  Lift run() {
+    double h = 0, last = 0;
+    while (look(h), out_.clearance = now_.distance, now_.distance < rule_.clearance - rule_.tolerance) {
+      out_.touch = now_.touch, out_.point = now_.point;
+      if (h > rule_.max_lift || out_.evaluations >= rule_.max_evaluations) return ended(h, false);
+      double to = std::max(blocked().to, std::nextafter(h, 2 * rule_.max_lift));
+      // Newton's steps shrink fast. Those that do not are a wall, or come to an edge of the tool by a steady ratio:
+      // then the look goes most of the way to where they would end.
+      const double step = to - h, ratio = last > 0 ? step / last : 0;
+      if (ratio > 0.25) to = ahead(to, step * (ratio < 0.8 ? 0.9 * ratio / (1 - ratio) : 4));
+      last = step, h = to;
+    }
+    if (h == 0) out_.touch = now_.touch, out_.point = now_.point;
+    // The tool was at a surface and has left it: on the outside, or it has been pushed through into the material.
+    out_.swallowed = h > 0 && collider_.inside_part(pose_.tip + (h + 0.5 * assembly_.tool().length()) * pose_.axis);
+    return ended(h, h <= rule_.max_lift && !out_.swallowed);
+  }
+
+ private:
+  struct Range {
+    double from, to;
+  };
+
+  Lift ended(double h, bool free) {
+    out_.height = h, out_.free = free;
+    return out_;
+  }
+
+  void look(double h) {
+    at_ = h;
+    now_ = collider_.nearest(assembly_, {pose_.tip + h * pose_.axis, pose_.axis});
+    if (++out_.evaluations == 1) out_.before = now_.distance;
+  }
+
+  /// Heights round the last one looked at for which the point found there is in the way.
+  Range blocked() const {
+    const Vec3 d = now_.point - pose_.tip;
+    const double up = glm::dot(d, pose_.axis), z = up - at_, rho = glm::length(d - up * pose_.axis);
+    const GrownColumns::Column column = columns_.at(rho, z);
+    // A fixture is as deep as it is thick where no point of it is in the tool: then no more than its depth is known.
+    return column.covered ? Range{up - column.high, up - column.low}
+                          : Range{at_, at_ + rule_.clearance - now_.distance};
+  }
+
+  /// All heights up to `to` are blocked; further up than that, as far as doubled looks ahead prove it.
+  double ahead(double to, double step) {
+    while (to <= rule_.max_lift && out_.evaluations < rule_.max_evaluations) {
+      look(to + step);
+      if (!(now_.distance < rule_.clearance)) break;
+      const Range range = blocked();
+      if (!(range.from <= to && range.to > to)) break;
+      out_.touch = now_.touch, out_.point = now_.point;
+      to = range.to, step *= 2;
+    }
+    return to;
+  }
+
+  const Collider& collider_;
+  const Assembly& assembly_;
+  const Pose pose_;
+  const LiftRule& rule_;
+  const GrownColumns columns_;
+  Collider::Nearest now_{};
+  double at_ = 0;
+  Lift out_;
+};
+
+}  // namespace
+
+void validate(const LiftRule& rule) {
+  if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
+  if (!(rule.tolerance > 0) || !std::isfinite(rule.tolerance))
+    throw std::invalid_argument("tolerance must be positive and finite");
+  if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
+    throw std::invalid_argument("max_lift must be finite and not negative");
+  if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
+}
+
+Lift lift(const Collider& collider, const Assembly& assembly, const Pose& pose, const LiftRule& rule) {
+  validate(rule);
+  return Climb(collider, assembly, pose, rule).run();
+}
+
+}  // namespace riffler

@@ -1,0 +1,104 @@
+#include "plan/lower_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler {
+
+LowerSide::LowerSide(const Piece& piece) : bottom_(bottom(piece)), flat_(radius_at(piece, bottom_)), rim_(flat_) {
+  if (const auto* f = std::get_if<Frustum>(&piece)) {
+    if (f->r1 > f->r0) rim_ = f->r1, cone_ = (f->z1 - f->z0) / (f->r1 - f->r0);
+    return;
+  }
+  const Round& round = std::get<Round>(piece);
+  if (!(round.z0 < round.zc)) return;  // only what narrows upwards: its lower end is all that is seen from below
+  centre_ = {round.e, round.zc}, arc_ = round.r;
+  rim_ = std::max(flat_, round.z1 >= round.zc ? round.e + round.r : radius_at(piece, round.z1));
+}
+
+double LowerSide::height(double rho) const {
+  if (rho <= flat_) return bottom_;
+  if (arc_ == 0) return bottom_ + cone_ * (rho - flat_);
+  const double off = std::min(rho - centre_.x, arc_);
+  return centre_.y - std::sqrt((arc_ - off) * (arc_ + off));
+}
+
+double LowerSide::radius_of_slope(double slope) const {
+  if (arc_ == 0) return slope > cone_ ? rim_ : flat_;
+  return std::clamp(centre_.x + arc_ * slope / std::hypot(1.0, slope), flat_, rim_);
+}
+
+void LowerSide::at(const Vec3& p, Stop& stop) const {
+  const double tip = p.z - height(std::min(std::hypot(p.x, p.y), rim_));
+  if (!stop.touches || tip > stop.tip) stop = {tip, p, true};
+}
+
+void LowerSide::corner(const Vec3& p, Stop& stop) const {
+  if (p.x * p.x + p.y * p.y <= rim_ * rim_) at(p, stop);
+}
+
+/// u ≥ 0 with the largest slope·u − height(√(d² + u²)) beyond the flat end, slope ≥ 0; not above the rim.
+double LowerSide::best_on_line(double d, double slope) const {
+  const double most = std::sqrt(std::max(0.0, (rim_ - d) * (rim_ + d)));
+  if (arc_ == 0) return slope < cone_ ? std::min(most, d * slope / std::sqrt((cone_ - slope) * (cone_ + slope))) : most;
+  if (centre_.x == 0) {
+    const double half = std::sqrt(std::max(0.0, (arc_ - d) * (arc_ + d)));
+    return std::min(most, half * slope / std::hypot(1.0, slope));
+  }
+  // A torus or a barrel: its slope along the line grows, so Newton's method between bounds finds where it is `slope`.
+  double low = 0, high = most, u = 0.5 * most;
+  for (int n = 0; n < 100 && high - low > 1e-15 * most; ++n) {
+    const double rho = std::hypot(d, u), off = rho - centre_.x, down = std::sqrt((arc_ - off) * (arc_ + off));
+    if (!(down > 0)) {
+      high = u, u = 0.5 * (low + high);
+      continue;
+    }
+    const double grown = off / down * (u / rho) - slope;
+    (grown > 0 ? high : low) = u;
+    if (grown == 0) break;
+    const double bend =
+        arc_ * arc_ / (down * down * down) * (u / rho) * (u / rho) + off / down * (d / rho) * (d / rho) / rho;
+    const double next = u - grown / bend;
+    u = next > low && next < high ? next : 0.5 * (low + high);
+  }
+  return u;
+}
+
+void LowerSide::edge(const Vec3& a, const Vec3& b, Stop& stop) const {
+  const Vec2 from(a.x, a.y), way(b.x - a.x, b.y - a.y);
+  const double length = glm::length(way);
+  if (!(length > 0)) return;  // upright: its upper end
+  const Vec2 along = way / length;
+  const double start = glm::dot(from, along), slope = (b.z - a.z) / length;
+  const double d = std::abs(from.x * along.y - from.y * along.x);
+  if (d > rim_) return;
+  const double sign = slope < 0 ? -1 : 1;
+  const auto look = [&](double u) {
+    const double t = u - start;
+    if (t > 0 && t < length) at(glm::mix(a, b, t / length), stop);
+  };
+  if (d <= flat_) look(sign * std::sqrt((flat_ - d) * (flat_ + d)));
+  if (rim_ > flat_)
+    if (const double u = best_on_line(d, std::abs(slope)); std::hypot(d, u) >= flat_) look(sign * u);
+}
+
+void LowerSide::facet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) const {
+  Vec3 normal = glm::cross(b - a, c - a);
+  if (normal.z < 0) normal = -normal;
+  const double across = std::hypot(normal.x, normal.y);
+  if (!(normal.z > 1e-14 * across)) return;  // upright or without area: its edges
+  const double rho = across > 0 ? radius_of_slope(across / normal.z) : 0.0;
+  const Vec2 p = across > 0 ? Vec2(normal.x, normal.y) * (-rho / across) : Vec2(0);
+  const auto side = [&](const Vec3& s, const Vec3& t) { return (t.x - s.x) * (p.y - s.y) - (t.y - s.y) * (p.x - s.x); };
+  const double ab = side(a, b), bc = side(b, c), ca = side(c, a);
+  if (!((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0))) return;
+  at({p, a.z - (normal.x * (p.x - a.x) + normal.y * (p.y - a.y)) / normal.z}, stop);
+}
+
+void LowerSide::meet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) const {
+  corner(a, stop), corner(b, stop), corner(c, stop);
+  edge(a, b, stop), edge(b, c, stop), edge(c, a, stop);
+  facet(a, b, c, stop);
+}
+
+}  // namespace riffler

@@ -1,0 +1,34 @@
+"""Planning: parts looked at, pencil cuts found on a part, tool orientations, cutter locations, and other strategies."""
+
+from .._core import PencilPath
+from .analysis import analyse
+from .file import Plan, load, part_of, save
+from .locations import LocationReport, contact_locations, cutter_locations, drop, lift
+from .orientations import FreeOrientations, draw_map, free_orientations, least_tilt
+from .pencils import PencilPaths, linked, pencil
+from .strategies import Engraved, Swarf, engrave, swarf
+
+__all__ = [
+    "Engraved",
+    "FreeOrientations",
+    "LocationReport",
+    "PencilPath",
+    "PencilPaths",
+    "Plan",
+    "Swarf",
+    "analyse",
+    "contact_locations",
+    "cutter_locations",
+    "draw_map",
+    "drop",
+    "engrave",
+    "free_orientations",
+    "least_tilt",
+    "lift",
+    "linked",
+    "load",
+    "part_of",
+    "pencil",
+    "save",
+    "swarf",
+]

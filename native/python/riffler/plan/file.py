@@ -1,0 +1,212 @@
+"""Plans as files: see docs/plan-file.md."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+
+FORMAT, VERSION = "riffler-plan", 1
+RULES = ("", "linear", "slerp", "smooth")
+
+
+@dataclass
+class Plan:
+    """Paths with the tool they are for, and how they came about.
+
+    ``cl``: for every path (n, 6) cutter locations, or None. ``part``: a dict with ``name`` and ``sha256``, as by
+    ``part_of``. ``tolerance``: mm. ``provenance``: a dict of strings.
+    """
+
+    paths: list
+    tool: _core.Tool
+    cl: list = field(default_factory=list)
+    part: dict = field(default_factory=dict)
+    tolerance: float | None = None
+    provenance: dict = field(default_factory=dict)
+
+
+def part_of(mesh, name: str) -> dict[str, str]:
+    """What a plan keeps of its part: its name and the hash of its vertices and triangles."""
+    digest = hashlib.sha256()
+    digest.update(np.ascontiguousarray(mesh.vertices, dtype="<f8").tobytes())
+    digest.update(np.ascontiguousarray(mesh.triangles, dtype="<i4").tobytes())
+    return {"name": str(name), "sha256": digest.hexdigest()}
+
+
+def save(path, plan: Plan) -> None:
+    """Writes a plan; the file is whole or not there. ValueError for no plan, OSError with the system's reason."""
+    cl = list(plan.cl) or [None] * len(plan.paths)
+    if len(cl) != len(plan.paths):
+        raise ValueError(f"cl: {len(plan.paths)} expected, one for each path, not {len(cl)}")
+    data = {
+        "format": FORMAT,
+        "version": VERSION,
+        "units": {"length": "mm", "angle": "rad"},
+        "provenance": {"riffler": _core.__version__, **{str(k): str(v) for k, v in plan.provenance.items()}},
+        "part": dict(plan.part),
+        "tool": plan.tool.to_dict(),
+        "tolerance": plan.tolerance,
+        "paths": [_from_path(p, rows, k) for k, (p, rows) in enumerate(zip(plan.paths, cl, strict=True))],
+    }
+    target = Path(path)
+    text = json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    beside = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        os.replace(beside, target)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def _from_path(path, cl, number: int) -> dict[str, Any]:
+    out: dict[str, Any] = {
+        "radius": path.radius,
+        "closed": path.closed,
+        "centres": path.centres.tolist(),
+        "contacts": path.contacts.tolist(),
+        "normals": path.normals.tolist(),
+    }
+    if len(path.axes):
+        out["interpolation"] = path.interpolation
+        out["keys"] = [{"index": k, "axis": list(map(float, axis))} for k, axis in path.keys.items()]
+        out["axes"] = path.axes.tolist()
+    if cl is not None:
+        rows = np.asarray(cl, dtype=float)
+        if rows.ndim != 2 or rows.shape[1] != 6 or not np.isfinite(rows).all():
+            raise ValueError(f"cl[{number}] must have the shape (n, 6) and be finite")
+        out["cl"] = rows.tolist()
+    return out
+
+
+def load(path) -> Plan:
+    """Reads a plan. FormatError names the file and the place in it, and what was expected there."""
+    target = Path(path)
+    text = target.read_bytes()
+    try:
+        data = json.loads(text, parse_constant=_no_constant)
+    except (ValueError, RecursionError) as error:  # of encoding and of JSON alike
+        raise _core.FormatError(f"{target.name}: {error}") from None
+    try:
+        return _to_plan(data)
+    except _WrongPlaceError as error:
+        raise _core.FormatError(f"{target.name}: {error}") from None
+
+
+class _WrongPlaceError(ValueError):
+    """What a place in the file should have been."""
+
+
+def _no_constant(name: str) -> None:
+    raise ValueError(f"{name} is not a number in JSON")
+
+
+def _get(table: Any, key: str, place: str) -> Any:
+    if not isinstance(table, dict):
+        raise _WrongPlaceError(f"{place or 'the file'}: an object expected")
+    if key not in table:
+        raise _WrongPlaceError(f"{place + '.' if place else ''}{key}: missing")
+    return table[key]
+
+
+def _number(value: Any, place: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise _WrongPlaceError(f"{place}: a number expected")
+    return float(value)
+
+
+def _array(value: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
+    """``shape``: -1 for any number of rows."""
+    wanted = ", ".join("n" if size < 0 else str(size) for size in shape)
+    if not isinstance(value, list):
+        raise _WrongPlaceError(f"{place}: an array ({wanted}) expected")
+    try:
+        array = np.array(value, dtype=float) if value else np.empty((0, *shape[1:]))
+    except (ValueError, TypeError, OverflowError):
+        raise _WrongPlaceError(f"{place}: an array ({wanted}) of numbers expected") from None
+    if array.ndim != len(shape) or any(want not in (-1, size) for want, size in zip(shape, array.shape, strict=True)):
+        raise _WrongPlaceError(f"{place}: the shape ({wanted}) expected, not {array.shape}")
+    if not np.isfinite(array).all():
+        raise _WrongPlaceError(f"{place}[{int(np.argwhere(~np.isfinite(array))[0][0])}]: not finite")
+    return array
+
+
+def _to_plan(data: Any) -> Plan:
+    if _get(data, "format", "") != FORMAT:
+        raise _WrongPlaceError(f'format: "{FORMAT}" expected')
+    if _get(data, "version", "") != VERSION:
+        raise _WrongPlaceError(f"version: {VERSION} expected, not {data['version']!r}")
+    if _get(data, "units", "") != {"length": "mm", "angle": "rad"}:
+        raise _WrongPlaceError('units: {"length": "mm", "angle": "rad"} expected')
+    try:
+        tool = _core.Tool.from_dict(_get(data, "tool", ""))
+    except (ValueError, TypeError) as error:
+        raise _WrongPlaceError(f"tool: {str(error).splitlines()[0]}") from None
+    tolerance = _get(data, "tolerance", "")
+    for name in ("part", "provenance"):
+        if not isinstance(_get(data, name, ""), dict):
+            raise _WrongPlaceError(f"{name}: an object expected")
+    paths = _get(data, "paths", "")
+    if not isinstance(paths, list):
+        raise _WrongPlaceError("paths: a list expected")
+    read = [_to_path(entry, f"paths[{k}]") for k, entry in enumerate(paths)]
+    return Plan(
+        paths=[path for path, _ in read],
+        tool=tool,
+        cl=[cl for _, cl in read],
+        part=data["part"],
+        tolerance=None if tolerance is None else _number(tolerance, "tolerance"),
+        provenance=data["provenance"],
+    )
+
+
+def _to_path(entry: Any, place: str) -> tuple[Any, np.ndarray | None]:
+    centres = _array(_get(entry, "centres", place), (-1, 3), f"{place}.centres")
+    n = len(centres)
+    closed = _get(entry, "closed", place)
+    if not isinstance(closed, bool):
+        raise _WrongPlaceError(f"{place}.closed: true or false expected")
+    try:
+        path = _core.PencilPath(
+            _number(_get(entry, "radius", place), f"{place}.radius"),
+            centres,
+            _array(_get(entry, "contacts", place), (n, 2, 3), f"{place}.contacts"),
+            _array(_get(entry, "normals", place), (n, 2, 3), f"{place}.normals"),
+            closed,
+        )
+    except _WrongPlaceError:
+        raise
+    except ValueError as error:
+        raise _WrongPlaceError(f"{place}: {error}") from None
+    if "axes" in entry:
+        path = _with_axes(path, entry, place)
+    cl = _array(entry["cl"], (-1, 6), f"{place}.cl") if "cl" in entry else None
+    return path, cl
+
+
+def _with_axes(path, entry: dict, place: str):
+    rule = _get(entry, "interpolation", place)
+    if rule not in RULES:
+        raise _WrongPlaceError(f"{place}.interpolation: {', '.join(filter(None, RULES))} expected, not {rule!r}")
+    rows = _get(entry, "keys", place)
+    if not isinstance(rows, list):
+        raise _WrongPlaceError(f"{place}.keys: a list expected")
+    keys = {}
+    for k, row in enumerate(rows):
+        index = _get(row, "index", f"{place}.keys[{k}]")
+        if isinstance(index, bool) or not isinstance(index, int):
+            raise _WrongPlaceError(f"{place}.keys[{k}].index: a whole number expected")
+        keys[index] = _array(_get(row, "axis", f"{place}.keys[{k}]"), (3,), f"{place}.keys[{k}].axis")
+    axes = _array(entry["axes"], (len(path), 3), f"{place}.axes")
+    try:
+        return path.with_axes(axes, keys, rule)
+    except ValueError as error:
+        raise _WrongPlaceError(f"{place}: {error}") from None
