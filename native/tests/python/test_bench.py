@@ -13,13 +13,14 @@ import pytest
 import riffler
 from riffler import cli
 from riffler._core import bench as core
-from riffler.bench import errors, exact, measure, parts, report, scenes
+from riffler.bench import baselines, curves, errors, exact, measure, parts, remesh, report, scenes, valleys
 from riffler.bench.jobs import JOBS, b5x, force
+from riffler.bench.jobs import pencil as pen
 from riffler.command import bench as command
 
 PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
-PLOTS = {"b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh"}
+PLOTS = {"b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh", "pencil", "pencil-tolerance"}
 
 
 def bench(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
@@ -97,6 +98,74 @@ def test_parts_become_volumes_and_fewer_triangles(quick):
     assert set(mine) == {"organic", "sharp"} and all(row["bad"] == 0 for row in mine.values())
     assert 0.05 < mine["organic"]["max_mm"] < 5 and mine["sharp"]["max_mm"] < 1e-6
     assert sum("left out" in row["engine"] for row in table) == 6
+
+
+def test_pencil_curves_are_found_where_they_are_known_and_nowhere_else(quick):
+    table = rows(quick, "pencil", "valleys")
+    mine = {row["part"]: row for row in table if row["engine"] == "Riffler"}
+    assert mine["90° groove"]["paths"] == "1 (1)" and mine["90° groove"]["hausdorff_mm"] < 0.01
+    assert mine["175° groove"]["paths"] == mine["box"]["paths"] == "0 (0)"
+    assert mine["T-slot"]["missed"] == 0 and mine["pocket"]["paths"] == "8 (8)"
+    # The map of heights sees nothing below an overhang.
+    blind = next(row for row in table if row["part"] == "T-slot" and row["engine"].startswith("second difference"))
+    assert blind["missed"] == 1
+    for row in rows(quick, "pencil", "tolerance"):
+        assert row["hausdorff_mm"] < row["tolerance"] + 1e-3
+    for row in rows(quick, "pencil", "scale"):
+        assert row["part"] != "sphere" or row["steps"] == 0
+
+
+def test_dropped_cutters_name_the_oracle_that_is_missing(quick):
+    table = rows(quick, "drop", "points")
+    assert {row["cutter"] for row in table} == {"cylindrical", "ball", "bull nose", "cone"}
+    assert all(row["rate"] > 100 and "OpenCAMLib: left out" in row["note"] for row in table)
+
+
+@pytest.mark.parametrize("part", valleys.parts(), ids=lambda part: part.name)
+def test_a_ball_on_a_known_curve_touches_every_mesh_of_its_part_at_both_contacts(part):
+    for k, way in enumerate(remesh.WAYS):
+        case = pen.case(part, way, 40 + k, moved=10.0 * k)
+        audit = case.mesh.audit()
+        assert audit["components"] == 1 and audit["volume"] > 0
+        assert not any(audit[name] for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds"))
+        for curve in case.true:
+            every = slice(None, None, max(1, len(curve.centres) // 200))
+            centres, contacts = curve.centres[every], curve.contacts[every]
+            np.testing.assert_allclose(np.linalg.norm(contacts - centres[:, None], axis=2), valleys.R, atol=1e-11)
+            off = core.mesh_distances(np.ascontiguousarray(contacts.reshape(-1, 3)), case.mesh)
+            room = core.mesh_distances(np.ascontiguousarray(centres), case.mesh)
+            assert off.max() <= case.facets + 1e-9
+            assert abs(room - valleys.R).max() <= case.facets + 1e-9
+
+
+def test_distances_of_curves_are_those_of_every_point_from_every_segment():
+    rng = np.random.default_rng(3)
+    walk = np.cumsum(rng.normal(size=(300, 3)), axis=0)
+    segments = curves.Segments.of([walk, walk[:40] + 5], [False, True])
+    points = rng.normal(size=(2000, 3)) * 8
+    distance, which, share = segments.nearest(points)
+    way = segments.end - segments.begin
+    every = curves.apart(points, segments.begin, segments.end)[0]
+    np.testing.assert_allclose(distance, every.min(1), rtol=1e-12)
+    at = segments.begin[which] + share[:, None] * way[which]
+    np.testing.assert_allclose(np.linalg.norm(points - at, axis=1), distance, rtol=1e-9)
+    # A line against one beside it that is longer at one end, and against nothing.
+    line = curves.Segments(np.array([[0.0, 0, 0]]), np.array([[10.0, 0, 0]]))
+    longer = curves.Segments(np.array([[0.0, 0, 0.01]]), np.array([[12.0, 0, 0.01]]))
+    result = curves.compare(longer, line, 0.02)
+    assert result.hausdorff == pytest.approx(np.hypot(2, 0.01), rel=1e-12)
+    assert result.missed == 0 and result.false == pytest.approx(2, abs=0.02)
+    nothing = curves.compare(curves.Segments.of([], []), line, 0.02)
+    assert nothing.hausdorff is None and nothing.missed == pytest.approx(10)
+
+
+def test_the_baselines_find_what_they_can():
+    case = pen.case(valleys.groove(90), "fine", 1, upright=True)
+    sharp, chains = baselines.Creases.of(case.mesh, valleys.R).sharper(30)
+    assert chains == 1 and curves.compare(sharp, case.lines, 0.01, 0.02).hausdorff < 1e-9
+    bent, chains = baselines.HeightMap.of(case.mesh, valleys.R).bent(0.03)
+    found = curves.compare(bent, case.lines, 0.01 + baselines.PIXEL, 0.02)
+    assert chains == 1 and found.missed == found.false == 0
 
 
 def test_parts_made_in_code_are_closed_and_have_the_volume_of_their_shape():

@@ -5,6 +5,7 @@ Prints the result as one line of JSON, with the process's peak memory.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import statistics
 import sys
@@ -14,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import Mesh, Tool, Volume
+from .. import Mesh, Tool, Volume, plan
 from . import scenes
 from .rivals import clock
 
@@ -77,6 +78,24 @@ def decimate(path: str, wanted: int, repeats: int) -> dict[str, Any]:
     return {**times, "triangles": len(less.triangles)}
 
 
+def pencil(path: str, diameter: float, tolerance: float) -> dict[str, Any]:
+    """Pencil curves of a part: times, what was found, and the counters."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    tool = Tool.ball(diameter, 5 * diameter)
+    found, times = clock.timed(lambda: plan.pencil(part, tool, tolerance=tolerance), 1)
+    whole = hashlib.sha256(b"".join(np.ascontiguousarray(p.centres).tobytes() for p in found)).hexdigest()
+    return {**times, "paths": len(found), "digest": whole, **found.stats}
+
+
+def drop(path: str, points: str, tool: dict[str, Any], result: str) -> dict[str, Any]:
+    """A tool dropped on a part at many places (x, y): median times, the tree's building in them; heights as a file."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    where = np.pad(np.load(points), [(0, 0), (0, 1)])
+    (heights, _), times = clock.timed(lambda: plan.drop(Tool.from_dict(tool), where, part), 3)
+    np.save(result, heights)
+    return times
+
+
 def streamed(moves: int, calls: int) -> dict[str, Any]:
     """The ramping path again and again, each time 0.8 mm deeper, a call each: memory is that of one."""
     volume, poses, tool = Volume.block(*scenes.S500K_BLOCK, 0.5), scenes.s500k(moves, True), Tool.flat(6, 30)
@@ -122,6 +141,8 @@ WORK = {
     "mesh": mesh,
     "rays": rays,
     "decimate": decimate,
+    "pencil": pencil,
+    "drop": drop,
     "s500k": s500k,
     "streamed": streamed,
     "files": files,

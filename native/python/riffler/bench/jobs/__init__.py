@@ -1,6 +1,6 @@
 """The jobs by name; each is a module with ``run(settings, progress) -> Report``."""
 
-from . import b5x, b200, decimate, follow, force, haptic, mesh, pitch, random, s500k, stl, threads
+from . import b5x, b200, decimate, drop, follow, force, haptic, mesh, pencil, pitch, random, s500k, stl, threads
 
 JOBS = {
     "b200": b200,
@@ -14,5 +14,7 @@ JOBS = {
     "random": random,
     "stl": stl,
     "decimate": decimate,
+    "pencil": pencil,
+    "drop": drop,
     "threads": threads,
 }

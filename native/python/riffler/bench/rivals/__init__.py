@@ -1,8 +1,8 @@
 """Other programs and libraries, measured in the same run.
 
-``isosurface.py``, ``rays.py``, ``simplify.py`` and ``blender_boolean.py`` run in the Python of an environment that has
-these libraries (--rivals, --blender), not in riffler's: they import nothing of it. Every job names the rivals that are
-missing.
+``isosurface.py``, ``rays.py``, ``simplify.py``, ``drop.py`` and ``blender_boolean.py`` run in the Python of an
+environment that has these libraries (--rivals, --blender), not in riffler's: they import nothing of it. Every job names
+the rivals that are missing.
 """
 
 from __future__ import annotations
