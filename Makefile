@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender stress scenes bench bench-docs lint format sanitize docs package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender stress scenes bench bench-docs lint format sanitize docs gallery package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -88,6 +88,10 @@ docs:  ## Check links and examples, collect the documents and the API reference:
 	@$(ready)
 	$(python) tools/check_docs.py
 	$(python) tools/collect_docs.py
+
+gallery:  ## Plan and render the pictures of planning: docs/images/gallery
+	@$(ready) demo
+	for script in mouse mouse_fixtures sole; do $(python) docs/gallery/$$script.py || exit 1; done
 
 package:  ## Make the wheel and the Blender extension: dist
 	@$(ready)

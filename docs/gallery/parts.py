@@ -93,10 +93,27 @@ def mouse(points: int = 480) -> Mesh:
 
 
 def foot_outline(t: np.ndarray) -> np.ndarray:
-    """About 140 × 48 mm, heel at −x, with a waist on one side more than on the other."""
-    x, y = superellipse(70, 1, 2.5)(t).T
-    width = 20 + 3.5 * np.tanh((x - 5) / 25) - (2.5 - y) * np.exp(-(((x + 12) / 24) ** 2))
-    return np.column_stack([x, width * y + 3 * np.sin(x / 45)])
+    """Two arcs, of heel and toe, and a cubic on either side between them, the inner one with more of a waist."""
+    toe, heel = np.array([42.0, 1.5]), np.array([-52.0, 0.0])
+    ball = np.linspace(-1.45, 1.45, 200)
+    heel_turn = np.linspace(np.pi - 1.45, np.pi + 1.45, 200)
+    front = toe + 26 * np.column_stack([np.cos(ball), np.sin(ball)])
+    back = heel + 21 * np.column_stack([np.cos(heel_turn), np.sin(heel_turn)])
+
+    def side(start: np.ndarray, leave: float, end: np.ndarray, arrive: float, waist: float) -> np.ndarray:
+        s = np.linspace(0, 1, 200)[1:-1, None]
+        pull = 0.4 * np.linalg.norm(end - start)
+        first = start + pull * np.array([np.cos(leave), np.sin(leave)])
+        second = end - pull * np.array([np.cos(arrive), np.sin(arrive)])
+        middle = np.array([0, waist]) * np.exp(-(((s - 0.55) / 0.2) ** 2)) * (s * (1 - s) * 4) ** 2
+        return (1 - s) ** 3 * start + 3 * s * (1 - s) ** 2 * first + 3 * s**2 * (1 - s) * second + s**3 * end + middle
+
+    right_angle = np.pi / 2
+    upper = side(front[-1], ball[-1] + right_angle, back[0], heel_turn[0] + right_angle, -1.5)
+    lower = side(back[-1], heel_turn[-1] + right_angle, front[0], ball[0] + right_angle, 4.0)
+    outline = np.concatenate([front, upper, back, lower, front[:1]])
+    at = np.linspace(0, 2 * np.pi, len(outline))
+    return np.column_stack([np.interp(t, at, outline[:, 0]), np.interp(t, at, outline[:, 1])])
 
 
 def sole(points: int = 640) -> Mesh:
