@@ -41,7 +41,7 @@ def main() -> None:
     picture.render(given.out / "mouse-orientations.jpg", given.blender, width=165, **view)
     picture = Picture()
     picture.mesh(part)
-    for path in plan.pencil(part, TOOL, passes=3):
+    for path in plan.pencil(part, TOOL, passes=3, stepover=1.5):
         single = (path.contacts[:, 0] == path.contacts[:, 1]).all()
         picture.curve(path.centres, BETWEEN if single else PATH, radius=0.2 if single else 0.4, closed=path.closed)
     picture.render(given.out / "mouse-paths.jpg", given.blender, width=135, **view)

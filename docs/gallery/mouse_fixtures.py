@@ -15,15 +15,15 @@ from riffler import plan
 VIEW = {"target": (0, 0, 22), "direction": (-0.45, -0.8, 0.75), "width": 190}
 
 
-def vise() -> list[riffler.Volume]:
-    """Two jaws at the plate's long sides and two clamps on its short ones, as dexels 1 mm apart."""
+def vise(room: float = 0.0) -> list[riffler.Volume]:
+    """Two jaws at the plate's long sides and two clamps on its short ones, as dexels 1 mm apart, `room` mm larger."""
     boxes = [
         ((-40, 33, -30), (40, 52, 16)),
         ((-40, -52, -30), (40, -33, 16)),
         ((50, -9, 0), (75, 9, 10)),
         ((-75, -9, 0), (-50, 9, 10)),
     ]
-    return [riffler.Volume.block(lower, upper, 1.0) for lower, upper in boxes]
+    return [riffler.Volume.block(np.subtract(low, room), np.add(high, room), 1.0) for low, high in boxes]
 
 
 def show(given, name: str, part, fixtures, cl, oriented, keys, entered: np.ndarray) -> None:
@@ -55,11 +55,12 @@ def main() -> None:
         raise SystemExit("the vise should be in the way")
     tips = np.hstack([first.centres - first.radius * first.axes, first.axes])
 
-    keys = keys_from_maps(path, all_of_it, count=16)
+    # Keys stay 2 mm from the vise, so that what is interpolated between them does not enter it.
+    keys = keys_from_maps(path, riffler.Collider(part, fixtures=vise(2.0)), count=24)
     corrected = path.oriented(keys, interpolation="smooth")
     cl, report = plan.cutter_locations(corrected, TOOL, all_of_it)
     print(f"corrected: {report}, nowhere deeper than {-report.bound:.4f} mm")
-    if not report.ok:
+    if not report.ok or len(report.lifted):
         raise SystemExit("the corrected path is not free")
     if not given.fast:
         show(given, "mouse-vise-before", part, fixtures, tips, first, lean, entered)

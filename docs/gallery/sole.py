@@ -18,7 +18,7 @@ FINISHER = riffler.Tool.ball(diameter=12, length=60)
 def finish(stock: riffler.Volume, part: riffler.Mesh, step: float) -> None:
     """Three-axis rows: the tool comes down on the part at every point."""
     lower, upper = np.asarray(part.bounds)
-    x = np.arange(lower[0] - 7, upper[0] + 7, step / 2)
+    x = np.arange(lower[0] - 7, upper[0] + 7, step)
     rows = []
     for k, y in enumerate(np.arange(lower[1] - 7, upper[1] + 7, step)):
         at = np.column_stack([x[:: -1 if k % 2 else 1], np.full(len(x), y), np.zeros(len(x))])
@@ -33,7 +33,7 @@ def main() -> None:
     part = parts.sole(200 if given.fast else 640)
     lower, upper = np.asarray(part.bounds)
     stock = riffler.Volume.block(lower, upper + np.array([0, 0, 1]), 1.0 if given.fast else 0.25, "xyz")
-    finish(stock, part, 3.0 if given.fast else 1.0)
+    finish(stock, part, 3.0 if given.fast else 0.5)
     before = stock.snapshot()
     left = stock.volume
 
