@@ -39,9 +39,9 @@ def pencil(
     """The valleys of ``part_mesh`` for a ball of the tool's diameter, as ``PencilPaths``.
 
     The curves of ball centres along which the ball touches the part at two places at once and enters it nowhere. A
-    valley counts where the ball's gap to its bottom exceeds ``tolerance`` (mm), to which the curves are traced, and
-    where the directions to both contacts differ by ``bitangency_angle`` (rad) if that is given. Paths shorter than
-    ``minimum_length`` (mm) are dropped.
+    valley counts where the ball's gap to its bottom exceeds ``tolerance`` (mm), to which the curves are traced; if
+    ``bitangency_angle`` (rad) is given, instead where the directions to both contacts differ by at least that. Paths
+    shorter than ``minimum_length`` (mm) are dropped.
 
     With ``passes`` above 1 each valley is followed by passes - 1 curves on either side, ``stepover`` (mm) apart or as
     far as leaves ridges of ``scallop`` (mm; the tolerance, if neither is given) on a plane; there both contacts are the
