@@ -1,0 +1,69 @@
+// Signed distance to a whole tool at rest, cutter, shank and holder: what the independent reference for contact stands
+// on. It shares nothing with tool/outline but what it is asked about, the profile and the frusta: no levels, no joined
+// outline.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geom/pose.hpp"
+#include "tool/tool.hpp"
+
+namespace riffler::reference {
+
+/// Of a triangle.
+using Corners = std::array<Vec3, 3>;
+
+/// Distance to the union of the solids. Outside it is the least of theirs. Inside, the nearest point of the union's
+/// surface is the foot on an edge of one of them, or an edge's end, or a place where two edges cross, and it is one
+/// from which a step out of all of them is possible: all such candidates are looked at.
+class AssemblyDistance {
+ public:
+  explicit AssemblyDistance(const Tool& tool);
+
+  /// rho ≥ 0, in the (radius, height) half-plane; negative inside.
+  double distance(double rho, double z) const;
+  double operator()(const Vec3& p, const Pose& pose) const;
+  bool inside(double rho, double z) const;
+
+  /// How deep any point of the triangle is in the tool at most, ≥ 0, by a tangent: nothing where it does not tell.
+  /// `p` is a point of its plane, at most `radius` from every point of it. Second order in the radius where the
+  /// distance to `p` alone is first order, for surfaces that the tool touches.
+  std::optional<double> tangent_bound(const Corners& triangle, const Vec3& p, double radius, const Pose& pose) const;
+  /// Whether nothing within `radius` of p is in the tool, by cylinders round its solids.
+  bool beyond(const Vec3& p, double radius, const Pose& pose) const;
+
+ private:
+  struct Edge {  // of a solid's outline, heights not falling
+    Vec2 from, to;
+    std::optional<Vec2> centre;   // of an arc
+    double radius = 0, side = 1;  // of an arc; side: +1 bulges, −1 is a hollow
+  };
+  struct Solid {
+    std::vector<Edge> edges;  // from the axis round to the axis
+    bool convex = true;
+    double radius = 0, low = 0, high = 0;  // of the cylinder round it
+  };
+  struct Nearest {
+    double distance;
+    Vec2 at;                       // on the union's surface
+    const Solid* solid = nullptr;  // whose edge it is on; null at a corner
+    const Edge* edge = nullptr;
+  };
+
+  static bool inside(const Solid& solid, double rho, double z);
+  static bool convex(const std::vector<Edge>& edges);
+  static double outside(const Solid& solid, const Vec2& p);
+  static std::optional<Vec2> foot(const Edge& e, const Vec2& p);
+  Nearest nearest(double rho, double z) const;
+  bool on_surface(const Vec2& q) const;
+  void add_crossings(const Edge& a, const Edge& b);
+  void add_if_on_surface(const Vec2& q);
+
+  std::vector<Solid> solids_;
+  std::vector<Vec2> corners_;  // ends and crossings of edges, on the union's surface
+  double step_;                // mm: how far around a candidate a way out is looked for
+};
+
+}  // namespace riffler::reference
