@@ -84,23 +84,13 @@ Contact query(const Collider& self, const Tool& tool, const Doubles& array, cons
   return self.query(*assembly, pose, budget_us ? std::optional(1e-6 * *budget_us) : std::nullopt);
 }
 
-/// Calls body(i, coherence) for all poses on all threads; neighbouring poses are near each other more often than not.
-template <class Body>
-void for_poses(std::size_t count, const Body& body) {
-  parallel_for(count, 64, [&](std::size_t begin, std::size_t end) {
-    Coherence coherence;
-    for (std::size_t i = begin; i < end; ++i) body(i, coherence);
-  });
-}
-
 std::vector<double> clearances(const Collider& self, const Tool& tool, const Doubles& array) {
   const std::vector<Pose> poses = checked_poses(array);
   const std::shared_ptr<const Assembly> assembly = prepared(tool);
   std::vector<double> out(poses.size());
   const NoGil release;
-  for_poses(poses.size(), [&](std::size_t i, Coherence& coherence) {
-    Counts counts;
-    out[i] = self.clearance(*assembly, poses[i], &coherence, counts);
+  parallel_for(poses.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) out[i] = self.clearance(*assembly, poses[i]);
   });
   return out;
 }

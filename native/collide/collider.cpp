@@ -43,7 +43,7 @@ struct Collider::Data {
   Data(const Mesh& mesh, const Settings& s) : part(mesh), points(part, s.spacing), settings(s) {}
 
   NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
-                              Coherence* coherence, Counts& counts) const;
+                              Counts& counts, double enough = -std::numeric_limits<double>::infinity()) const;
 };
 
 Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings) {
@@ -63,18 +63,11 @@ Collider& Collider::operator=(Collider&&) noexcept = default;
 
 /// The least distance from the part, or from part and fixtures.
 NearestSearch::Found Collider::Data::search(const Assembly& assembly, const ToolFrame& frame, bool all,
-                                            Deadline deadline, Coherence* coherence, Counts& counts) const {
+                                            Deadline deadline, Counts& counts, double enough) const {
   const std::span<const Surface* const> some(surfaces.data(), all ? surfaces.size() : 1);
   NearestSearch search(assembly, frame);
-  if (coherence && coherence->known && coherence->surface < some.size() &&
-      coherence->triangle < some[coherence->surface]->size()) {
-    const Corners& c = some[coherence->surface]->corners(coherence->triangle);
-    TriangleSearch last(assembly.runs());
-    last.bound({frame.to_tool(c.a), frame.to_tool(c.b), frame.to_tool(c.c)});
-    search.limit(last.least().distance);
-  }
+  search.enough(enough);
   NearestSearch::Found found = search(some, deadline, counts);
-  if (coherence) *coherence = {found.surface, found.triangle, true};
   if (!all) return found;
   for (std::size_t i = 0; i < fixtures.size(); ++i) {
     if (!fixtures[i].near(assembly, frame, 0)) continue;
@@ -91,27 +84,32 @@ NearestSearch::Found Collider::Data::search(const Assembly& assembly, const Tool
 
 double Collider::clearance(const Assembly& assembly, const Pose& pose) const {
   Counts counts;
-  return clearance(assembly, pose, nullptr, counts);
+  return clearance(assembly, pose, counts);
 }
 
-double Collider::clearance(const Assembly& assembly, const Pose& pose, Coherence* coherence, Counts& counts) const {
-  return data_->search(assembly, ToolFrame(pose), false, {}, coherence, counts).least.distance;
+double Collider::clearance(const Assembly& assembly, const Pose& pose, Counts& counts) const {
+  return data_->search(assembly, ToolFrame(pose), false, {}, counts).least.distance;
 }
 
 Collider::Nearest Collider::nearest(const Assembly& assembly, const Pose& pose) const {
   const ToolFrame frame(pose);
   Counts counts;
-  const NearestSearch::Found found = data_->search(assembly, frame, true, {}, nullptr, counts);
+  const NearestSearch::Found found = data_->search(assembly, frame, true, {}, counts);
   return {found.least.distance, frame.to_part(found.least.point),
           found.surface > 0 ? Touch::Fixture : static_cast<Touch>(found.least.part)};
 }
 
-Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget) const {
+bool Collider::keeps(const Assembly& assembly, const Pose& pose, double wanted) const {
   Counts counts;
-  return query(assembly, pose, budget, nullptr, counts);
+  return data_->search(assembly, ToolFrame(pose), true, {}, counts, wanted).least.distance >= wanted;
 }
 
-Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Coherence* coherence,
+Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget) const {
+  Counts counts;
+  return query(assembly, pose, budget, counts);
+}
+
+Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget,
                         Counts& counts) const {
   // Most of a budget is for the depth: what is not summed of the force is taken from coarser points.
   const auto until = [start = Deadline::Clock::now(), &budget](double share) {
@@ -120,7 +118,7 @@ Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optiona
                   : Deadline();
   };
   const ToolFrame frame(pose);
-  const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), coherence, counts);
+  const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), counts);
   Contact out;
   out.depth = std::max(0.0, -found.least.distance), out.checked = found.checked;
   // Nothing of the tool is deeper than it is wide; and the search's own slack is part of what may be missed.

@@ -13,13 +13,6 @@
 
 namespace riffler {
 
-/// What a query remembers for the next one, whose pose is near; owned by the caller, one for each series of poses. It
-/// saves work and changes no bit of any result.
-struct Coherence {
-  std::size_t surface = 0, triangle = 0;
-  bool known = false;
-};
-
 /// Immutable after construction; queries may run on several threads. Poses whose tip is not finite or whose axis is
 /// not of unit length (to 1e-6) are a std::invalid_argument.
 class Collider {
@@ -44,13 +37,13 @@ class Collider {
   /// seconds by the monotonic clock, after which what is left is only bounded; without it the result is always the
   /// same.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget = {}) const;
-  Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Coherence* coherence,
-                Counts& counts) const;
+  Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts) const;
 
   /// Least signed distance between the part's surface and the union of cutter, shank and holder; negative where they
-  /// overlap, to the union's outer surface. mm, exact to 1e-9 or rounding.
+  /// overlap, to the union's outer surface. mm, exact to 1e-9 or rounding; to 1e-3 where
+  /// `missed_depth_bound` says so.
   double clearance(const Assembly& assembly, const Pose& pose) const;
-  double clearance(const Assembly& assembly, const Pose& pose, Coherence* coherence, Counts& counts) const;
+  double clearance(const Assembly& assembly, const Pose& pose, Counts& counts) const;
   /// As clearance, over the part and the fixtures, and where it is. A fixture is solid: in the middle of one a tool is
   /// as deep as it is thick.
   struct Nearest {
@@ -59,6 +52,9 @@ class Collider {
     Touch touch;  ///< what of the tool it is next to, or Fixture
   };
   Nearest nearest(const Assembly& assembly, const Pose& pose) const;
+  /// Whether that distance is at least `wanted`. The first place with less will do: how deep the least one is takes
+  /// a hundred times longer to prove where a holder stands in the part.
+  bool keeps(const Assembly& assembly, const Pose& pose, double wanted) const;
 
   /// Whether a point is in the part's material, by its winding number (collide/winding.hpp): a tool that the part has
   /// swallowed whole touches none of its surface. Looks at every triangle.

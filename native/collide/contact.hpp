@@ -25,6 +25,9 @@ struct Contact {
   Vec3 torque{0};  ///< N·mm, about the tip
   /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
   double depth = 0;
+  /// Without a budget rounding, 1e-10 mm and more far from the origin; up to about 1e-3 mm deep in a tool where three
+  /// of its surfaces are equally near, where the search ends by its count of cells. The clock is read at every
+  /// eighth step of a search, so short budgets may be exceeded.
   double missed_depth_bound = 0;
   double checked = 1;          ///< share of the candidates that was looked at
   std::vector<Vec3> points;    ///< contact points, the deepest first; empty where nothing touches

@@ -31,7 +31,7 @@ void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts)
             items ? Entry::Triangle : Entry::Group});
 }
 
-void NearestSearch::test(const Surface& surface, const Entry& e, Counts& counts) {
+void NearestSearch::test(const Surface& surface, const Entry& e, Deadline& deadline, Counts& counts) {
   const Corners& c = surface.corners(e.index);
   const Corners t{frame_.to_tool(c.a), frame_.to_tool(c.b), frame_.to_tool(c.c)};
   const double before = triangles_.least().distance;
@@ -43,10 +43,10 @@ void NearestSearch::test(const Surface& surface, const Entry& e, Counts& counts)
       if (!heap_.empty() && low > heap_.front().low)
         push({std::max(low, e.low), e.index, e.surface, Entry::Looked});
       else
-        triangles_.search(t);
+        triangles_.search(t, std::max(low, e.low), deadline);
     }
   } else {
-    triangles_.search(t);
+    triangles_.search(t, e.low, deadline);
   }
   if (triangles_.least().distance < before) best_surface_ = e.surface, best_triangle_ = e.index;
 }
@@ -62,14 +62,15 @@ NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> s
   }
   slack_ = TriangleSearch::slack(size);
   const std::size_t before = counts.triangles;
-  while (!heap_.empty() && heap_.front().low < triangles_.least().distance - slack_ && !deadline.passed()) {
+  while (!heap_.empty() && heap_.front().low < triangles_.least().distance - slack_ && !deadline.passed() &&
+         triangles_.least().distance >= enough_) {
     std::pop_heap(heap_.begin(), heap_.end());
     const Entry e = heap_.back();
     heap_.pop_back();
     if (e.kind == Entry::Group)
       open(*surfaces[e.surface], e, counts);
     else
-      test(*surfaces[e.surface], e, counts);
+      test(*surfaces[e.surface], e, deadline, counts);
   }
   counts.cells += triangles_.cells();
   Found found{triangles_.least(), best_surface_, best_triangle_, triangles_.low(), slack_, 1};

@@ -25,8 +25,8 @@ class NearestSearch {
 
   NearestSearch(const Assembly& assembly, const ToolFrame& frame);
 
-  /// What the search may take for granted: a distance that is reached somewhere. Changes nothing but its work.
-  void limit(double distance) { limit_ = distance; }
+  /// Ends at the first place with less than this, which need not be the least.
+  void enough(double distance) { enough_ = distance, triangles_.enough(distance); }
   Found operator()(std::span<const Surface* const> surfaces, Deadline deadline, Counts& counts);
 
  private:
@@ -46,13 +46,12 @@ class NearestSearch {
 
   void push(const Entry& e);
   void open(const Surface& surface, const Entry& e, Counts& counts);
-  void test(const Surface& surface, const Entry& e, Counts& counts);
-  double useful() const { return std::min(limit_, triangles_.least().distance); }
+  void test(const Surface& surface, const Entry& e, Deadline& deadline, Counts& counts);
 
   const Assembly& assembly_;
   const ToolFrame& frame_;
   TriangleSearch triangles_;
-  double limit_ = std::numeric_limits<double>::infinity(), slack_;
+  double limit_ = std::numeric_limits<double>::infinity(), enough_ = -limit_, slack_;
   std::vector<Entry> heap_;
   std::size_t best_surface_ = 0, best_triangle_ = 0;
 };

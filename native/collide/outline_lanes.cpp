@@ -34,10 +34,10 @@ struct Points {
 
   HWY_INLINE void add_arc(const LaneEdge& e) {
     const V x = sub(rho, set(e.centre[0])), y = sub(z, set(e.centre[1])), r = set(e.radius);
-    const V length = sqrt(squared(x, y)), out = mul(x, set(e.side));
-    const V scaled = mul(y, r);
-    const M on = both(hn::Ge(out, zero()), both(hn::Ge(scaled, mul(length, set(e.from[1] - e.centre[1]))),
-                                                hn::Le(scaled, mul(length, set(e.to[1] - e.centre[1])))));
+    const V length = sqrt(squared(x, y));
+    // As faces() of tool/outline.hpp.
+    const M on = both(hn::Ge(mul(y, set(e.first[0])), mul(x, set(e.first[1]))),
+                      hn::Ge(mul(x, set(e.last[1])), mul(y, set(e.last[0]))));
     const V off = sub(length, r);
     const V ends = min(squared(sub(rho, set(e.from[0])), sub(z, set(e.from[1]))),
                        squared(sub(rho, set(e.to[0])), sub(z, set(e.to[1]))));
@@ -85,13 +85,17 @@ LaneEdge::LaneEdge(const OutlineEdge& e)
       way{e.to.x - e.from.x, e.to.y - e.from.y},
       per_square(0),
       centre{},
+      first{},
+      last{},
       radius(std::abs(e.bulge)),
       side(e.bulge < 0 ? -1 : 1),
       arc(e.centre.has_value()),
       rises(e.to.y > e.from.y) {
   const double square = way[0] * way[0] + way[1] * way[1];
   if (square > 0) per_square = 1 / square;
-  if (arc) centre[0] = e.centre->x, centre[1] = e.centre->y;
+  if (!arc) return;
+  for (int k = 0; k < 2; ++k)
+    centre[k] = (*e.centre)[k], first[k] = side * (from[k] - centre[k]), last[k] = side * (to[k] - centre[k]);
 }
 
 void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,

@@ -12,7 +12,8 @@ namespace riffler {
 /// An edge of an outline with what its distances need.
 struct LaneEdge {
   double from[2], to[2], way[2], per_square;  // way = to − from, per_square = 1 / way²
-  double centre[2], radius, side;             // of an arc; side: 1 bulges, −1 is a hollow
+  double centre[2], first[2], last[2];        // of an arc; ends from the centre times side
+  double radius, side;                        // of an arc; side: 1 bulges, −1 is a hollow
   bool arc, rises;
 
   explicit LaneEdge(const OutlineEdge& e);

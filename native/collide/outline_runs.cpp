@@ -37,13 +37,22 @@ struct OutlineRuns::Foot {
   Vec2 point{0}, normal{0};
   double distance = kInfinity;
   bool at_end = false;
-  double margin = -1;  // of a foot on a line, from its ends off the axis
+  double margin = -1;  // from the normals at the edge's ends that are not on the axis; −1 for a foot at an end
   const OutlineEdge* edge = nullptr;
+
+  /// Of the depth at a point inside.
+  Slope depth(const Vec2& p) const {
+    Slope s{-distance, at_end && distance > 0 ? (point - p) / distance : normal};
+    if (!at_end && edge->bulge > 0) s.curvature = 1 / std::max(edge->bulge - distance, 1e-9);
+    if (hollow(*edge)) s.reach = -edge->bulge;
+    return s;
+  }
 };
 
 OutlineRuns::OutlineRuns(std::vector<OutlineEdge> edges) : edges_(std::move(edges)) {
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const OutlineEdge& e = edges_[i];
+    outermost_.push_back(all_behind(e));
     const Vec2 start = tangent(e, e.from), end = tangent(e, e.to);
     if (i == 0 || !goes_on(edges_[i - 1], e))
       runs_.push_back(
@@ -53,18 +62,29 @@ OutlineRuns::OutlineRuns(std::vector<OutlineEdge> edges) : edges_(std::move(edge
   }
 }
 
+bool OutlineRuns::all_behind(const OutlineEdge& e) const {
+  if (e.centre) return false;
+  const Vec2 way = tangent(e, e.from), normal(way.y, -way.x);
+  return std::all_of(edges_.begin(), edges_.end(), [&](const OutlineEdge& o) {
+    const double most = std::max(glm::dot(o.from - e.from, normal), glm::dot(o.to - e.from, normal));
+    const double bulge = o.centre && o.bulge > 0 ? glm::dot(*o.centre - e.from, normal) + o.bulge : most;
+    return std::max(most, bulge) <= 0;
+  });
+}
+
 OutlineRuns::Foot OutlineRuns::foot_on(const OutlineEdge& e, const Vec2& p) const {
   Foot f;
   f.edge = &e;
   if (e.centre) {
     const Vec2 w = p - *e.centre;
     const double length = glm::length(w), r = std::abs(e.bulge), side = e.bulge > 0 ? 1 : -1;
-    if (length > 0) {
-      f.point = *e.centre + r / length * w;
-      if (side * w.x >= 0 && f.point.y >= e.from.y && f.point.y <= e.to.y) {
-        f.normal = side / length * w, f.distance = std::abs(length - r);
-        return f;
-      }
+    if (length > 0 && faces(e, p)) {
+      f.point = *e.centre + r / length * w, f.normal = side / length * w, f.distance = std::abs(length - r);
+      const auto from_normal = [&](const Vec2& end) {
+        return end.x > 0 ? std::abs(area(end - *e.centre, w)) / r : kInfinity;
+      };
+      f.margin = std::min({length, from_normal(e.from), from_normal(e.to)});
+      return f;
     }
     const Vec2 a = p - e.from, b = p - e.to;
     f.point = glm::dot(a, a) <= glm::dot(b, b) ? e.from : e.to;
@@ -107,19 +127,27 @@ double OutlineRuns::reach_at(const Run& run, const Slope& closed, const Vec2& fo
   return std::max(reach, run.reach);
 }
 
-void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest) const {
+void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest, Foot& second) const {
   Foot own;
-  out.inside = holds(run, p);
+  out.inside = holds(run, p), out.hollow = run.reach < kInfinity;
   out.behind = {Slope{-kInfinity, {0, 0}}, Slope{-kInfinity, {0, 0}}};
   out.facing = out.behind[0], out.margin = -1;
-  out.reach = run.reach;
   for (std::size_t i = run.first; i < run.last; ++i) {
     const Foot f = foot_on(edges_[i], p);
     if (f.distance < own.distance) own = f;
+    if (f.distance < nearest.distance)
+      second = nearest, nearest = f;
+    else if (f.distance < second.distance && f.point != nearest.point)
+      second = f;
     // Signed distance to the half-space that touches the edge in its foot: of K at the greatest.
-    Slope s{glm::dot(p - f.point, f.normal), f.normal};
+    Slope s{glm::dot(p - f.point, f.normal), f.normal, 0, run.reach};
+    if (out.hollow) {  // also from beside its sector, where rounding has it
+      const Vec2 to_centre = *edges_[i].centre - p;
+      const double length = glm::length(to_centre);
+      if (length > 0) s = {run.reach - length, to_centre / length, 0, run.reach};
+    }
     if (edges_[i].bulge > 0 && !f.at_end) s.curvature = 1 / std::max(edges_[i].bulge + s.distance, 1e-9);
-    if (f.margin >= 0 && s.distance > out.facing.distance) out.facing = s, out.margin = f.margin;
+    if (!edges_[i].centre && f.margin >= 0 && s.distance > out.facing.distance) out.facing = s, out.margin = f.margin;
     // Steps that meet smoothly share a plane; the second is to say something else.
     const auto differs = [&](const Slope& o) { return glm::dot(o.normal, s.normal) < 1 - 1e-6; };
     if (s.distance > out.behind[0].distance) {
@@ -131,7 +159,6 @@ void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest)
   }
   if (out.behind[1].distance == -kInfinity) out.behind[1] = out.behind[0];
   out.from_run = own.distance;
-  if (own.distance < nearest.distance) nearest = own;
   if (out.inside) return;
   if (own.at_end && own.distance > 0)
     out.closed = {own.distance, (p - own.point) / own.distance, 1 / own.distance};
@@ -141,28 +168,33 @@ void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest)
     const double up = e == &run.lower ? run.lower.point.y - p.y : p.y - run.upper.point.y;
     if (p.x <= e->point.x && up >= 0 && up < out.closed.distance) out.closed = {up, {0, e == &run.lower ? -1 : 1}, 0};
   }
-  if (run.reach < kInfinity) out.reach = reach_at(run, out.closed, p - out.closed.distance * out.closed.normal);
+  if (run.reach < kInfinity) {
+    out.closed.reach = reach_at(run, out.closed, p - out.closed.distance * out.closed.normal);
+    return;
+  }
   // From outside, K's foot may be a corner of the run: steeper than any of the planes.
   if (out.closed.distance > out.behind[0].distance && out.closed.distance == own.distance)
     out.behind = {out.closed, out.closed};
 }
 
 OutlineRuns::At OutlineRuns::at(const Vec2& p, RunAt* runs) const {
-  Foot nearest;
+  Foot nearest, second;
   bool inside = false;
   std::size_t run = 0;
   for (std::size_t j = 0; j < runs_.size(); ++j) {
     const double before = nearest.distance;
-    look(runs_[j], p, runs[j], nearest);
+    look(runs_[j], p, runs[j], nearest, second);
     if (nearest.distance < before) run = j;
     inside = inside || runs[j].inside;
   }
-  At out{{}, nearest.point, nearest.edge->part, run};
-  static_cast<Slope&>(out) = inside ? Slope{-nearest.distance, nearest.normal} : runs[run].closed;
-  out.distance = inside ? -nearest.distance : nearest.distance;
-  if (inside && nearest.at_end && nearest.distance > 0) out.normal = (nearest.point - p) / nearest.distance;
-  if (inside && !nearest.at_end && nearest.edge->bulge > 0)
-    out.curvature = 1 / std::max(nearest.edge->bulge - nearest.distance, 1e-9);
+  const bool outermost = outermost_[static_cast<std::size_t>(nearest.edge - edges_.data())];
+  At out{runs[run].closed, nearest.point, nearest.edge->part, run, nearest.margin, outermost, {-kInfinity, {0, 0}}};
+  if (inside) {
+    static_cast<Slope&>(out) = nearest.depth(p);
+    if (second.edge) out.second = second.depth(p);
+  } else {
+    out.distance = nearest.distance;
+  }
   return out;
 }
 

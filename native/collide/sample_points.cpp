@@ -20,12 +20,13 @@ double area_of(const Surface& surface) {
   return sum;
 }
 
-/// Halves the longest side until none is longer than `most`.
+/// Halves the longest side until none is longer than `most`, or the piece is so small that it hardly counts: otherwise
+/// needles would become pieces by their length, millions of them without any area.
 template <class Visit>
 void split(const Corners& t, double most, const Visit& visit) {
   const double ab = glm::length(t.b - t.a), bc = glm::length(t.c - t.b), ca = glm::length(t.a - t.c);
   const double longest = std::max({ab, bc, ca});
-  if (longest <= most) return visit(t);
+  if (longest <= most || 32 * glm::length(area_of(t)) <= most * most) return visit(t);
   const Corners r = ab == longest ? t : bc == longest ? Corners{t.b, t.c, t.a} : Corners{t.c, t.a, t.b};
   const Vec3 m = 0.5 * (r.a + r.b);
   split({r.a, m, r.c}, most, visit), split({m, r.b, r.c}, most, visit);

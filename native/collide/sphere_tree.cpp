@@ -16,6 +16,12 @@ double grown(double radius, const Vec3& centre) {
   return radius * (1 + 1e-14) + 1e-15 * far;
 }
 
+Vec3 middle_of_box(const SphereTree::Items& items, std::span<const std::uint32_t> some) {
+  Box3 box;
+  for (const std::uint32_t i : some) box.add(items.box(i));
+  return 0.5 * (box.lower + box.upper);
+}
+
 }  // namespace
 
 SphereGroup::SphereGroup() {
@@ -107,9 +113,7 @@ void SphereTree::bound(const Items& items) {
       for (std::size_t place = from; place < to; ++place) {
         const std::size_t low = first(level, place);
         const std::span<const std::uint32_t> some(order_.data() + low, first(level, place + 1) - low);
-        Box3 box;
-        for (const std::uint32_t i : some) box.add(items.box(i));
-        const Vec3 centre = items.centre ? items.centre(some) : 0.5 * (box.lower + box.upper);
+        const Vec3 centre = items.centre ? items.centre(some) : middle_of_box(items, some);
         double radius = 0;
         for (const std::uint32_t i : some) radius = std::max(radius, items.reach(i, centre));
         groups_[begin + place / kLanes].put(static_cast<int>(place % kLanes), {centre, grown(radius, centre)});

@@ -95,55 +95,83 @@ Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, con
 }  // namespace
 
 TriangleSearch::Look TriangleSearch::look(const Vec3& p) {
-  ++cells_;
-  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
-  Look l{p, rho > 0 ? Vec3(p.x / rho, p.y / rho, 0) : Vec3(0), {}, {rho, p.z}, {}};
-  l.at = runs_.at(l.place, at_.data());
-  l.gradient = l.at.normal.x * l.radial + Vec3(0, 0, l.at.normal.y);
+  Look l = look_beside(p);
   if (l.at.distance < least_.distance) least_ = {l.at.distance, p, l.at.part};
   return l;
 }
 
-double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& from, double radius) const {
+TriangleSearch::Look TriangleSearch::look_beside(const Vec3& p) {
+  ++cells_;
+  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+  // Squares that vanish leave no direction.
+  Look l{p, rho > 1e-150 ? Vec3(p.x / rho, p.y / rho, 0) : Vec3(0), {rho, p.z}, {}};
+  l.at = runs_.at(l.place, at_.data());
+  return l;
+}
+
+/// Values at the corners of the tangent plane of what a slope belongs to.
+std::array<double, 3> TriangleSearch::plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from) {
+  const Vec3 g = s.normal.x * from.radial + Vec3(0, 0, s.normal.y);
+  const auto value = [&](const Vec3& p) { return s.distance + glm::dot(g, p - from.point); };
+  return {value(t.a), value(t.b), value(t.c)};
+}
+
+/// The same of the ball that touches the foot: from any of its points its surface is that near, which is concave.
+std::array<double, 3> TriangleSearch::ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from) {
+  const Vec3 out = s.normal.x * from.out() + Vec3(0, 0, s.normal.y), centre = from.point + (s.reach - s.distance) * out;
+  const auto value = [&](const Vec3& p) { return s.reach - glm::length(p - centre); };
+  return {value(t.a), value(t.b), value(t.c)};
+}
+
+/// No point of the tool is deeper than any one place of its surface is far from it: as a negative number the distance
+/// from the foot is concave, so the plane through its values at the corners is below. Nor is it deeper than the edge is
+/// far that the foot is on, where all feet on that edge are between its ends. Of a hollow that is a ball's bound, of
+/// another a plane's, as long as the points are on its inner side: as all are, or those that are as near to p as the
+/// edge is.
+std::array<double, 3> TriangleSearch::outer(const Corners& t, const Look& from, double radius) const {
+  if (from.at.margin >= radius && (from.at.outermost || from.at.distance + radius <= 0))
+    return from.at.reach < kInfinity ? ball(from.at, t, from) : plane(from.at, t, from);
+  const Vec3 foot = from.at.foot.x * from.out() + Vec3(0, 0, from.at.foot.y);
+  return {-glm::length(t.a - foot), -glm::length(t.b - foot), -glm::length(t.c - foot)};
+}
+
+double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
+                                 const std::array<double, 3>& outer) const {
   const OutlineRuns::RunAt& at = at_[run];
-  using Slope = OutlineRuns::Slope;
-  const auto gradient = [&](const Slope& s) { return s.normal.x * from.radial + Vec3(0, 0, s.normal.y); };
-  const double reach = at.reach;
-  const auto plane = [&](const Slope& s) {
-    const Vec3 g = gradient(s);
-    const auto value = [&](const Vec3& p) { return s.distance + glm::dot(g, p - from.point); };
-    return std::array<double, 3>{value(t.a), value(t.b), value(t.c)};
+  // The ball that touches the foot from outside and does not enter the run's solid; of a convex one, a half-space.
+  const auto closed = [&] {
+    const double far = at.closed.distance - radius;
+    if (at.closed.distance >= at.closed.reach) return far;
+    const std::array<double, 3> by = at.closed.reach < kInfinity ? ball(at.closed, t, from) : plane(at.closed, t, from);
+    const double least = std::min({by[0], by[1], by[2]});
+    return at.closed.reach < kInfinity ? std::max(far, least) : least;
   };
-  const auto single = [&](const Slope& s) {
-    // The ball that touches the foot from outside and does not enter the run's solid; of a convex one, a half-space.
-    if (reach < kInfinity) {
-      const double far = s.distance - radius;
-      if (s.distance >= reach) return far;
-      return std::max(far, reach - farthest(t, from.point + (reach - s.distance) * gradient(s)));
-    }
-    const std::array<double, 3> values = plane(s);
-    return std::min({values[0], values[1], values[2]});
-  };
-  if (!at.inside && at.closed.distance >= radius) return single(at.closed);
-  // No point is deeper than a given foot is far from it, which as a negative number is concave: a plane through its
-  // values at the corners is below. Nor deeper than a straight step that it faces.
-  const Vec3 foot = from.at.foot.x * from.radial + Vec3(0, 0, from.at.foot.y);
-  const std::array<double, 3> away{-glm::length(t.a - foot), -glm::length(t.b - foot), -glm::length(t.c - foot)};
-  if (!runs_.behind_ends(run, at, from.place, radius)) {
+  if (!at.inside && at.closed.distance >= radius) return closed();
+  if (!runs_.behind_ends(run, at, from.place, radius) && !(at.hollow && in_sector(run, t, from))) {
     if (!at.inside)
-      if (const double closed = single(at.closed); closed >= 0) return closed;
-    return least_of_greater(away, at.margin >= radius ? plane(at.facing) : away);
+      if (const double by_closed = closed(); by_closed >= 0) return by_closed;
+    return least_of_greater(outer, at.margin >= radius ? plane(at.facing, t, from) : outer);
   }
-  if (reach < kInfinity) return at.inside ? single({-at.from_run, at.behind[0].normal}) : single(at.closed);
-  const std::array<double, 3> first = plane(at.behind[0]);
-  const double by_steps = least_of_greater(first, plane(at.behind[1]));
-  return from.at.distance < 0 ? std::max(by_steps, least_of_greater(first, away)) : by_steps;
+  if (at.hollow) return least_of_greater(ball(at.behind[0], t, from), outer);
+  const std::array<double, 3> first = plane(at.behind[0], t, from);
+  const double by_steps = least_of_greater(first, plane(at.behind[1], t, from));
+  return from.at.distance < 0 ? std::max(by_steps, least_of_greater(first, outer)) : by_steps;
+}
+
+/// By the corners alone: ρ is convex, so where it makes leaving the sector more likely it is greatest at one of them,
+/// and elsewhere it is at least the way along the radial direction.
+bool TriangleSearch::in_sector(std::size_t run, const Corners& t, const Look& from) const {
+  const auto in = [&](const Vec3& p) {
+    return runs_.in_sector(run, std::sqrt(p.x * p.x + p.y * p.y), glm::dot(p, from.radial), p.z);
+  };
+  return in(t.a) && in(t.b) && in(t.c);
 }
 
 double TriangleSearch::lower(const Corners& t, const Look& from) const {
   const double radius = farthest(t, from.point);
+  const std::array<double, 3> by_surface = outer(t, from, radius);
   double by_runs = kInfinity;
-  for (std::size_t j = 0; j < runs_.size(); ++j) by_runs = std::min(by_runs, run_bound(j, t, from, radius));
+  for (std::size_t j = 0; j < runs_.size(); ++j) by_runs = std::min(by_runs, run_bound(j, t, from, radius, by_surface));
   return std::max(by_runs, from.at.distance - radius);
 }
 
@@ -162,11 +190,10 @@ TriangleSearch::Look TriangleSearch::downhill(const Corners& t, Look from) {
                      s.curvature * glm::outerProduct(meridian, meridian) + around * glm::outerProduct(round, round)};
   };
   for (int step = 0; step < 10; ++step) {
-    const OutlineRuns::RunAt& run = at_[from.at.run];
-    const bool two = run.inside && run.behind[1].distance != run.behind[0].distance &&
-                     run.behind[1].distance + farthest(t, from.point) > run.behind[0].distance;
-    const Vec3 next = two ? least_place(model(run.behind[0]), model(run.behind[1]), from.point, t)
-                          : least_place(model(from.at), from.point, t);
+    const OutlineRuns::Slope& second = from.at.second;
+    const bool two = second.distance + 2 * farthest(t, from.point) > from.at.distance;
+    const Vec3 next =
+        two ? least_place(model(from.at), model(second), from.point, t) : least_place(model(from.at), from.point, t);
     if (next == from.point) break;
     const Look there = look(next);
     const double won = from.at.distance - there.at.distance;
@@ -205,12 +232,12 @@ void TriangleSearch::push(const Cell& cell) {
   std::push_heap(heap_.begin(), heap_.end());
 }
 
-void TriangleSearch::search(const Corners& t) {
+void TriangleSearch::search(const Corners& t, double low_of_all, Deadline& deadline) {
   const double near = slack(size_of(t));
   const std::size_t most = cells_ + kMostCells;
-  heap_.assign(1, {t, -kInfinity});
-  while (!heap_.empty() && heap_.front().low < least_.distance - near) {
-    if (cells_ > most) {
+  heap_.assign(1, {t, low_of_all});
+  while (!heap_.empty() && heap_.front().low < least_.distance - near && least_.distance >= enough_) {
+    if (cells_ > most || deadline.passed()) {
       left_ = std::min(left_, heap_.front().low);
       return;
     }
@@ -224,8 +251,14 @@ void TriangleSearch::search(const Corners& t) {
     const Look lowest = downhill(cell.t, middle);
     if (lowest.point != middle.point) low = std::max(low, lower(cell.t, look(lowest.point)));
     if (done()) continue;
-    // The axis is a kink, too, which Newton's method overshoots.
+    // The axis is a kink, too, which Newton's method overshoots. The tool is all that lies between its outline and the
+    // axis, so moving a ball that is in it, or one out of it, straight towards or from the axis keeps it there: no
+    // point is lower than that of the axis at its height.
     if (lowest.place.x < farthest(cell.t, lowest.point)) {
+      const auto on_axis = [](const Vec3& p) { return Vec3(0, 0, p.z); };
+      low = std::max(
+          low, lower({on_axis(cell.t.a), on_axis(cell.t.b), on_axis(cell.t.c)}, look_beside(on_axis(lowest.point))));
+      if (done()) continue;
       const Quadratic square{0, middle.place.x * middle.radial, Mat3(1, 0, 0, 0, 1, 0, 0, 0, 0)};
       low = std::max(low, lower(cell.t, look(least_place(square, middle.point, cell.t))));
       if (done()) continue;

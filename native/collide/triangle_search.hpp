@@ -1,9 +1,11 @@
 // The least signed distance between a tool and a triangle.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <vector>
 
+#include "collide/deadline.hpp"
 #include "collide/outline_runs.hpp"
 #include "geom/vec.hpp"
 
@@ -34,21 +36,27 @@ class TriangleSearch {
 
   /// A lower bound over the triangle from one look at its middle, which may lower the least.
   double bound(const Corners& t);
-  void search(const Corners& t);
+  /// `low`: no place on the triangle is known to be lower. Stops at the deadline.
+  void search(const Corners& t, double low, Deadline& deadline);
+  /// A search may end at a place with less than this, without proof that it is the least.
+  void enough(double distance) { enough_ = distance; }
 
-  /// No place on any triangle is lower than this: the least, or less where kMostCells did not suffice. That happens
-  /// deep in a tool where three of its surfaces are equally near.
+  /// No place on any triangle is lower than this: the least, or less where kMostCells or the time did not suffice. The
+  /// first happens deep in a tool where three of its surfaces are equally near.
   double low() const { return std::min(left_, least_.distance); }
-  static constexpr std::size_t kMostCells = 4000;
+  static constexpr std::size_t kMostCells = 20000;
 
   std::size_t cells() const { return cells_; }
 
  private:
   /// A look at a point: the distance there, in space.
   struct Look {
-    Vec3 point, radial, gradient;
+    Vec3 point, radial;  // radial: 0 on the axis, where planes of all directions together are the mean of theirs
     Vec2 place;
     OutlineRuns::At at;
+
+    /// A direction out from the axis: on it, where a foot or a ball must be at one place, any.
+    Vec3 out() const { return radial == Vec3(0) ? Vec3(1, 0, 0) : radial; }
   };
 
   struct Cell {
@@ -58,8 +66,14 @@ class TriangleSearch {
   };
 
   Look look(const Vec3& p);
+  Look look_beside(const Vec3& p);  // a place that is not on the triangle
+  bool in_sector(std::size_t run, const Corners& t, const Look& from) const;
   double lower(const Corners& t, const Look& from) const;
-  double run_bound(std::size_t run, const Corners& t, const Look& from, double radius) const;
+  static std::array<double, 3> plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from);
+  static std::array<double, 3> ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from);
+  std::array<double, 3> outer(const Corners& t, const Look& from, double radius) const;
+  double run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
+                   const std::array<double, 3>& outer) const;
   Look downhill(const Corners& t, Look from);
 
   void push(const Cell& cell);
@@ -70,7 +84,7 @@ class TriangleSearch {
   Least least_;
   std::vector<Cell> heap_;
   std::size_t cells_ = 0;
-  double left_ = std::numeric_limits<double>::infinity();
+  double left_ = std::numeric_limits<double>::infinity(), enough_ = -left_;
 };
 
 }  // namespace riffler

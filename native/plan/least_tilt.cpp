@@ -122,14 +122,18 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
   const std::size_t n = path.size();
   std::vector<std::size_t> points(n);
   std::iota(points.begin(), points.end(), std::size_t{0});
-  const std::vector<OrientationMap> maps = orientation_maps(path, points, assembly, collider, rule.map, progress);
+  MapRule states = rule.map;
+  states.clearances = false;
+  const std::vector<OrientationMap> maps = orientation_maps(path, points, assembly, collider, states, progress);
   std::vector<Layer> layers(n);
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = 0; i < maps[k].axes.size(); ++i)
       if (maps[k].state[i] == OrientationMap::State::Free)
         layers[k].axes.push_back(maps[k].axes[i]),
             layers[k].angles.push_back(angle_between(maps[k].axes[i], maps[k].frame.z));
-    if (layers[k].axes.empty()) return none(k, "no orientation is free: " + maps[k].why_none());
+    if (layers[k].axes.empty())
+      return none(
+          k, "no orientation is free: " + orientation_maps(path, {k}, assembly, collider, rule.map).front().why_none());
   }
   const Chain chain(std::move(layers), rule);
   const std::vector<Step> steps = chain.run(chain.first(0), n);

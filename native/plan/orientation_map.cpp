@@ -45,10 +45,15 @@ void fill(OrientationMap& map, std::size_t i, const PencilPath& path, std::size_
     map.state[i] = OrientationMap::State::Unreachable;
     return;
   }
+  const double wanted = rule.clearance - rule.tolerance;
+  using State = OrientationMap::State;
+  if (!rule.clearances) {
+    map.state[i] = collider.keeps(assembly, pose, wanted) ? State::Free : State::Blocked;
+    return;
+  }
   const Collider::Nearest near = collider.nearest(assembly, pose);
   map.clearance[i] = near.distance, map.touch[i] = near.touch;
-  map.state[i] =
-      near.distance >= rule.clearance - rule.tolerance ? OrientationMap::State::Free : OrientationMap::State::Blocked;
+  map.state[i] = near.distance >= wanted ? State::Free : State::Blocked;
 }
 
 }  // namespace

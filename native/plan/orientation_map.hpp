@@ -18,6 +18,7 @@ struct MapRule {
   double clearance = 0;                     ///< wanted over part and fixtures, mm
   double tolerance = 0.01;         ///< less than `clearance` by this counts as free: the cutter is to touch, mm
   std::optional<AxisLimit> limit;  ///< the machine's cone; nothing is computed beyond it
+  bool clearances = true;          ///< otherwise only states, much quicker, and every clearance is NaN
 };
 
 /// Throws std::invalid_argument naming what is not finite, not ascending or out of range.

@@ -102,10 +102,9 @@ class Search {
   bool on_arc(const OutlineEdge& e) {
     const Vec2 w = p_ - *e.centre;
     const double length = glm::length(w), side = e.bulge > 0 ? 1 : -1;
-    if (length == 0) return false;
-    const Vec2 out = w / length, foot = *e.centre + std::abs(e.bulge) * out;
-    if (side * out.x < 0 || foot.y < e.from.y || foot.y > e.to.y) return false;
-    take(foot, side * out, e.part, false);
+    if (length == 0 || !faces(e, p_)) return false;
+    const Vec2 out = w / length;
+    take(*e.centre + std::abs(e.bulge) * out, side * out, e.part, false);
     return true;
   }
   void corner(const Vec2& c, const OutlineEdge& e) {
@@ -126,6 +125,12 @@ class Search {
 };
 
 }  // namespace
+
+bool faces(const OutlineEdge& arc, const Vec2& p) {
+  const Vec2 w = p - *arc.centre, from = arc.from - *arc.centre, to = arc.to - *arc.centre;
+  const double side = arc.bulge > 0 ? 1 : -1;
+  return side * (from.x * w.y - from.y * w.x) >= 0 && side * (w.x * to.y - w.y * to.x) >= 0;
+}
 
 double radius_at(const OutlineEdge& e, double z) {
   if (!e.centre) return e.from.x + (e.to.x - e.from.x) * ((z - e.from.y) / (e.to.y - e.from.y));

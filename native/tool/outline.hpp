@@ -16,6 +16,9 @@ struct OutlineEdge {
   Part part;         ///< what it belongs to
 };
 
+/// Whether a point is in the sector of an arc: its nearest point of the circle lies on the arc. Told by areas, as where
+/// the circle is level heights cannot tell: rounded, those of 1e-8 of it are all the same.
+bool faces(const OutlineEdge& arc, const Vec2& p);
 /// Radius of an edge whose height rises, at a height between its ends.
 double radius_at(const OutlineEdge& e, double z);
 

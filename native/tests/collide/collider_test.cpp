@@ -109,6 +109,29 @@ TEST(Collider, NearestIsOnThePartAndNoOtherPointIsNearer) {
   }
 }
 
+TEST(Collider, KeepsADistanceExactlyWhereTheLeastOneDoesAndLooksNoDeeper) {
+  // A holder deep in a block of long triangles, and beside it, and all that lies between.
+  Mesh part;
+  for (int k = 0; k <= 40; ++k)
+    for (const double y : {-60.0, 60.0}) part.vertices.emplace_back(k - 20.0, y, 3 * std::sin(0.9 * k));
+  for (int k = 0; k < 40; ++k)
+    part.triangles.emplace_back(2 * k, 2 * k + 2, 2 * k + 1),
+        part.triangles.emplace_back(2 * k + 1, 2 * k + 2, 2 * k + 3);
+  const Collider collider(part, {Volume::block({{{30, -20, -10}, {40, 20, 10}}, 1, "xyz"})});
+  const Assembly assembly(cutters::ball(6, 22).with_shank({{22, 3, 34, 3}}).with_holder({{34, 13, 70, 16}}));
+  stress::Random random(12);
+  int kept = 0;
+  for (int k = 0; k < 400; ++k) {
+    const Pose pose{{random.uniform(-25, 35), random.uniform(-20, 20), random.uniform(-30, 20)}, random.direction()};
+    const double nearest = collider.nearest(assembly, pose).distance;
+    for (const double wanted : {-5.0, -0.01, 0.0, 1.0, nearest - 1e-6, nearest + 1e-6})
+      EXPECT_EQ(collider.keeps(assembly, pose, wanted), nearest >= wanted) << k << ", " << wanted;
+    kept += nearest >= 0;
+  }
+  EXPECT_GT(kept, 20);
+  EXPECT_LT(kept, 380);
+}
+
 TEST(Collider, BoundOfWhatABudgetMissedIsNeverViolated) {
   const Collider collider(wavy(120, 60));
   const Assembly assembly(held(cutters::ball(6, 20)));
@@ -128,21 +151,6 @@ TEST(Collider, BoundOfWhatABudgetMissedIsNeverViolated) {
     }
   }
   EXPECT_GT(cut_short, 100);
-}
-
-TEST(Collider, CoherenceChangesNoBit) {
-  const Collider collider(wavy(120, 60));
-  const Assembly assembly(held(cutters::ball(6, 20)));
-  Random random(6);
-  Coherence coherence;
-  Pose pose{{30, 30, 3}, {0, 0, 1}};
-  Counts with, without;
-  for (int n = 0; n < 500; ++n) {
-    pose.tip += 0.2 * random.direction();
-    const double plain = collider.clearance(assembly, pose, nullptr, without);
-    ASSERT_EQ(collider.clearance(assembly, pose, &coherence, with), plain);
-  }
-  EXPECT_LE(with.nodes, without.nodes);
 }
 
 /// ∫ depth n dA by very many points of a fine grid over each triangle.
@@ -325,7 +333,7 @@ TEST(Collider, AFlatTopUnderAFlatToolDoesNotExplode) {
   const Assembly assembly(cutters::flat(12, 30));
   for (const double z : {-0.5, 0.0, 1.0}) {
     Counts counts;
-    EXPECT_NEAR(collider.clearance(assembly, {{0, 0, z}, {0, 0, 1}}, nullptr, counts), z, 1e-9);
+    EXPECT_NEAR(collider.clearance(assembly, {{0, 0, z}, {0, 0, 1}}, counts), z, 1e-9);
     EXPECT_LT(counts.cells, 4 * flat.triangles.size() / 10) << z;
   }
 }
@@ -338,7 +346,7 @@ TEST(Collider, AwayFromTheCutterFewerPointsGiveTheSameForce) {
   Counts many, few;
   for (int n = 0; n < 20; ++n) {
     const Pose pose = tilted({random.uniform(20, 40), random.uniform(20, 40), random.uniform(-47, -44)}, random, 0.1);
-    const Contact a = fine.query(assembly, pose, {}, nullptr, many), b = coarse.query(assembly, pose, {}, nullptr, few);
+    const Contact a = fine.query(assembly, pose, {}, many), b = coarse.query(assembly, pose, {}, few);
     EXPECT_EQ(a.depth, b.depth);
     EXPECT_LT(glm::length(a.force - b.force), 0.01 * glm::length(a.force));
     EXPECT_LT(glm::length(a.torque - b.torque), 0.01 * glm::length(a.torque));
@@ -382,6 +390,16 @@ TEST(Collider, ThreadsGetTheSameAnswers) {
     });
   for (std::thread& t : threads) t.join();
   for (int t = 1; t < 4; ++t) EXPECT_EQ(forces[t], forces[0]);
+}
+
+TEST(Collider, NeedlesAreSampledByTheirAreaNotByTheirLength) {
+  Mesh needles;
+  for (int k = 0; k < 60; ++k) {
+    const int n = static_cast<int>(needles.vertices.size());
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(30, k, 0), Vec3(30, k + 1e-9, 0)}) needles.vertices.push_back(p);
+    needles.triangles.push_back({n, n + 1, n + 2});
+  }
+  EXPECT_LT(Collider(needles).points(), 1'000'000U);
 }
 
 TEST(Collider, RefusesWhatMakesNoSense) {

@@ -79,6 +79,11 @@ double sampled(const Outline& outline, const Corners& t, Random& random) {
   return least;
 }
 
+void search_all(TriangleSearch& search, const Corners& t) {
+  Deadline none;
+  search.search(t, -std::numeric_limits<double>::infinity(), none);
+}
+
 TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
   std::uint64_t seed = 1;
   for (const Tool& tool : contact_tools()) {
@@ -90,7 +95,7 @@ TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
     for (int n = 0; n < 1500; ++n) {
       const Corners t = triangle_near(outline, random);
       TriangleSearch search(runs);
-      search.search(t);
+      search_all(search, t);
       const TriangleSearch::Least& found = search.least();
       ASSERT_LE(search.low(), sampled(outline, t, random) + 1e-9) << n;
       ASSERT_GE(search.low(), found.distance - (found.distance < -1 ? 1e-4 : 1e-9)) << n << " " << found.distance;
@@ -113,7 +118,7 @@ TEST(TriangleSearch, BoundsFromOneLookAreNeverAboveTheLeast) {
     for (int n = 0; n < 3000; ++n) {
       const Corners t = triangle_near(outline, random);
       TriangleSearch one(runs), search(runs);
-      search.search(t);
+      search_all(search, t);
       ASSERT_LE(one.bound(t), search.least().distance + 1e-9) << n;
     }
   }
@@ -132,6 +137,73 @@ TEST(OutlineRuns, HaveTheOutlinesDistances) {
       const double rho = std::hypot(p.x, p.y);
       const Outline::Nearest expected = outline.nearest(rho, p.z);
       ASSERT_NEAR(runs.at({rho, p.z}, of.data()).distance, expected.distance, 1e-12);
+    }
+  }
+}
+
+/// A triangle that is mostly in a tool: its depth is that of where several of the tool's surfaces are equally near.
+Corners triangle_through(const Outline& outline, Random& random) {
+  const Vec2 top = outline.edges().back().to;
+  const Vec3 p(0, 0, random.uniform(0, top.y)), u = random.direction(), v = random.direction();
+  return {p + 9.0 * u, p + 9.0 * v, p - 9.0 * u - 9.0 * v};
+}
+
+TEST(TriangleSearch, DepthsInHollowsAreTheLeastThoughTheToolGoesOnBehindTheirEnds) {
+  // A level disc that closes a hollow is no surface: bounds from it stopped searches up to 1e-4 mm above the least.
+  const Tool tool = cutters::profile({{{3, 0}, {}}, {{5, 2}, Vec2(5, 0)}, {{2.5, 10}, {}}}, 20);
+  const Outline outline(tool);
+  const OutlineRuns runs(outline.edges());
+  Random random(400);
+  for (int n = 0; n < 300; ++n) {
+    const Corners t = triangle_through(outline, random);
+    TriangleSearch search(runs);
+    search_all(search, t);
+    const double sample = sampled(outline, t, random);
+    ASSERT_LE(search.low(), sample + 1e-9) << n;
+    ASSERT_GE(search.low(), search.least().distance - 1e-5) << n;
+    TriangleSearch one(runs);
+    ASSERT_LE(one.bound(t), sample + 1e-9) << n;
+  }
+}
+
+TEST(TriangleSearch, StopsAtTheDeadlineWithABoundThatHolds) {
+  const Tool tool = cutters::profile({{{3, 0}, {}}, {{5, 2}, Vec2(5, 0)}, {{2.5, 10}, {}}}, 20);
+  const Outline outline(tool);
+  const OutlineRuns runs(outline.edges());
+  Random random(401);
+  for (int n = 0; n < 100; ++n) {
+    const Corners t = triangle_through(outline, random);
+    TriangleSearch whole(runs), some(runs);
+    search_all(whole, t);
+    Deadline passed{Deadline::Clock::now()};
+    some.search(t, some.bound(t), passed);
+    EXPECT_LE(some.cells(), 200U);
+    EXPECT_LE(some.low(), whole.least().distance + 1e-9);
+  }
+}
+
+TEST(OutlineRuns, AndOutlineAndLanesDistancesAtTheTipOfABallAreRoundingSmallOnItsSurface) {
+  // There heights on the circle differ by less than rounding, and told by them the foot was the tip, as far off as ρ.
+  for (const Tool& tool : {cutters::taper(0.5, 0.2, 8, 40, true), cutters::taper(1, 0.4, 8, 40, true),
+                           cutters::ball(6, 30), cutters::ball(0.7, 30), cutters::taper(0.2, 0.2, 2, 8, true)}) {
+    const Outline outline(tool);
+    const OutlineRuns runs(outline.edges());
+    const std::vector<LaneEdge> lanes(outline.edges().begin(), outline.edges().end());
+    std::vector<OutlineRuns::RunAt> of(runs.size());
+    const OutlineEdge& ball = outline.edges().front();
+    const double r = ball.bulge;
+    if (!(r > 0)) continue;
+    Random random(402);
+    for (int n = 0; n < 2000; ++n) {
+      const double angle = random.power_of_ten(-12, -6), off = random.sign() * random.power_of_ten(-17, -15);
+      const Vec2 p(r * std::sin(angle), off + 2 * r * std::sin(0.5 * angle) * std::sin(0.5 * angle));
+      EXPECT_NEAR(outline.nearest(p.x, p.y).distance, 0, 1e-14 * (1 + r));
+      EXPECT_NEAR(runs.at(p, of.data()).distance, 0, 1e-14 * (1 + r));
+      SphereGroup group;
+      group.put(0, {{p.x, 0, p.y}, 0});
+      double distance[kLanes];
+      centre_distances(lanes, ToolFrame({{0, 0, 0}, {0, 0, 1}}), group, distance);
+      EXPECT_NEAR(distance[0], 0, 1e-14 * (1 + r));
     }
   }
 }
