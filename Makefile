@@ -40,11 +40,12 @@ test-blender:  ## Run the Blender tests only
 	@$(ready) test
 	@$(python) tools/test.py blender
 
-stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, from SEED, and check each
+stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, hold tools at POSES, from SEED, and check each
 	@$(ready) cpp-tests
-	$(python) tools/preset.py release riffler_stress riffler_mesh_stress
+	$(python) tools/preset.py release riffler_stress riffler_mesh_stress riffler_contact_stress
 	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_mesh_stress --volumes $(or $(VOLUMES),100000) --seed $(or $(SEED),1)
+	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)
 
 scenes:  ## Write the hashes of the replayed journals anew: native/tests/scenes/hashes.txt
 	@$(ready) cpp-tests

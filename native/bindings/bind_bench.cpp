@@ -1,5 +1,6 @@
 // riffler._core.bench: what `riffler bench` measures with.
 #include "bench/capsule_loop.hpp"
+#include "bench/contact_run.hpp"
 #include "bench/mesh_distance.hpp"
 #include "bench/scenes.hpp"
 #include "bench/sweep_error.hpp"
@@ -53,6 +54,53 @@ py::array_t<double> mesh_distances(const Doubles& array, const Mesh& mesh) {
   return take<double>(std::move(out));
 }
 
+py::array_t<double> contact_entries(const Mesh& mesh, const Tool& tool, const Doubles& array, double gap) {
+  const std::vector<Pose> poses = to_poses(array, "poses");
+  std::vector<std::array<double, 2>> out;
+  {
+    const py::gil_scoped_release release;
+    out = bench::contact_entries(mesh, tool, poses, gap);
+  }
+  return take<double>(std::move(out), 2);
+}
+
+bench::ContactOptions contact_options(int squares, const std::string& tool, int poses, int repeats = 1) {
+  bench::ContactOptions out;
+  out.squares = squares, out.tool = tool, out.poses = poses, out.repeats = repeats;
+  return out;
+}
+
+void bind_contact(py::module_& m) {
+  using NoGil = py::call_guard<py::gil_scoped_release>;
+  m.def(
+      "contact_times",
+      [](int squares, const std::string& tool, int poses, int repeats) {
+        return bench::contact_times(contact_options(squares, tool, poses, repeats));
+      },
+      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("repeats"), NoGil(),
+      "Times of queries on COL's scene, without others: JSON (native/bench/contact_run.hpp).");
+  m.def(
+      "contact_budgets",
+      [](int squares, const std::string& tool, int poses, const std::vector<double>& budgets) {
+        return bench::contact_budgets(contact_options(squares, tool, poses), budgets);
+      },
+      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("budgets"), NoGil(),
+      "Time, missed depth and its bound with budgets in s: JSON.");
+  m.def(
+      "contact_errors",
+      [](int squares, const std::string& tool, int poses, std::size_t points, int brackets, double gap) {
+        return bench::contact_errors(contact_options(squares, tool, poses), points, brackets, gap);
+      },
+      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("points"), py::arg("brackets"), py::arg("gap"),
+      NoGil(), "Depths beside the independent reference: JSON.");
+  m.def("contact_slide", &bench::contact_slide, py::arg("steps"), NoGil(),
+        "Force on a ball that slides over an edge: JSON.");
+  m.def(
+      "contact_entries", &contact_entries, py::arg("mesh"), py::arg("tool"), py::arg("poses"), py::arg("gap"),
+      R"(How deep a mesh's surface enters a tool at poses, by the independent reference: (n, 2), mm, attained somewhere
+and proven to be the most; at most ``gap`` apart, unless that takes more than a million triangles.)");
+}
+
 py::dict mesh_stress(std::uint64_t volumes, std::uint64_t seed, const py::object& progress) {
   stress::MeshOptions options;
   options.seed = seed;
@@ -94,6 +142,7 @@ void bind_bench(py::module_& parent) {
 or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many of them are ``wrong``.)");
   m.def("mesh_distances", &mesh_distances, py::arg("points"), py::arg("mesh"),
         "Distance (n,) of points from a mesh, mm, by a search of its own; for points that are close to it.");
+  bind_contact(m);
   m.def(
       "mesh_stress", &mesh_stress, py::arg("volumes"), py::arg("seed") = 1, py::arg("progress") = py::none(),
       R"(Meshes random volumes from the degenerate limits and checks each mesh: a dict of ``scenes`` (what was meshed),

@@ -13,14 +13,17 @@ import pytest
 import riffler
 from riffler import cli
 from riffler._core import bench as core
-from riffler.bench import baselines, curves, errors, exact, measure, parts, remesh, report, scenes, valleys
-from riffler.bench.jobs import JOBS, b5x, force
+from riffler.bench import baselines, curves, errors, exact, measure, parts, remesh, report, scenes, swept, valleys
+from riffler.bench.jobs import JOBS, b5x, force, gouge
 from riffler.bench.jobs import pencil as pen
 from riffler.command import bench as command
 
 PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
-PLOTS = {"b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh", "pencil", "pencil-tolerance"}
+PLOTS = {
+    *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh"),
+    *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge"),
+}
 
 
 def bench(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
@@ -225,6 +228,57 @@ def test_the_exact_part_is_what_it_is_described_as():
     close = abs(bound) < 1.9
     np.testing.assert_allclose(field[close], bound[close], atol=1e-6)
     assert np.array_equal(np.sign(field), np.sign(bound))
+
+
+def test_contact_is_measured_judged_and_compared(quick):
+    table = rows(quick, "col", "times")
+    mine = [row for row in table if row["engine"] == "Riffler"]
+    assert {(row["tool"], row["what"]) for row in mine} == {
+        (tool, what) for tool in ("long", "short") for what in ("depth, force and torque", "signed distance")
+    }
+    assert all(0 < row["median_s"] <= row["p99_s"] and row["disagree"] == 0 for row in mine)
+    assert {row["engine"].split(":")[0] for row in table if "left out" in row["engine"]} == {"FCL", "Coal"}
+    for row in rows(quick, "col", "errors"):
+        assert row["points"] >= 20_000 and row["outside"] == 0
+        assert -1e-9 <= row["sampled_min_mm"] <= row["sampled_max_mm"] <= row["spacing_mm"]
+    assert all(row["violated"] == 0 for row in rows(quick, "col", "budgets"))
+    steps = rows(quick, "col", "slide")
+    assert [round(row["step_mm"], 3) for row in steps] == [0.08, 0.04, 0.02]
+    assert max(steps[0]["reference_z_N"]) > 0 and max(steps[0]["reference_x_N"]) > 0
+
+
+def test_paths_in_a_vise_are_free_of_gouges_between_their_rows(quick):
+    table = rows(quick, "gouge", "paths")
+    assert [row["part"] for row in table[:3]] == [f"{name}: left out, --quick" for name in gouge.MODELS]
+    assert {row["rule"] for row in table[3:]} == set(gouge.RULES)
+    for row in table[3:]:
+        assert row["after_mm"] <= row["proven_mm"] <= gouge.TOLERANCE + 2e-5
+        assert row["after_mm"] <= row["bound_mm"] + 1e-9 and row["judged"] > 1000
+    bad = table[-1]
+    assert bad["lifted"] > 10 and bad["inserted"] > 10 and bad["before_mm"] > 1
+    assert all(0 < row["clearance_s"] < 1 for row in rows(quick, "gouge", "times"))
+    touching = rows(quick, "gouge", "touching")
+    assert len(touching) == 7
+    assert all(0 < row[key] <= 1e-9 for row in touching for key in ("plane_mm", "ball_mm", "rod_mm", "contact_mm"))
+
+
+def test_a_tool_that_gouges_between_its_rows_is_seen():
+    part = parts.sharp(800)
+    tool, jaw = gouge.the_tool(), swept.Box(np.array([60.0, -10, 0]), np.array([70.0, 10, 20]))
+    judge = swept.Judge(part, [jaw], tool, 70)
+    rows = np.array([[55.0, 0, 10, 0, 0, 1], [75.0, 0, 10, 0, 0, 1]])
+    poses, moves = swept.dense(rows, 0.05, 0.01)
+    assert len(poses) == 401 and set(moves) == {0}
+    entry = judge.entries(poses)
+    # In the middle of the way the jaw's top, 10 mm up the cutter, reaches its axis.
+    assert judge.entries(rows)[:, 0].max() == 0
+    assert entry[:, 0].max() == pytest.approx(3, abs=2e-3) and np.all(entry[:, 1] >= entry[:, 0])
+    assert swept.surface([jaw]).volume == pytest.approx(10 * 20 * 20)
+    turned = np.array([[0, 0, 90, 1, 0, 0], [0, 0, 90, 0, 0, -1.0]])
+    between, _ = swept.dense(turned, 1, np.radians(1))
+    np.testing.assert_allclose(between[45, 3:], [0.5**0.5, 0, -(0.5**0.5)], atol=1e-12)
+    within = np.array([[65.0, 0, 5 - 70, 0, 0, 1]])
+    assert judge.holds_top(within).all() and not judge.holds_top(rows).any()
 
 
 def test_haptic_work_does_not_follow_the_grid(quick):

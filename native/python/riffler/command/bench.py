@@ -19,7 +19,7 @@ from .console import Console
 HELP = "measure run time, error and memory"
 NAMES = (
     *("b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "follow", "random", "stl", "decimate"),
-    *("pencil", "drop", "threads"),
+    *("col", "pencil", "drop", "gouge", "threads"),
 )
 
 
@@ -30,10 +30,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", default="riffler-bench", metavar="DIR", help="default riffler-bench")
     parser.add_argument("--no-plots", action="store_true", help="figures only; plots need matplotlib")
     parser.add_argument("--redraw", action="store_true", help="measure nothing, draw the plots of --out again")
-    parser.add_argument("--models", metavar="DIR", help=".stl files for the jobs stl, pencil and drop")
+    parser.add_argument("--models", metavar="DIR", help=".stl files for the jobs stl, pencil, drop and gouge")
     parser.add_argument("--blender", metavar="PYTHON", help="a Python with bpy, as a rival")
     parser.add_argument("--rivals", metavar="PYTHON", help="a Python with the libraries of requirements/rivals.txt")
-    parser.add_argument("--programs", metavar="DIR", help="the folder of the built native/bench: OpenVDB as a rival")
+    parser.add_argument(
+        "--programs", metavar="DIR", help="the folder of the built native/bench: OpenVDB, FCL and Coal as rivals"
+    )
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:

@@ -1,6 +1,23 @@
 """The jobs by name; each is a module with ``run(settings, progress) -> Report``."""
 
-from . import b5x, b200, decimate, drop, follow, force, haptic, mesh, pencil, pitch, random, s500k, stl, threads
+from . import (
+    b5x,
+    b200,
+    col,
+    decimate,
+    drop,
+    follow,
+    force,
+    gouge,
+    haptic,
+    mesh,
+    pencil,
+    pitch,
+    random,
+    s500k,
+    stl,
+    threads,
+)  # fmt: skip
 
 JOBS = {
     "b200": b200,
@@ -14,7 +31,9 @@ JOBS = {
     "random": random,
     "stl": stl,
     "decimate": decimate,
+    "col": col,
     "pencil": pencil,
     "drop": drop,
+    "gouge": gouge,
     "threads": threads,
 }

@@ -1,0 +1,30 @@
+// Parts, tools and poses from the limits of contact: what the stress run of contact draws.
+#pragma once
+
+#include <vector>
+
+#include "geom/pose.hpp"
+#include "mesh/mesh.hpp"
+#include "stress/random.hpp"
+#include "tool/tool.hpp"
+
+namespace riffler::stress {
+
+enum class ContactScene {
+  Sheet,    ///< random heights over squares, open at its border
+  Soup,     ///< triangles anywhere: needles, without area, twice the same, walls that coincide
+  Blocks,   ///< boxes face to face, that share walls
+  Spikes,   ///< a fan of needles that meet in one vertex
+  FarAway,  ///< a sheet at coordinates of 1e5 mm
+  Flat,     ///< one plane in large triangles, so that tools touch it exactly
+  kCount
+};
+const char* name(ContactScene scene);
+
+Mesh draw_part(Random& random, ContactScene scene);
+/// A cutter of any kind, mostly with shank and holder.
+Tool draw_tool(Random& random);
+/// Near the surface, tangent to it, deep in it, or far away.
+Pose draw_pose(Random& random, const Mesh& part, const Tool& tool);
+
+}  // namespace riffler::stress

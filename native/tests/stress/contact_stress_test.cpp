@@ -1,0 +1,31 @@
+// The stress run of contact, short; budgets are real time, so what they leave out differs from run to run.
+#include <gtest/gtest.h>
+
+#include "stress/contact_run.hpp"
+
+namespace riffler::stress {
+namespace {
+
+constexpr long kSessions = 12;
+
+TEST(ContactStress, HoldsForPartsFromTheDegenerateLimits) {
+  const ContactResults results = run_contacts({}, kSessions * kPosesOfSession);
+  for (const ContactFailure& f : results.failures)
+    ADD_FAILURE() << "pose " << f.pose << " (" << name(f.scene) << "): " << f.problem << "\nagain: " << reproducer(f);
+  for (std::size_t k = 0; k < results.scenes.size(); ++k) {
+    const ContactTally& t = results.scenes[k];
+    EXPECT_EQ(t.poses, kSessions / 6 * kPosesOfSession);
+    EXPECT_GT(t.touching, kPosesOfSession) << name(static_cast<ContactScene>(k)) << ": hardly anything touches";
+    EXPECT_LT(t.touching, t.poses) << name(static_cast<ContactScene>(k)) << ": nothing is free";
+    EXPECT_GT(t.judged, 0);
+  }
+}
+
+TEST(ContactStress, DrawsTheSameSessionAgain) {
+  ContactResults a, b;
+  for (ContactResults* r : {&a, &b}) run_contact_session({}, 3, *r);
+  EXPECT_EQ(a.total().touching, b.total().touching);
+}
+
+}  // namespace
+}  // namespace riffler::stress
