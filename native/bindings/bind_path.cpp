@@ -190,6 +190,12 @@ outside the path, not a unit vector, or opposite to the key before it.)")
           R"(The contact nearest to a point, or to the ray from it in a direction: what a pen or a mouse points at.
 
 A dict: ``index`` of the path's point, ``side`` (0 or 1) of its two contacts, ``distance`` mm, ``point``, ``normal``.)")
+      .def(
+          "divided",
+          [](const PencilPath& path, double step) { return std::make_shared<PencilPath>(divided(path, step)); },
+          py::arg("step"),
+          "With further points, evenly between two that are more than ``step`` mm apart (a straight valley has only "
+          "its ends), so that keys can be set there. Without axes.")
       .def("__len__", &PencilPath::size);
 }
 

@@ -26,4 +26,9 @@ struct PencilPath {
   double length() const;
 };
 
+/// The path with further points, evenly between two that are more than `step` mm apart, so that keys can be set there;
+/// their contacts and normals lie between those of the two. Without axes. std::invalid_argument for a step that is not
+/// positive and finite or would make more than ten million points.
+PencilPath divided(const PencilPath& path, double step);
+
 }  // namespace riffler

@@ -61,6 +61,26 @@ def test_a_path_gives_back_what_it_was_made_of():
     assert path.length == pytest.approx(40)
 
 
+@pytest.mark.parametrize(("step", "points"), [(100.0, 2), (20.0, 2), (7.0, 4), (0.5, 41)])
+def test_a_divided_path_has_points_to_set_keys_at(step, points):
+    path = corner(2).divided(step)
+    assert len(path) == points and path.length == pytest.approx(20, abs=1e-12)
+    assert path.centres[:, 1] == pytest.approx(np.linspace(-10, 10, points), abs=1e-12)
+    assert path.contacts[:, 0] == pytest.approx(path.centres - [0, 0, 3], abs=1e-12)
+    assert np.linalg.norm(path.normals, axis=2) == pytest.approx(1, abs=1e-12)
+
+
+def test_a_divided_loop_goes_round_and_keeps_its_points():
+    loop = corner(9, closed=True)
+    path = loop.divided(1.0)
+    assert path.closed and path.length == pytest.approx(loop.length, abs=1e-12)
+    assert np.linalg.norm(np.diff(path.centres, axis=0, append=path.centres[:1]), axis=1).max() <= 1 + 1e-12
+    assert all((path.centres == c).all(1).any() for c in loop.centres)
+    for step, message in ((0, "positive"), (float("nan"), "positive"), (1e-9, "ten million")):
+        with pytest.raises(ValueError, match=message):
+            loop.divided(step)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from ... import Collider, Mesh, Tool, plan
-from ...plan import PencilPath
 from .. import parts, report
 from ..measure import Progress, Settings, steady, watched
 from ..report import Column, Report
@@ -147,24 +146,11 @@ def prepared(part: Mesh, most: float) -> Scene:
     paths, length = [], 0.0
     for path in sorted(found, key=lambda p: -p.length):
         if length < most:
-            paths.append(stepped(path))
+            paths.append(path.divided(STEP))
             length += path.length
     jaws = vise(part, paths)
     collider = Collider(part, fixtures=[jaw.volume(PITCH) for jaw in jaws])
     return Scene(part, paths, len(found), collider, Judge(part, jaws, tool, HOLDER[-1][2]), pencil_s)
-
-
-def stepped(path: Any) -> Any:
-    """With more points where two are further apart: straight valleys have two."""
-    rows = np.concatenate([path.centres, *path.contacts.transpose(1, 0, 2), *path.normals.transpose(1, 0, 2)], axis=1)
-    rows = np.concatenate([rows, rows[:1]]) if path.closed else rows
-    steps = np.maximum(1, np.ceil(np.linalg.norm(np.diff(rows[:, :3], axis=0), axis=1) / STEP)).astype(int)
-    at = np.concatenate([k + np.arange(n) / n for k, n in enumerate(steps)])
-    at = at if path.closed else np.append(at, len(rows) - 1)
-    rows = np.stack([np.interp(at, np.arange(len(rows)), column) for column in rows.T], 1)
-    normals = rows[:, 9:].reshape(-1, 2, 3)
-    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
-    return PencilPath(path.radius, rows[:, :3], rows[:, 3:9].reshape(-1, 2, 3), normals, path.closed)
 
 
 def vise(part: Mesh, paths: list[Any]) -> list[Box]:
