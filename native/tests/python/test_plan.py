@@ -477,6 +477,9 @@ def test_pencil_finds_the_corner(tmp_path, monkeypatch, capsys):
     assert run("pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--json") == 0
     data = json.loads(capsys.readouterr().out)
     assert data["paths"] >= 1 and data["length"] == pytest.approx(40, abs=0.5)
+    passes = ["--passes", "3", "--stepover", "0.5"]
+    assert run("pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--json", *passes) == 0
+    assert json.loads(capsys.readouterr().out)["paths"] == 5 * data["paths"]
 
 
 @pytest.mark.parametrize(
@@ -486,6 +489,7 @@ def test_pencil_finds_the_corner(tmp_path, monkeypatch, capsys):
         ["part.stl", "--tool", "spoon:6", "--out", "p.json"],
         ["part.stl", "--tool", "ball:6", "--out", "p.txt"],
         ["part.stl", "--tool", "ball:6", "--out", "p.json", "--tolerance", "0"],
+        ["part.stl", "--tool", "ball:6", "--out", "p.json", "--passes", "two"],
     ],
 )
 def test_pencil_refuses_bad_input(tmp_path, monkeypatch, capsys, words):

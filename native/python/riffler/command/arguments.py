@@ -29,6 +29,17 @@ def length(text: str, what: str) -> float:
     return value
 
 
+def whole(text: str, what: str) -> int:
+    """A whole number from 1; ValueError naming `what`."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        raise ValueError(f"{what} must be a whole number from 1, not {text!r}")
+    return value
+
+
 def add_pitch(parser: argparse.ArgumentParser, required: bool, more: str = "") -> None:
     parser.add_argument("--pitch", metavar="MM", required=required, help="distance of the rays, mm" + more)
 

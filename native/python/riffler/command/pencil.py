@@ -9,7 +9,7 @@ import argparse
 
 from .. import Mesh, plan
 from . import tools
-from .arguments import MESHES, input_file, length, output_file
+from .arguments import MESHES, input_file, length, output_file, whole
 from .console import Console, number, times
 
 HELP = "find the pencil cuts of a part"
@@ -21,12 +21,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool", required=True, metavar="TOOL", help="whose ball rolls, as in ball:6, or a file")
     parser.add_argument("--tolerance", metavar="MM", default="0.01", help="of the paths, mm (default 0.01)")
     parser.add_argument("--minimum-length", metavar="MM", help="leave out paths that are shorter")
+    parser.add_argument("--passes", metavar="N", default="1", help="1 and so many less one on either side")
+    parser.add_argument(
+        "--stepover", metavar="MM", help="between passes; by default what leaves ridges of the tolerance"
+    )
     parser.add_argument("--out", required=True, metavar="FILE", help=".json")
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     tolerance = length(arguments.tolerance, "--tolerance")
     shortest = 0.0 if arguments.minimum_length is None else length(arguments.minimum_length, "--minimum-length")
+    passes = whole(arguments.passes, "--passes")
+    stepover = None if arguments.stepover is None else length(arguments.stepover, "--stepover")
     given = tools.parse(arguments.tool)
     path = input_file(arguments.mesh, MESHES)
     out = output_file(arguments.out, PLANS)
@@ -36,7 +42,15 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     tool = given.make(float(max(upper - lower)))
     with console.step("pencil") as progress:
         try:
-            paths = plan.pencil(mesh, tool, tolerance=tolerance, minimum_length=shortest, progress=progress)
+            paths = plan.pencil(
+                mesh,
+                tool,
+                tolerance=tolerance,
+                passes=passes,
+                progress=progress,
+                minimum_length=shortest,
+                stepover=stepover,
+            )
         except ValueError as error:
             raise ValueError(f"{path.name}: {error}") from None
     with console.step("write"), console.writing(out) as beside:
