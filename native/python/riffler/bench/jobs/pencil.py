@@ -346,7 +346,7 @@ def tolerances(out: Report, settings: Settings, progress: Progress) -> None:
         Column("processor time", "cpu_s", report.micro),
     )
     tilted, bored = valleys.boss(25), valleys.hole(25)
-    rows = 256 if settings.quick else 8192
+    rows = 256 if settings.quick else 2048
     chosen = {
         part.name: (mesh(smooth(part, rows), "coarse", np.random.default_rng(1))[0], part) for part in (tilted, bored)
     }
