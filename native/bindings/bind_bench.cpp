@@ -12,11 +12,6 @@ namespace riffler {
 
 namespace {
 
-py::array_t<double> from_poses(const std::vector<Pose>& poses) {
-  static_assert(sizeof(Pose) == 6 * sizeof(double));
-  return take<double>(std::vector<Pose>(poses), 6);
-}
-
 py::list cutters() {
   py::list out;
   for (const bench::NamedCutter& c : bench::named_cutters())

@@ -36,18 +36,11 @@ Pairs to_pairs(const Doubles& array, std::size_t n, const char* name) {
   return out;
 }
 
-std::vector<Vec3> to_rows(const Doubles& array, const char* name) {
-  std::vector<Vec3> out(check_rows(array, 3, name));
-  const double* p = array.data();
-  for (Vec3& row : out) row = {p[0], p[1], p[2]}, p += 3;
-  return out;
-}
-
 Path make(double radius, const Doubles& centres, const Doubles& contacts, const Doubles& normals, bool closed) {
   if (!std::isfinite(radius) || !(radius > 0)) throw py::value_error("radius must be positive and finite");
   auto out = std::make_shared<PencilPath>();
   out->radius = radius, out->closed = closed;
-  out->centres = to_rows(centres, "centres");
+  out->centres = to_vec3s(centres, "centres");
   const std::size_t n = out->size();
   if (n == 0) throw py::value_error("centres: at least one is needed");
   out->contacts = to_pairs(contacts, n, "contacts"), out->normals = to_pairs(normals, n, "normals");
@@ -160,7 +153,7 @@ outside the path, not a unit vector, or opposite to the key before it.)")
       .def(
           "with_axes",
           [](const PencilPath& p, const Doubles& axes, const py::object& keys, const std::string& interpolation) {
-            return std::make_shared<PencilPath>(with_axes(p, to_rows(axes, "axes"), to_keys(keys), interpolation));
+            return std::make_shared<PencilPath>(with_axes(p, to_vec3s(axes, "axes"), to_keys(keys), interpolation));
           },
           py::arg("axes"), py::arg("keys") = py::dict(), py::arg("interpolation") = "",
           "A new path with these axes (n, 3), which came about elsewhere; keys and interpolation are kept beside them.")

@@ -11,27 +11,12 @@ namespace {
 
 using NoGil = py::gil_scoped_release;
 
-py::array_t<double> from_poses(const std::vector<Pose>& poses) {
-  py::array_t<double> out({static_cast<py::ssize_t>(poses.size()), py::ssize_t{6}});
-  auto to = out.mutable_unchecked<2>();
-  for (std::size_t k = 0; k < poses.size(); ++k)
-    for (int i = 0; i < 3; ++i) {
-      to(static_cast<py::ssize_t>(k), i) = poses[k].tip[i];
-      to(static_cast<py::ssize_t>(k), 3 + i) = poses[k].axis[i];
-    }
-  return out;
-}
-
 std::vector<std::vector<Vec3>> to_curves(const py::sequence& sequence) {
   std::vector<std::vector<Vec3>> curves;
   for (std::size_t c = 0; c < sequence.size(); ++c) {
     const auto array = py::cast<Doubles>(sequence[c]);
     const std::string name = "curves[" + std::to_string(c) + "]";
-    const std::size_t n = check_rows(array, 3, name.c_str());
-    const auto rows = array.unchecked<2>();
-    auto& curve = curves.emplace_back(n);
-    for (std::size_t k = 0; k < n; ++k)
-      for (int i = 0; i < 3; ++i) curve[k][i] = rows(static_cast<py::ssize_t>(k), i);
+    curves.push_back(to_vec3s(array, name.c_str()));
   }
   return curves;
 }

@@ -45,8 +45,13 @@ py::array_t<double> from_vec3(const Vec3& v);
 /// (n, 3) copy.
 py::array_t<double> from_vec3s(const std::vector<Vec3>& v);
 
+/// (n, 3), checked as by check_rows.
+std::vector<Vec3> to_vec3s(const Doubles& array, const char* name);
+
 /// (n, 6): tip xyz, axis xyz; checked as by check_rows.
 std::vector<Pose> to_poses(const Doubles& array, const char* name);
+/// (n, 6) copy.
+py::array_t<double> from_poses(const std::vector<Pose>& poses);
 
 /// "cutter", "shank", "holder" or "fixture".
 const char* name_of(Touch touch);

@@ -45,6 +45,18 @@ py::array_t<double> from_vec3s(const std::vector<Vec3>& v) {
   return take<double>(std::vector<Vec3>(v), 3);
 }
 
+std::vector<Vec3> to_vec3s(const Doubles& array, const char* name) {
+  std::vector<Vec3> out(check_rows(array, 3, name));
+  const double* p = array.data();
+  for (Vec3& row : out) row = {p[0], p[1], p[2]}, p += 3;
+  return out;
+}
+
+py::array_t<double> from_poses(const std::vector<Pose>& poses) {
+  static_assert(sizeof(Pose) == 6 * sizeof(double));
+  return take<double>(std::vector<Pose>(poses), 6);
+}
+
 std::vector<Pose> to_poses(const Doubles& array, const char* name) {
   const std::size_t n = check_rows(array, 6, name);
   std::vector<Pose> poses(n);

@@ -48,7 +48,7 @@ void NearestSearch::test(const Surface& surface, const Entry& e, Deadline& deadl
   } else {
     triangles_.search(t, e.low, deadline);
   }
-  if (triangles_.least().distance < before) best_surface_ = e.surface, best_triangle_ = e.index;
+  if (triangles_.least().distance < before) best_surface_ = e.surface;
 }
 
 NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> surfaces, Deadline deadline,
@@ -73,7 +73,7 @@ NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> s
       test(*surfaces[e.surface], e, deadline, counts);
   }
   counts.cells += triangles_.cells();
-  Found found{triangles_.least(), best_surface_, best_triangle_, triangles_.low(), slack_, 1};
+  Found found{triangles_.least(), best_surface_, triangles_.low(), slack_, 1};
   if (heap_.empty() || heap_.front().low >= found.low - slack_) return found;
   // Cut short: what is left in the heap, as far as it matters.
   const double tested = static_cast<double>(counts.triangles - before);

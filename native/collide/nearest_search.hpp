@@ -17,10 +17,10 @@ class NearestSearch {
  public:
   struct Found {
     TriangleSearch::Least least;
-    std::size_t surface = 0, triangle = 0;  ///< index of the surface, place of the triangle in its tree
-    double low;                             ///< no point is nearer; least.distance where not cut short
-    double slack;                           ///< rounding, and what was not looked for: 1e-10 mm
-    double checked;                         ///< triangles tested, as a share of those that could matter
+    std::size_t surface = 0;  ///< its index
+    double low;               ///< no point is nearer; least.distance where not cut short
+    double slack;             ///< rounding, and what was not looked for: 1e-10 mm
+    double checked;           ///< triangles tested, as a share of those that could matter
   };
 
   NearestSearch(const Assembly& assembly, const ToolFrame& frame);
@@ -53,7 +53,7 @@ class NearestSearch {
   TriangleSearch triangles_;
   double limit_ = std::numeric_limits<double>::infinity(), enough_ = -limit_, slack_;
   std::vector<Entry> heap_;
-  std::size_t best_surface_ = 0, best_triangle_ = 0;
+  std::size_t best_surface_ = 0;
 };
 
 }  // namespace riffler

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "geom/directions.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
 
@@ -30,12 +31,6 @@ std::pair<Vec3, int> closest_on_segment(const Vec3& p, const Vec3& a, const Vec3
   if (!(along > 0)) return {a, 1};
   if (along >= length2) return {b, 2};
   return {a + (along / length2) * ab, 0};
-}
-
-/// As v, with length 1, or 0 where it has none.
-Vec3 unit(const Vec3& v) {
-  const double length = glm::length(v);
-  return length > 0 ? v / length : Vec3(0);
 }
 
 }  // namespace
@@ -226,7 +221,7 @@ void Closest::prepare_sides(const Mesh& mesh) {
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Corners& c = corners_[slot_[t]];
     const std::array<Vec3, 3> p{c.a, c.b, c.c};
-    face_normals_[t] = unit(glm::cross(c.b - c.a, c.c - c.a));
+    face_normals_[t] = unit_or_zero(glm::cross(c.b - c.a, c.c - c.a));
     for (int k = 0; k < 3; ++k) {
       const Vec3 e = p[(k + 1) % 3] - p[k], f = p[(k + 2) % 3] - p[k];
       const double angle = std::atan2(glm::length(glm::cross(e, f)), glm::dot(e, f));

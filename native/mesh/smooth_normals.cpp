@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "geom/directions.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
@@ -25,11 +26,6 @@ struct Fans {
   }
 };
 
-Vec3 unit(const Vec3& v) {
-  const double length = glm::length(v);
-  return length > 0 ? v / length : Vec3(0);
-}
-
 double angle_at(const std::array<Vec3, 3>& p, int k) {
   const Vec3 a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
@@ -44,7 +40,7 @@ SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.tr
     for (std::size_t t = begin; t < end; ++t) {
       auto& p = corners_[t].points;
       for (int k = 0; k < 3; ++k) p[k] = mesh.vertices[mesh.triangles[t][k]];
-      faces[t] = unit(glm::cross(p[1] - p[0], p[2] - p[0]));
+      faces[t] = unit_or_zero(glm::cross(p[1] - p[0], p[2] - p[0]));
     }
   });
   const double least = std::cos(crease);
@@ -59,7 +55,7 @@ SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.tr
           if (flat || glm::dot(faces[t], faces[other]) >= least)
             sum += angle_at(corners_[other].points, fans.corner[i] % 3) * faces[other];
         }
-        const Vec3 normal = unit(sum);
+        const Vec3 normal = unit_or_zero(sum);
         corners_[t].normals[k] = normal == Vec3(0) ? faces[t] : normal;
       }
   });
@@ -75,7 +71,7 @@ Vec3 SmoothNormals::at(int t, const Vec3& p) const {
         area > 0 ? glm::dot(glm::cross(q[(k + 2) % 3] - q[(k + 1) % 3], p - q[(k + 1) % 3]), across) / area : 1.0 / 3;
     sum += std::max(0.0, share) * n[k];
   }
-  return unit(sum);
+  return unit_or_zero(sum);
 }
 
 }  // namespace riffler

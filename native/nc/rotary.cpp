@@ -8,13 +8,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/directions.hpp"
+
 namespace riffler {
 
 namespace {
-
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
 
 /// Angle to the pole or to its opposite, whichever is nearer.
 double pole_angle(const Vec3& axis, const Vec3& pole) {

@@ -83,8 +83,4 @@ Vec3 unit_axis(const Vec3& axis, std::string_view what) {
   return std::abs(length - 1) < 1e-15 ? axis : axis / length;
 }
 
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
-
 }  // namespace riffler

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "geom/directions.hpp"
 #include "plan/path.hpp"
 
 namespace riffler {
@@ -39,7 +40,5 @@ CcFrame frame_at(const PencilPath& path, std::size_t k);
 
 /// `axis` made a unit vector; std::invalid_argument "`what`: …" where it is not finite or not one within 1e-6.
 Vec3 unit_axis(const Vec3& axis, std::string_view what);
-/// atan2 of both products: accurate for angles of 1e-12 as for those near π.
-double angle_between(const Vec3& a, const Vec3& b);
 
 }  // namespace riffler
