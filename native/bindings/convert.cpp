@@ -9,7 +9,7 @@ namespace riffler {
 std::size_t check_rows(const Doubles& array, std::size_t columns, const char* name) {
   if (array.ndim() != 2 || static_cast<std::size_t>(array.shape(1)) != columns) {
     std::string shape;
-    for (py::ssize_t d = 0; d < array.ndim(); ++d) shape += (d ? ", " : "") + std::to_string(array.shape(d));
+    for (py::ssize_t d = 0; d < array.ndim(); ++d) shape.append(d ? ", " : "").append(std::to_string(array.shape(d)));
     throw py::value_error(std::string(name) + " must have the shape (n, " + std::to_string(columns) + "), not (" +
                           shape + (array.ndim() == 1 ? ",)" : ")"));
   }
