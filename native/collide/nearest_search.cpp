@@ -18,17 +18,20 @@ void NearestSearch::push(const Entry& e) {
 void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts) {
   const SphereTree& tree = surface.tree();
   const SphereGroup& spheres = tree.group(e.index);
-  double distance[kLanes];
+  double distance[kLanes], low[kLanes];
   centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
   counts.nodes += kLanes;
   // Every sphere has a point of the surface in it.
   for (int k = 0; k < kLanes; ++k) limit_ = std::min(limit_, distance[k] + std::abs(spheres.radius[k]));
   const bool items = tree.holds_items(e.index);
   const std::size_t first = items ? tree.first_item(e.index) : kLanes * e.index + 1;
+  if (items)
+    triangle_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, spheres, &surface.corners(first), distance, low);
+  else
+    for (int k = 0; k < kLanes; ++k) low[k] = distance[k] - spheres.radius[k];
   for (int k = 0; k < kLanes; ++k)
     if (spheres.radius[k] >= 0)
-      push({distance[k] - spheres.radius[k], static_cast<std::uint32_t>(first + k), e.surface,
-            items ? Entry::Triangle : Entry::Group});
+      push({low[k], static_cast<std::uint32_t>(first + k), e.surface, items ? Entry::Triangle : Entry::Group});
 }
 
 void NearestSearch::test(const Surface& surface, const Entry& e, Deadline& deadline, Counts& counts) {

@@ -15,6 +15,33 @@ namespace riffler::HWY_NAMESPACE {
 
 namespace {
 
+HWY_INLINE V squared(V a, V b) {
+  return add(mul(a, a), mul(b, b));
+}
+
+HWY_INLINE V dot(V x, V y, V z, const Vec3& d) {
+  return add(add(mul(x, set(d.x)), mul(y, set(d.y))), mul(z, set(d.z)));
+}
+
+/// Whether a place, from the centre of an arc, is in its sector: as faces() of tool/outline.hpp.
+HWY_INLINE M in_sector(const LaneEdge& e, V x, V y) {
+  return both(hn::Ge(mul(y, set(e.first[0])), mul(x, set(e.first[1]))),
+              hn::Ge(mul(x, set(e.last[1])), mul(y, set(e.last[0]))));
+}
+
+/// Centres of spheres in the half-plane of the tool.
+struct Centres {
+  V u, v, rho, z;
+
+  HWY_INLINE Centres(const ToolFrame& frame, const SphereGroup& spheres, int k) {
+    const V x = sub(hn::Load(kD, spheres.x + k), set(frame.tip.x)),
+            y = sub(hn::Load(kD, spheres.y + k), set(frame.tip.y)),
+            h = sub(hn::Load(kD, spheres.z + k), set(frame.tip.z));
+    u = dot(x, y, h, frame.u), v = dot(x, y, h, frame.v), z = dot(x, y, h, frame.axis);
+    rho = sqrt(squared(u, v));
+  }
+};
+
 /// Points in the half-plane, the square of the least distance from the edges so far, and whether inside.
 struct Points {
   V rho, z, square;
@@ -22,7 +49,6 @@ struct Points {
 
   HWY_INLINE Points(V radius, V height) : rho(radius), z(height), square(set(kInfinity)), inside(no_lane()) {}
 
-  HWY_INLINE V squared(V a, V b) const { return add(mul(a, a), mul(b, b)); }
   HWY_INLINE M level_with(const LaneEdge& e) const { return both(hn::Ge(z, set(e.from[1])), hn::Le(z, set(e.to[1]))); }
 
   HWY_INLINE void add_line(const LaneEdge& e) {
@@ -35,9 +61,7 @@ struct Points {
   HWY_INLINE void add_arc(const LaneEdge& e) {
     const V x = sub(rho, set(e.centre[0])), y = sub(z, set(e.centre[1])), r = set(e.radius);
     const V length = sqrt(squared(x, y));
-    // As faces() of tool/outline.hpp.
-    const M on = both(hn::Ge(mul(y, set(e.first[0])), mul(x, set(e.first[1]))),
-                      hn::Ge(mul(x, set(e.last[1])), mul(y, set(e.last[0]))));
+    const M on = in_sector(e, x, y);
     const V off = sub(length, r);
     const V ends = min(squared(sub(rho, set(e.from[0])), sub(z, set(e.from[1]))),
                        squared(sub(rho, set(e.to[0])), sub(z, set(e.to[1]))));
@@ -53,20 +77,168 @@ struct Points {
   }
 };
 
+/// Of the tangent planes of a run's edges the one that is highest at a point: distance from it, and its normal. And the
+/// way from the nearest place of the run, which may be a corner.
+struct Plane {
+  V distance, out, up, square, from_out, from_up;
+
+  HWY_INLINE Plane()
+      : distance(set(-kInfinity)), out(zero()), up(zero()), square(set(kInfinity)), from_out(zero()), from_up(zero()) {}
+
+  HWY_INLINE void add_plane(V d, V x, V y) {
+    const M higher = hn::Gt(d, distance);
+    distance = pick(higher, d, distance), out = pick(higher, x, out), up = pick(higher, y, up);
+  }
+  HWY_INLINE void add_foot(V x, V y) {
+    const V s = squared(x, y);
+    const M nearer = hn::Lt(s, square);
+    square = pick(nearer, s, square), from_out = pick(nearer, x, from_out), from_up = pick(nearer, y, from_up);
+  }
+  HWY_INLINE void add_line(const LaneEdge& e, const Centres& at) {
+    const V x = sub(at.rho, set(e.from[0])), y = sub(at.z, set(e.from[1])), nx = set(e.normal[0]),
+            ny = set(e.normal[1]);
+    add_plane(add(mul(x, nx), mul(y, ny)), nx, ny);
+    const V wx = set(e.way[0]), wy = set(e.way[1]);
+    const V along = min(max(mul(add(mul(x, wx), mul(y, wy)), set(e.per_square)), zero()), set(1));
+    add_foot(sub(x, mul(along, wx)), sub(y, mul(along, wy)));
+  }
+  HWY_INLINE void add_arc(const LaneEdge& e, const Centres& at) {
+    const V x = sub(at.rho, set(e.centre[0])), y = sub(at.z, set(e.centre[1])), length = sqrt(squared(x, y));
+    const M on = both(in_sector(e, x, y), hn::Gt(length, zero()));
+    const M first = hn::Le(squared(sub(x, set(e.first[0])), sub(y, set(e.first[1]))),
+                           squared(sub(x, set(e.last[0])), sub(y, set(e.last[1]))));
+    const V ex = pick(first, set(e.first[0]), set(e.last[0])), ey = pick(first, set(e.first[1]), set(e.last[1]));
+    const V per = hn::Div(set(1), pick(on, length, set(e.radius)));
+    const V nx = mul(per, pick(on, x, ex)), ny = mul(per, pick(on, y, ey));
+    add_plane(sub(add(mul(x, nx), mul(y, ny)), set(e.radius)), nx, ny);
+    const V off = sub(length, set(e.radius));
+    add_foot(pick(on, mul(off, nx), sub(x, ex)), pick(on, mul(off, ny), sub(y, ey)));
+  }
+  /// From outside, a corner is farther than any of the planes: the one that touches it there is steeper. Clearly so, or
+  /// its direction would be rounding.
+  HWY_INLINE void use_corner(M may) {
+    const V far = sqrt(square);
+    const M farther = both(hn::Gt(far, set(1e-6)), hn::Gt(far, mul(distance, set(1 + 1e-6))));
+    const M corner = both(may, both(hn::Gt(distance, zero()), farther));
+    const V per = hn::Div(set(1), far);
+    out = pick(corner, mul(from_out, per), out), up = pick(corner, mul(from_up, per), up);
+    distance = pick(corner, far, distance);
+  }
+};
+
+/// Corners of triangles from the centres of their spheres.
+struct FromCentres {
+  V x[3], y[3], z[3];
+
+  HWY_INLINE FromCentres(const Corners* triangles, const SphereGroup& spheres, int k) {
+    static_assert(sizeof(Corners) == 9 * sizeof(double));
+    const hn::RebindToSigned<Lanes> kI;
+    const auto places = hn::Mul(hn::Iota(kI, 0), hn::Set(kI, 9));
+    const double* first = &triangles[k].a.x;
+    const V cx = hn::Load(kD, spheres.x + k), cy = hn::Load(kD, spheres.y + k), cz = hn::Load(kD, spheres.z + k);
+    for (int i = 0; i < 3; ++i) {
+      x[i] = sub(hn::GatherIndex(kD, first + 3 * i, places), cx);
+      y[i] = sub(hn::GatherIndex(kD, first + 3 * i + 1, places), cy);
+      z[i] = sub(hn::GatherIndex(kD, first + 3 * i + 2, places), cz);
+    }
+  }
+};
+
+/// Whether all that is within `radius` of a point lies behind the end of a run.
+HWY_INLINE M behind(const OutlineRuns::End& end, const Centres& at, V radius) {
+  const V past =
+      add(mul(sub(at.rho, set(end.point.x)), set(end.way.x)), mul(sub(at.z, set(end.point.y)), set(end.way.y)));
+  return end.open ? hn::Le(add(past, radius), zero()) : hn::Le(radius, set(kInfinity));
+}
+
+/// The radial direction in space, 0 on the axis.
+struct Radial {
+  V x, y, z;
+  M off_axis;
+
+  HWY_INLINE Radial(const ToolFrame& frame, const Centres& at) : off_axis(hn::Gt(at.rho, set(1e-150))) {
+    const V per = hn::Div(set(1), pick(off_axis, at.rho, set(1)));
+    const V u = pick(off_axis, mul(at.u, per), zero()), v = pick(off_axis, mul(at.v, per), zero());
+    x = add(mul(u, set(frame.u.x)), mul(v, set(frame.v.x)));
+    y = add(mul(u, set(frame.u.y)), mul(v, set(frame.v.y)));
+    z = add(mul(u, set(frame.u.z)), mul(v, set(frame.v.z)));
+  }
+};
+
+/// The least of what planes or a ball say of the distance at the corners, which bounds it on the triangle; −∞ where
+/// that says nothing.
+class RunBound {
+ public:
+  HWY_INLINE RunBound(const ToolFrame& frame, const Centres& at, const Corners* triangles, const SphereGroup& spheres,
+                      int k, V distance)
+      : frame_(frame),
+        at_(at),
+        radial_(frame, at),
+        corners_(triangles, spheres, k),
+        radius_(hn::Load(kD, spheres.radius + k)),
+        outside_(hn::Ge(distance, radius_)) {}
+
+  HWY_INLINE V by_plane(const OutlineRuns::Run& run, std::span<const LaneEdge> outline) const {
+    Plane plane;
+    for (std::size_t i = run.first; i < run.last; ++i)
+      outline[i].arc ? plane.add_arc(outline[i], at_) : plane.add_line(outline[i], at_);
+    plane.use_corner(both(behind(run.lower, at_, zero()), behind(run.upper, at_, zero())));
+    const V x = in_space(plane.out, radial_.x, plane.up, frame_.axis.x),
+            y = in_space(plane.out, radial_.y, plane.up, frame_.axis.y),
+            z = in_space(plane.out, radial_.z, plane.up, frame_.axis.z);
+    V least = set(kInfinity);
+    for (int i = 0; i < 3; ++i)
+      least = min(least, add(add(mul(x, corners_.x[i]), mul(y, corners_.y[i])), mul(z, corners_.z[i])));
+    const V bound = add(plane.distance, least);
+    const M own = both(behind(run.lower, at_, radius_), behind(run.upper, at_, radius_));
+    return pick(either(either(outside_, own), hn::Ge(bound, zero())), bound, set(-kInfinity));
+  }
+
+  /// By the ball in a hollow, from which its solid keeps away.
+  HWY_INLINE V by_ball(const LaneEdge& hollow) const {
+    const V out = sub(set(hollow.centre[0]), at_.rho), up = sub(set(hollow.centre[1]), at_.z);
+    const V x = in_space(out, radial_.x, up, frame_.axis.x), y = in_space(out, radial_.y, up, frame_.axis.y),
+            z = in_space(out, radial_.z, up, frame_.axis.z);
+    V far = zero();
+    for (int i = 0; i < 3; ++i)
+      far = max(far, add(squared(sub(corners_.x[i], x), sub(corners_.y[i], y)),
+                         mul(sub(corners_.z[i], z), sub(corners_.z[i], z))));
+    return pick(both(outside_, radial_.off_axis), sub(set(hollow.radius), sqrt(far)), set(-kInfinity));
+  }
+
+ private:
+  static HWY_INLINE V in_space(V out, V radial, V up, double axis) { return add(mul(out, radial), mul(up, set(axis))); }
+
+  const ToolFrame& frame_;
+  const Centres& at_;
+  Radial radial_;
+  FromCentres corners_;
+  V radius_;
+  M outside_;
+};
+
 }  // namespace
 
 void CentreDistances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                      double* distance) {
   for (int k = 0; k < kLanes; k += lanes()) {
-    const V x = sub(hn::Load(kD, spheres.x + k), set(frame.tip.x)),
-            y = sub(hn::Load(kD, spheres.y + k), set(frame.tip.y));
-    const V z = sub(hn::Load(kD, spheres.z + k), set(frame.tip.z));
-    const auto along = [&](const Vec3& d)
-                           HWY_ATTR { return add(add(mul(x, set(d.x)), mul(y, set(d.y))), mul(z, set(d.z))); };
-    const V u = along(frame.u), v = along(frame.v);
-    Points points(sqrt(add(mul(u, u), mul(v, v))), along(frame.axis));
+    const Centres at(frame, spheres, k);
+    Points points(at.rho, at.z);
     for (const LaneEdge& e : outline) e.arc ? points.add_arc(e) : points.add_line(e);
     hn::StoreU(points.distance(), kD, distance + k);
+  }
+}
+
+void TriangleBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
+                    const SphereGroup& spheres, const Corners* triangles, const double* distance, double* low) {
+  for (int k = 0; k < kLanes; k += lanes()) {
+    const Centres at(frame, spheres, k);
+    const V centre = hn::LoadU(kD, distance + k);
+    const RunBound runs_at(frame, at, triangles, spheres, k, centre);
+    V bound = set(kInfinity);
+    for (const OutlineRuns::Run& run : runs.all())
+      bound = min(bound, run.reach < kInfinity ? runs_at.by_ball(outline[run.first]) : runs_at.by_plane(run, outline));
+    hn::StoreU(max(bound, sub(centre, hn::Load(kD, spheres.radius + k))), kD, low + k);
   }
 }
 
@@ -78,12 +250,14 @@ HWY_AFTER_NAMESPACE();
 namespace riffler {
 
 HWY_EXPORT(CentreDistances);
+HWY_EXPORT(TriangleBounds);
 
 LaneEdge::LaneEdge(const OutlineEdge& e)
     : from{e.from.x, e.from.y},
       to{e.to.x, e.to.y},
       way{e.to.x - e.from.x, e.to.y - e.from.y},
       per_square(0),
+      normal{},
       centre{},
       first{},
       last{},
@@ -92,7 +266,8 @@ LaneEdge::LaneEdge(const OutlineEdge& e)
       arc(e.centre.has_value()),
       rises(e.to.y > e.from.y) {
   const double square = way[0] * way[0] + way[1] * way[1];
-  if (square > 0) per_square = 1 / square;
+  if (square > 0)
+    per_square = 1 / square, normal[0] = way[1] / std::sqrt(square), normal[1] = -way[0] / std::sqrt(square);
   if (!arc) return;
   for (int k = 0; k < 2; ++k)
     centre[k] = (*e.centre)[k], first[k] = side * (from[k] - centre[k]), last[k] = side * (to[k] - centre[k]);
@@ -101,6 +276,11 @@ LaneEdge::LaneEdge(const OutlineEdge& e)
 void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                       double* distance) {
   HWY_DYNAMIC_DISPATCH(CentreDistances)(outline, frame, spheres, distance);
+}
+
+void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
+                     const SphereGroup& spheres, const Corners* triangles, const double* distance, double* low) {
+  HWY_DYNAMIC_DISPATCH(TriangleBounds)(runs, outline, frame, spheres, triangles, distance, low);
 }
 
 }  // namespace riffler

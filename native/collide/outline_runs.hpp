@@ -56,6 +56,16 @@ class OutlineRuns {
     Slope second;    ///< inside, to the next nearest edge that lies in another direction; −∞ where there is none
   };
 
+  struct End {
+    Vec2 point, way, normal;  ///< of the tangent that goes on from there, and out of the solid
+    bool open;                ///< not on the axis
+  };
+  struct Run {
+    std::size_t first, last;  ///< edges
+    double reach;  ///< radius of the largest ball that rolls along it from outside: infinity, or that of a hollow
+    End lower, upper;
+  };
+  const std::vector<Run>& all() const { return runs_; }
   std::size_t size() const { return runs_.size(); }
   /// Fills `runs`, which has room for size().
   At at(const Vec2& p, RunAt* runs) const;
@@ -80,15 +90,6 @@ class OutlineRuns {
   }
 
  private:
-  struct End {
-    Vec2 point, way, normal;  // of the tangent that goes on from there, and out of the solid
-    bool open;                // not on the axis
-  };
-  struct Run {
-    std::size_t first, last;  // edges
-    double reach;  // radius of the largest ball that rolls along it from outside: infinity, or that of a hollow
-    End lower, upper;
-  };
   struct Foot;
 
   double reach_at(const Run& run, const Slope& closed, const Vec2& foot) const;

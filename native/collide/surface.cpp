@@ -25,8 +25,9 @@ Surface::Surface(const std::vector<Corners>& corners)
                const Corners& c = corners[t];
                return std::max({glm::length(c.a - p), glm::length(c.b - p), glm::length(c.c - p)});
              }}) {
-  corners_.reserve(corners.size());
+  corners_.reserve(corners.size() + kLanes);
   for (const std::uint32_t t : tree_.order()) corners_.push_back(corners[t]);
+  corners_.resize(corners.size() + kLanes, {Vec3(0), Vec3(0), Vec3(0)});
 }
 
 }  // namespace riffler

@@ -14,9 +14,9 @@ class Surface {
   explicit Surface(const Mesh& mesh) : Surface(corners_of(mesh)) {}
 
   const SphereTree& tree() const { return tree_; }
-  /// By place in the tree.
+  /// By place in the tree; the next kLanes places can be read as well.
   const Corners& corners(std::size_t place) const { return corners_[place]; }
-  std::size_t size() const { return corners_.size(); }
+  std::size_t size() const { return tree_.size(); }
 
  private:
   explicit Surface(const std::vector<Corners>& corners);

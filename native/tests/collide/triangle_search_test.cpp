@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "collide/outline_lanes.hpp"
 #include "collide/tools.hpp"
 #include "mesh/closest.hpp"
@@ -224,6 +226,73 @@ TEST(OutlineLanes, HaveTheOutlinesDistances) {
       for (int k = 0; k < kLanes; ++k)
         ASSERT_NEAR(distance[k], distance_at(outline, frame.to_tool(group.sphere(k).centre)), 1e-12);
     }
+  }
+}
+
+/// Eight triangles in the part's frame, with spheres round them.
+struct Group {
+  std::vector<Corners> triangles;
+  SphereGroup spheres;
+  double distance[kLanes], low[kLanes];
+
+  Group(const Outline& outline, const ToolFrame& frame, const std::function<Corners()>& make) {
+    const OutlineRuns runs(outline.edges());
+    const std::vector<LaneEdge> edges(outline.edges().begin(), outline.edges().end());
+    for (int k = 0; k < kLanes; ++k) {
+      const Corners t = make();
+      triangles.push_back({frame.to_part(t.a), frame.to_part(t.b), frame.to_part(t.c)});
+      spheres.put(k, round_triangle(triangles[k].a, triangles[k].b, triangles[k].c));
+    }
+    centre_distances(edges, frame, spheres, distance);
+    triangle_bounds(runs, edges, frame, spheres, triangles.data(), distance, low);
+  }
+  Corners in_tool(int k, const ToolFrame& frame) const {
+    const Corners& t = triangles[static_cast<std::size_t>(k)];
+    return {frame.to_tool(t.a), frame.to_tool(t.b), frame.to_tool(t.c)};
+  }
+};
+
+TEST(OutlineLanes, BoundsOfTrianglesAreNeverAboveTheLeast) {
+  std::uint64_t seed = 500;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const Outline outline(tool);
+    Random random(++seed);
+    for (int n = 0; n < 300; ++n) {
+      const ToolFrame frame({10.0 * random.direction(), random.direction()});
+      const Group group(outline, frame, [&] { return triangle_near(outline, random); });
+      for (int k = 0; k < kLanes; ++k) {
+        ASSERT_LE(group.low[k], sampled(outline, group.in_tool(k, frame), random) + 1e-9) << n;
+        ASSERT_GE(group.low[k], group.distance[k] - group.spheres.radius[k]);
+      }
+    }
+  }
+}
+
+TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
+  // Lines of equal distance bend by at most one in the distance. Beside the ends of a run its planes are flatter.
+  std::uint64_t seed = 600;
+  for (const Tool& tool : contact_tools()) {
+    SCOPED_TRACE(tool.name());
+    const Outline outline(tool);
+    Random random(++seed);
+    std::size_t looked = 0, sharp = 0;
+    for (int n = 0; n < 1000; ++n) {
+      const ToolFrame frame({10.0 * random.direction(), random.direction()});
+      const Group group(outline, frame, [&] {
+        const Vec3 p = place_near(outline, random);
+        const auto corner = [&] { return p + 0.02 * random.direction(); };
+        return Corners{corner(), corner(), corner()};
+      });
+      for (int k = 0; k < kLanes; ++k) {
+        const double radius = group.spheres.radius[k];
+        if (group.distance[k] < 1) continue;
+        ++looked;
+        sharp += group.low[k] >= sampled(outline, group.in_tool(k, frame), random) - radius * radius;
+      }
+    }
+    EXPECT_GT(looked, 300U);
+    EXPECT_GT(static_cast<double>(sharp), 0.7 * static_cast<double>(looked));
   }
 }
 
