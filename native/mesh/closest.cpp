@@ -172,13 +172,32 @@ Closest::Hit Closest::operator()(const Vec3& p, double limit) const {
   return nearest(p, limit, [](const Corners&) { return true; });
 }
 
+bool Closest::Above::holds(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  const auto rises = [&](const Vec3& corner) { return glm::dot(corner - origin, up) > height; };
+  if (!rises(a) && !rises(b) && !rises(c)) return false;
+  const Vec3 normal = glm::cross(b - a, c - a);
+  return glm::dot(normal, up) <= cosine * glm::length(normal);
+}
+
 Closest::Hit Closest::above(const Vec3& p, double limit, const Above& plane) const {
-  const auto rises = [&](const Vec3& corner) { return glm::dot(corner - plane.origin, plane.up) > plane.height; };
-  return nearest(p, limit, [&](const Corners& c) {
-    if (!rises(c.a) && !rises(c.b) && !rises(c.c)) return false;
-    const Vec3 normal = glm::cross(c.b - c.a, c.c - c.a);
-    return glm::dot(normal, plane.up) <= plane.cosine * glm::length(normal);
+  return nearest(p, limit, [&](const Corners& c) { return plane.holds(c.a, c.b, c.c); });
+}
+
+bool Closest::may_meet(const Vec3& p, double limit, std::span<const Vec3> ways, const Above& plane) const {
+  double longest = 0;
+  for (const Vec3& way : ways) longest = std::max(longest, glm::length(way));
+  double bound = (limit + longest) * (limit + longest);
+  bool found = false;
+  descend(p, bound, [&](std::size_t i) {
+    const auto& [a, b, c] = corners_[i];
+    if (!plane.holds(a, b, c)) return false;
+    const Vec3 from = p - closest_on_triangle(p, a, b, c).point;
+    const double distance = glm::length(from);
+    double least = 0;
+    for (const Vec3& way : ways) least = std::min(least, glm::dot(from, way));
+    return found = distance == 0 || distance + least / distance < limit;
   });
+  return found;
 }
 
 void Closest::gather(const Vec3& p, double limit, std::vector<Hit>& hits) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "geom/progress.hpp"
@@ -43,10 +44,16 @@ class Closest {
     Vec3 origin, up;  // up: unit
     double height;    // mm above the plane that a triangle rises at least
     double cosine;    // of the angle between its normal and `up`, at most
+
+    bool holds(const Vec3& a, const Vec3& b, const Vec3& c) const;
   };
   /// The nearest point, if nearer than `limit`, of the triangles that rise and turn that far; any turn counts for those
   /// without area.
   Hit above(const Vec3& p, double limit, const Above& plane) const;
+  /// Whether one of these triangles may be nearer than `limit` to a point between p and all p + `ways`. The distance
+  /// from a triangle is convex, so it falls by no more than its slope at p says: a triangle that faces across the ways
+  /// stays as far as it is.
+  bool may_meet(const Vec3& p, double limit, std::span<const Vec3> ways, const Above& plane) const;
   /// The nearest point of triangle `t`.
   Hit on(int t, const Vec3& p) const;
   /// Distance to triangle `t`: an upper bound of the distance to the mesh.

@@ -20,6 +20,7 @@ struct Cell {
   double reach(const Vec3& from) const {
     return std::max({glm::length(a - from), glm::length(b - from), glm::length(c - from), glm::length(d - from)});
   }
+  std::array<Vec3, 4> ways(const Vec3& from) const { return {a - from, b - from, c - from, d - from}; }
   double length() const { return std::max(glm::length(b - a), glm::length(d - c)); }
   double width() const { return std::max(glm::length(c - a), glm::length(d - b)); }
   double area() const { return 0.5 * (glm::length(glm::cross(b - a, c - a)) + glm::length(glm::cross(b - d, c - d))); }
@@ -58,12 +59,14 @@ struct Triangle {
       const double around = cell.reach(middle);
       // Moving the ball by `around` changes its distance from what is above its plane by no more than that.
       const double radius = ball.radius();
-      const Closest::Hit hit =
-          ball.part().above(middle + radius * normal, radius + around, {middle, normal, depth, cosine});
+      const Closest::Above above{middle, normal, depth, cosine};
+      const Vec3 centre = middle + radius * normal;
+      const Closest::Hit hit = ball.part().above(centre, radius + around, above);
       ++balls;
       if (hit.triangle < 0) continue;
       const double entered = radius - hit.distance;
       if (entered < around && std::max(cell.length(), cell.width()) > spacing) {
+        if (entered <= depth && !ball.part().may_meet(centre, radius - depth, cell.ways(middle), above)) continue;
         const auto [first, second] = cell.halves();
         stack.push_back(second), stack.push_back(first);
       } else if (entered > depth) {

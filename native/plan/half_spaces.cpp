@@ -45,9 +45,9 @@ std::optional<Lowest2> lowest_on_edge(std::span<const HalfSpace<Vec2>> spaces, s
   return Lowest2{foot + (slope > 0 ? low : high) * way, {static_cast<int>(i), slope > 0 ? at_low : at_high}};
 }
 
-}  // namespace
-
-std::optional<Lowest2> lowest(std::span<const HalfSpace<Vec2>> spaces, const Vec2& up, double reach, double slack) {
+/// Incremental, in the order given (Seidel, Discrete Comput. Geom. 6 (1991) 423).
+std::optional<Lowest2> lowest_in_order(std::span<const HalfSpace<Vec2>> spaces, const Vec2& up, double reach,
+                                       double slack) {
   Lowest2 best{{lowest_in_box(up.x, reach), lowest_in_box(up.y, reach)}, {-1, -1}};
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     if (glm::dot(spaces[i].along, best.point) >= spaces[i].least - slack) continue;
@@ -59,7 +59,8 @@ std::optional<Lowest2> lowest(std::span<const HalfSpace<Vec2>> spaces, const Vec
   return best;
 }
 
-std::optional<Lowest3> lowest(std::span<const HalfSpace<Vec3>> spaces, const Vec3& up, double reach, double slack) {
+std::optional<Lowest3> lowest_in_order(std::span<const HalfSpace<Vec3>> spaces, const Vec3& up, double reach,
+                                       double slack) {
   Lowest3 best{{lowest_in_box(up.x, reach), lowest_in_box(up.y, reach), lowest_in_box(up.z, reach)}, {-1, -1, -1}};
   std::vector<HalfSpace<Vec2>> flat;
   for (std::size_t i = 0; i < spaces.size(); ++i) {
@@ -80,13 +81,46 @@ std::optional<Lowest3> lowest(std::span<const HalfSpace<Vec3>> spaces, const Vec
         add(along, -reach);
       }
     for (std::size_t k = 0; k < i; ++k) add(spaces[k].along, spaces[k].least);
-    const std::optional<Lowest2> in_plane = lowest(flat, {glm::dot(up, p), glm::dot(up, q)}, 4 * reach, slack);
+    const std::optional<Lowest2> in_plane = lowest_in_order(flat, {glm::dot(up, p), glm::dot(up, q)}, 4 * reach, slack);
     if (!in_plane) return {};
     const auto id = [](int at) { return at < 6 ? -1 : at - 6; };
     best = {foot + in_plane->point.x * p + in_plane->point.y * q,
             {static_cast<int>(i), id(in_plane->active[0]), id(in_plane->active[1])}};
   }
   return best;
+}
+
+/// Of the few that matter: they are found by what the lowest point of those known so far violates most.
+template <class Vector>
+auto lowest_of_few(std::span<const HalfSpace<Vector>> spaces, const Vector& up, double reach, double slack) {
+  thread_local std::vector<HalfSpace<Vector>> few;
+  thread_local std::vector<int> ids;
+  few.clear(), ids.clear();
+  while (true) {
+    auto best = lowest_in_order(few, up, reach, slack);
+    if (!best) return best;
+    double most = slack;
+    int next = -1;
+    for (std::size_t k = 0; k < spaces.size(); ++k)
+      if (const double out = spaces[k].least - glm::dot(spaces[k].along, best->point); out > most)
+        most = out, next = static_cast<int>(k);
+    // One that is known already is violated by rounding.
+    if (next < 0 || std::find(ids.begin(), ids.end(), next) != ids.end()) {
+      for (int& id : best->active) id = id < 0 ? -1 : ids[id];
+      return best;
+    }
+    few.push_back(spaces[next]), ids.push_back(next);
+  }
+}
+
+}  // namespace
+
+std::optional<Lowest2> lowest(std::span<const HalfSpace<Vec2>> spaces, const Vec2& up, double reach, double slack) {
+  return lowest_of_few(spaces, up, reach, slack);
+}
+
+std::optional<Lowest3> lowest(std::span<const HalfSpace<Vec3>> spaces, const Vec3& up, double reach, double slack) {
+  return lowest_of_few(spaces, up, reach, slack);
 }
 
 }  // namespace riffler

@@ -18,8 +18,8 @@ struct HalfSpace {
 };
 
 /// The point of all `spaces`, and of the box |x_k| ≤ reach, that is lowest along `up`. `active` are the half-spaces
-/// whose planes meet there, -1 for a side of the box. Incremental (Seidel, Discrete Comput. Geom. 6 (1991) 423), in
-/// the order given: it is fast where the half-spaces that matter come first. `slack` is what counts as rounding.
+/// whose planes meet there, -1 for a side of the box. A pass over `spaces` for each of the few that matter. `slack` is
+/// what counts as rounding.
 struct Lowest2 {
   Vec2 point;
   std::array<int, 2> active;

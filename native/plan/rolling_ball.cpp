@@ -73,16 +73,12 @@ struct Step {
     thread_local std::vector<HalfSpace<Vector>> spaces;
     thread_local std::vector<int> order;
     order.clear(), spaces.clear();
-    for (std::size_t k = 0; k < hits.size(); ++k)
-      if (hits[k].distance <= radius + trust) order.push_back(static_cast<int>(k));
-    std::sort(order.begin(), order.end(), [&](int i, int j) {
-      return hits[i].distance != hits[j].distance ? hits[i].distance < hits[j].distance
-                                                  : hits[i].triangle < hits[j].triangle;
-    });
-    for (const int k : order) {
-      if (!(hits[k].distance > 1e-9 * radius)) return {};
-      spaces.push_back(
-          {in_frame<Vector>(frame, (centre - hits[k].point) / hits[k].distance), radius - hits[k].distance});
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+      const Closest::Hit& hit = hits[k];
+      if (hit.distance > radius + trust) continue;
+      if (!(hit.distance > 1e-9 * radius)) return {};
+      spaces.push_back({in_frame<Vector>(frame, (centre - hit.point) / hit.distance), radius - hit.distance});
+      order.push_back(static_cast<int>(k));
     }
     Vector up(0);
     up[0] = 1;
@@ -140,7 +136,9 @@ RollingBall::Stop press_in(const RollingBall& ball, const Vec3& start, const Rol
     }
     centre += step->move, moved += length;
     if (glm::length(centre - start) > how.roam) return Stop::Lost;
-    trust = step->held() ? std::max(2 * length, 1e-7 * how.radius) : 2 * trust;
+    // On one plane that is level there is nothing to hold it, however far one looks.
+    if (!step->held() && trust >= how.roam && length <= ball.rounding()) return Stop::Lost;
+    trust = std::min(step->held() ? std::max(2 * length, 1e-7 * how.radius) : 2 * trust, how.roam);
   }
   return Stop::Lost;
 }

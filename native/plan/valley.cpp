@@ -91,20 +91,27 @@ ValleyTracer::Found ValleyTracer::start(const Unreached& from, Station& station)
   RollingBall::Seat seat;
   seat.centre = from.point + radius * from.normal;
   seat.feet[0].away = from.normal, seat.feet[1].away = glm::normalize(seat.centre - other);
-  // Grown in steps, since a ball is pressed among all that lies within a step of it.
-  double longest = 0.1 * full;
+  // Grown in steps, since a ball is pressed among all that lies within a step of it. Between two planes it goes where
+  // it is set; as long as it does, steps become longer.
+  constexpr double kFirst = 0.1, kShort = 0.03, kLongest = 0.5;
+  double longest = kFirst * full;
   while (radius < full) {
     const Vec3 push = seat.feet[0].away + seat.feet[1].away, across = glm::cross(seat.feet[0].away, seat.feet[1].away);
     if (glm::length(across) < 1e-6 || glm::length(push) < 1e-6) return Found::Stuck;
     const double rate = 2 / glm::length(push);  // of the centre, in a valley of two planes
     const double move = std::min(longest, (full - radius) * rate), next = std::min(full, radius + move / rate);
-    const auto stop = ball_.press(seat.centre, {push, glm::normalize(across), next, 1.1 * move, 4 * move}, seat);
-    if (stop == RollingBall::Stop::Seated)
+    const bool set = move < 0.5 * radius;  // not beyond a wall
+    const Vec3 ahead = set ? seat.centre + move * glm::normalize(push) : seat.centre;
+    const RollingBall::Press how{push, glm::normalize(across), next, (set ? 0.1 : 1.1) * move, 4 * move};
+    if (ball_.press(ahead, how, seat) == RollingBall::Stop::Seated) {
       radius = next;
-    else if (longest > 0.09 * full)
-      longest = 0.03 * full;
-    else
+      const bool straight = set && glm::length(seat.centre - ahead) < 0.05 * move;
+      longest = straight ? std::min(2 * longest, kLongest * full) : std::min(longest, kFirst * full);
+    } else if (longest > kShort * full) {
+      longest = longest > kFirst * full ? kFirst * full : kShort * full;
+    } else {
       return Found::Stuck;
+    }
   }
   switch (accept(seat, nullptr, station)) {
     case Event::None:

@@ -275,9 +275,12 @@ TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
     const Outline outline(tool);
+    const OutlineRuns runs(outline.edges());
+    if (std::any_of(runs.all().begin(), runs.all().end(), [](const auto& run) { return std::isfinite(run.reach); }))
+      continue;  // hollows: their balls are of use within them only
     Random random(++seed);
     std::size_t looked = 0, sharp = 0;
-    for (int n = 0; n < 1000; ++n) {
+    for (int n = 0; n < 1500; ++n) {
       const ToolFrame frame({10.0 * random.direction(), random.direction()});
       const Group group(outline, frame, [&] {
         const Vec3 p = place_near(outline, random);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <random>
 
@@ -67,6 +68,43 @@ TEST(Closest, GathersAllTrianglesThatAreNearAndFindsTheNearestThatRisesAboveAPla
     if (hit.triangle < 0) continue;
     EXPECT_NEAR(closest.on(hit.triangle, p).distance, above, 1e-12);
   }
+}
+
+TEST(Closest, TellsThatNothingMeetsWhatMovesOnlyWhereNothingDoes) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> coordinate(-20, 20), share(0, 1);
+  const auto point = [&] { return Vec3(coordinate(random), coordinate(random), coordinate(random)); };
+  const Mesh mesh = torus_mesh(10, 3, 40, 20);
+  const Closest closest(mesh);
+  int clear = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 p = 0.7 * point(), up = glm::normalize(point()), origin = p - 2.0 * up;
+    const Closest::Above above{origin, up, 0.1, 0.8};
+    const double limit = 3 * share(random);
+    const std::array<Vec3, 2> ways{0.1 * point(), 0.1 * point()};
+    if (closest.may_meet(p, limit, ways, above)) continue;
+    ++clear;
+    for (int k = 0; k < 20; ++k) {
+      double s = share(random), u = share(random);
+      if (s + u > 1) s = 1 - s, u = 1 - u;
+      EXPECT_LT(closest.above(p + s * ways[0] + u * ways[1], limit - 1e-12, above).triangle, 0);
+    }
+  }
+  EXPECT_GT(clear, 500);
+  EXPECT_LT(clear, 1900);
+}
+
+TEST(Closest, TellsThatAWallBesideTheWayStaysAsFarAsItIs) {
+  Mesh wall;
+  wall.vertices = {{-100, 1, -100}, {100, 1, -100}, {0, 1, 100}};
+  wall.triangles = {{0, 1, 2}};
+  const Closest closest(wall);
+  const Closest::Above above{{0, 0, -1}, {0, 0, 1}, 0.5, 0.5};
+  const auto meets = [&](const Vec3& way) { return closest.may_meet({0, 0, 0}, 0.99, std::span(&way, 1), above); };
+  EXPECT_FALSE(meets({50, 0, 0}));
+  EXPECT_FALSE(meets({0, -50, 0}));
+  EXPECT_FALSE(meets({0, 0.009, 0}));
+  EXPECT_TRUE(meets({0, 0.02, 0}));
 }
 
 TEST(Closest, AgreesWithEveryTriangleTried) {

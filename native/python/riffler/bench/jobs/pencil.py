@@ -3,7 +3,6 @@ against tolerance, and at 200 000 triangles."""
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
 import time
 from dataclasses import dataclass
@@ -18,17 +17,16 @@ from ..._core import bench as core
 from .. import baselines, report, valleys
 from ..curves import Agreement, Segments, compare
 from ..measure import Progress, Settings, child, steady, threads, watched
+from ..pencil_cases import TOLERANCE, TOOL, Case, case, cases, contacts, digest, lines_of, turned
 from ..remesh import STEP, WAYS, Patch, Surface, mesh
 from ..report import Column, Report
 from .stl import model_paths, save
 
-TOLERANCE = 0.01
 SHARE = 0.01  # missed and false length that are allowed
 TOLERANCES = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005)
 CREASES = (3.0, 5.0, 8.0, 12.0, 20.0, 30.0, 45.0)  # degrees
 BENDS = (0.003, 0.006, 0.012, 0.017, 0.03, 0.06, 0.12)  # mm
 KIND = baselines.PIXEL  # added to the limit at which the baselines are judged
-TOOL = Tool.ball(2 * valleys.R, 30)
 
 
 def run(settings: Settings, progress: Progress = None) -> Report:
@@ -42,53 +40,6 @@ def run(settings: Settings, progress: Progress = None) -> Report:
 
 
 # ---- parts with curves in closed form
-
-
-@dataclass(frozen=True)
-class Case:
-    """One mesh of a part, turned and moved, with its curves. `facets`: how far chords can move a centre, mm; `tilt`:
-    how far a facet's normal can be from the surface's, rad."""
-
-    part: valleys.Part
-    way: str
-    mesh: Mesh
-    true: list[valleys.Curve]
-    facets: float
-    tilt: float
-    moved: float
-
-    @property
-    def limit(self) -> float:
-        return TOLERANCE + self.facets
-
-    @property
-    def lines(self) -> Segments:
-        return Segments.of([c.centres for c in self.true], [c.closed for c in self.true])
-
-
-def turned(rng: np.random.Generator) -> np.ndarray:
-    """A rotation at random: the orthogonal part of a matrix of normal numbers."""
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q *= np.sign(np.diag(r))
-    return q if np.linalg.det(q) > 0 else -q
-
-
-def case(part: valleys.Part, way: str, seed: int, moved: float = 0.0, upright: bool = False) -> Case:
-    rng = np.random.default_rng(seed)
-    upon, _, spanned = mesh(part.surface, way, rng)
-    turn = np.eye(3) if upright else turned(rng)
-    shift = moved * np.array([1.0, -0.7, 0.4])
-    placed = Mesh(np.asarray(upon.vertices) @ turn.T + shift, upon.triangles)
-    angle = 2 * pi * spanned if part.bent else 0.0
-    facets = part.lever * part.bent * (1 - np.cos(angle / 2))
-    return Case(part, way, placed, [c.placed(turn, shift) for c in part.curves], float(facets), angle, moved)
-
-
-def cases(part: valleys.Part, seed: int, quick: bool) -> list[Case]:
-    if quick:
-        return [case(part, "needles" if seed % 2 else "coarse", seed)]
-    found = [case(part, way, 10 * seed + k) for k, way in enumerate(WAYS)]
-    return [*found, case(part, "fine", 10 * seed + 3, moved=1e4)]
 
 
 def curves(out: Report, settings: Settings, progress: Progress) -> None:
@@ -271,39 +222,6 @@ def judged(out: Report, table: report.Section, c: Case, settings: Settings) -> d
         again = plan.pencil(c.mesh, TOOL, tolerance=TOLERANCE)
     out.check(digest(paths) == digest(again), f"{what}: other bytes with two threads")
     return row
-
-
-def lines_of(paths) -> Segments:
-    return Segments.of([np.asarray(p.centres) for p in paths], [bool(p.closed) for p in paths])
-
-
-def digest(paths) -> str:
-    whole = hashlib.sha256()
-    for p in paths:
-        for array in (p.centres, p.contacts, p.normals):
-            whole.update(np.ascontiguousarray(array).tobytes())
-        whole.update(bytes([bool(p.closed)]))
-    return whole.hexdigest()
-
-
-def contacts(paths, true: list[valleys.Curve]) -> dict[str, float]:
-    """The farthest that a contact is from that of the true curve, sides kept along each path, and the largest angle
-    between a normal and the way from contact to centre."""
-    apart, angle = 0.0, 0.0
-    every = [Segments.of([c.centres], [c.closed]) for c in true]
-    for p in paths:
-        centres, touched, normals = (np.asarray(x) for x in (p.centres, p.contacts, p.normals))
-        # The curve that most of the path is nearest to: at a corner three are near.
-        means = [segments.nearest(centres)[0].mean() for segments in every]
-        k = int(np.argmin(means))
-        _, which, share = every[k].nearest(centres)
-        ends = true[k].contacts
-        there = ends[which] + share[:, None, None] * (ends[(which + 1) % len(ends)] - ends[which])
-        apart = max(apart, min(np.linalg.norm(touched - x, axis=2).max() for x in (there, there[:, ::-1])))
-        away = centres[:, None] - touched
-        away /= np.linalg.norm(away, axis=2)[..., None]
-        angle = max(angle, np.arctan2(np.linalg.norm(np.cross(away, normals), axis=2), (away * normals).sum(2)).max())
-    return {"contacts_mm": float(apart), "normals_degrees": float(np.degrees(angle))}
 
 
 def picture(part: valleys.Part) -> dict[str, Any]:
