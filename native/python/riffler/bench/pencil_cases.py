@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from math import pi
+from typing import Any
 
 import numpy as np
 
-from .. import Mesh, Tool
+from .. import Mesh, Tool, plan
 from . import valleys
 from .curves import Segments
 from .remesh import WAYS, mesh
@@ -95,3 +96,22 @@ def contacts(paths, true: list[valleys.Curve]) -> dict[str, float]:
         away /= np.linalg.norm(away, axis=2)[..., None]
         angle = max(angle, np.arctan2(np.linalg.norm(np.cross(away, normals), axis=2), (away * normals).sum(2)).max())
     return {"contacts_mm": float(apart), "normals_degrees": float(np.degrees(angle))}
+
+
+def picture(part: valleys.Part) -> dict[str, Any]:
+    """What the plot shows: the coarse part as it stands, its curves, and the paths found on it."""
+    c = case(part, "coarse", 0, upright=True)
+    paths = plan.pencil(c.mesh, TOOL, tolerance=TOLERANCE)
+    return {
+        "view": part.view,
+        "vertices": np.round(c.mesh.vertices, 4).tolist(),
+        "triangles": np.asarray(c.mesh.triangles).tolist(),
+        "true": [thinned(t.centres, t.closed) for t in c.true],
+        "found": [thinned(np.asarray(p.centres), p.closed) for p in paths],
+    }
+
+
+def thinned(points: np.ndarray, closed: bool) -> list[list[float]]:
+    every = max(1, len(points) // 100)
+    kept = [*points[::every], points[0] if closed else points[-1]]
+    return np.round(kept, 4).tolist()

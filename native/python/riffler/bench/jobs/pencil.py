@@ -17,7 +17,7 @@ from ..._core import bench as core
 from .. import baselines, report, valleys
 from ..curves import Agreement, Segments, compare
 from ..measure import Progress, Settings, child, steady, threads, watched
-from ..pencil_cases import TOLERANCE, TOOL, Case, case, cases, contacts, digest, lines_of, turned
+from ..pencil_cases import TOLERANCE, TOOL, Case, case, cases, contacts, digest, lines_of, picture, turned
 from ..remesh import STEP, WAYS, Patch, Surface, mesh
 from ..report import Column, Report
 from .stl import model_paths, save
@@ -224,25 +224,6 @@ def judged(out: Report, table: report.Section, c: Case, settings: Settings) -> d
     return row
 
 
-def picture(part: valleys.Part) -> dict[str, Any]:
-    """What the plot shows: the coarse part as it stands, its curves, and the paths found on it."""
-    c = case(part, "coarse", 0, upright=True)
-    paths = plan.pencil(c.mesh, TOOL, tolerance=TOLERANCE)
-    return {
-        "view": part.view,
-        "vertices": np.round(c.mesh.vertices, 4).tolist(),
-        "triangles": np.asarray(c.mesh.triangles).tolist(),
-        "true": [thinned(t.centres, t.closed) for t in c.true],
-        "found": [thinned(np.asarray(p.centres), p.closed) for p in paths],
-    }
-
-
-def thinned(points: np.ndarray, closed: bool) -> list[list[float]]:
-    every = max(1, len(points) // 100)
-    kept = [*points[::every], points[0] if closed else points[-1]]
-    return np.round(kept, 4).tolist()
-
-
 # ---- time against error
 
 
@@ -321,11 +302,14 @@ def scale(out: Report, settings: Settings, progress: Progress) -> None:
         Column("balls set along valleys", "steps"),
         Column("peak memory", "peak_bytes", report.megabytes),
     )
-    chosen = [valleys.boss(25), valleys.slot(), valleys.groove(90, 1.2 * valleys.R, found=False), valleys.sphere()]
+    parts = [valleys.boss(25), valleys.slot(), valleys.groove(90, 1.2 * valleys.R, found=False), valleys.sphere()]
+    chosen = [(part, wanted) for part in parts]
+    if not settings.quick:
+        chosen.append((valleys.boss(25), 1_000_000))
     with tempfile.TemporaryDirectory() as folder:
         path = str(Path(folder) / "part")
-        for part in watched(chosen, progress):
-            upon = sized(part.surface, wanted)
+        for part, many in watched(chosen, progress):
+            upon = sized(part.surface, many)
             save(upon, path)
             for count in (1, 2):
                 found = child("pencil", count, path=path, diameter=2 * valleys.R, tolerance=TOLERANCE)
@@ -343,7 +327,10 @@ def sized(surface: Surface, wanted: int) -> Mesh:
     step = STEP
     for _ in range(6):
         upon, *_ = mesh(surface, "fine", np.random.default_rng(2), step)
-        step *= (len(upon.triangles) / wanted) ** 0.5
+        ratio = len(upon.triangles) / wanted
+        if abs(ratio - 1) < 0.005:
+            break
+        step *= ratio**0.5
     return upon
 
 
