@@ -152,6 +152,10 @@ centre_radius, centre_height) arcs, the shorter way round; a cylinder follows up
           "with_holder",
           [](const Tool& t, const py::object& pieces) { return t.with_holder(to_frusta(pieces, "holder")); },
           py::arg("pieces"), "The same tool with a holder of truncated cones (z0, r0, z1, r1).")
+      .def(
+          "with_margins", &Tool::with_margins, py::arg("shank") = 0.0, py::arg("holder") = 0.0,
+          R"(The same tool with wider shank and holder, mm: to be planned and checked with, so that these keep clear of the
+part by as much while the cutter touches it. The ends of the holder move as well, those of the shank do not.)")
       .def("named", &Tool::named, py::arg("name"), "The same tool under another name.")
       .def_property_readonly("name", &Tool::name)
       .def_property_readonly("kind", &Tool::kind)

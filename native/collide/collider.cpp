@@ -1,6 +1,8 @@
 #include "collide/collider.hpp"
 
 #include <algorithm>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -39,6 +41,8 @@ struct Collider::Data {
   std::vector<Fixture> fixtures;
   std::vector<const Surface*> surfaces;  // the part's first
   Settings settings;
+  mutable std::once_flag asked;  // for a side of the part
+  mutable std::optional<WindingNumber> winding;
 
   Data(const Mesh& mesh, const Settings& s) : part(mesh), points(part, s.spacing), settings(s) {}
 
@@ -136,7 +140,8 @@ Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optiona
 }
 
 bool Collider::inside_part(const Vec3& p) const {
-  return std::abs(winding_number(data_->part, p)) > 0.5;
+  std::call_once(data_->asked, [&] { data_->winding.emplace(data_->part); });
+  return (*data_->winding)(p) > 0.5;
 }
 
 double Collider::spacing() const {

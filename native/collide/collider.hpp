@@ -56,8 +56,9 @@ class Collider {
   /// a hundred times longer to prove where a holder stands in the part.
   bool keeps(const Assembly& assembly, const Pose& pose, double wanted) const;
 
-  /// Whether a point is in the part's material, by its winding number (collide/winding.hpp): a tool that the part has
-  /// swallowed whole touches none of its surface. Looks at every triangle.
+  /// Whether a point is in the part's material, behind its normals, by its winding number (collide/winding.hpp): a tool
+  /// that the part has swallowed whole touches none of its surface. Of an open surface only what it mostly surrounds is
+  /// its material.
   bool inside_part(const Vec3& p) const;
 
   double spacing() const;

@@ -33,8 +33,8 @@ class Climb {
       last = step, h = to;
     }
     if (h == 0) out_.touch = now_.touch, out_.point = now_.point;
-    // The tool was at a surface and has left it: on the outside, or it has been pushed through into the material.
-    out_.swallowed = h > 0 && collider_.inside_part(pose_.tip + (h + 0.5 * assembly_.tool().length()) * pose_.axis);
+    // No surface is in the tool: it is on the outside, or wholly within the material.
+    out_.swallowed = collider_.inside_part(pose_.tip + (h + 0.5 * assembly_.tool().length()) * pose_.axis);
     return ended(h, h <= rule_.max_lift && !out_.swallowed);
   }
 

@@ -19,6 +19,12 @@ void check_frusta(const std::vector<Frustum>& pieces, const char* what) {
   }
 }
 
+/// A frustum whose side is `side` further out, and whose ends are `ends` further off: its side goes on straight.
+Frustum grown(const Frustum& f, double side, double ends) {
+  const double slope = (f.r1 - f.r0) / (f.z1 - f.z0), out = side * std::sqrt(1 + slope * slope);
+  return {f.z0 - ends, f.r0 - slope * ends + out, f.z1 + ends, f.r1 + slope * ends + out};
+}
+
 std::string short_number(double x) {
   std::string text = std::to_string(x);
   text.erase(text.find_last_not_of('0') + 1);
@@ -47,6 +53,16 @@ Tool Tool::with_holder(const std::vector<Frustum>& pieces) const {
   check_frusta(pieces, "holder");
   Tool tool = *this;
   tool.holder_ = pieces;
+  return tool;
+}
+
+Tool Tool::with_margins(double shank, double holder) const {
+  for (const auto& [name, margin] : {std::pair("shank", shank), std::pair("holder", holder)})
+    if (!(margin >= 0) || !std::isfinite(margin))
+      throw std::invalid_argument(std::string(name) + " must be finite and not negative");
+  Tool tool = *this;
+  for (Frustum& f : tool.shank_) f = grown(f, shank, 0);
+  for (Frustum& f : tool.holder_) f = grown(f, holder, holder);
   return tool;
 }
 

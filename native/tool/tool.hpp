@@ -26,6 +26,9 @@ class Tool {
 
   Tool with_shank(const std::vector<Frustum>& pieces) const;
   Tool with_holder(const std::vector<Frustum>& pieces) const;
+  /// The same with wider shank and holder, to be kept clear of what the cutter touches: sides moved out by so many mm
+  /// along their normals, and the ends of the holder's pieces along the axis.
+  Tool with_margins(double shank, double holder) const;
   Tool named(std::string name) const;
 
   const std::string& name() const { return name_; }

@@ -112,6 +112,27 @@ TEST(Lift, IntoTheMaterialIsNoWayOut) {
   EXPECT_TRUE(lift(collider, Assembly(cutters::flat(6, 3)), {{0, 0, -1}, kUp}, {}).free);
 }
 
+TEST(Lift, OfAToolThatStandsInTheMaterialIsNotFreeThoughItTouchesNothing) {
+  const Collider block(box_mesh({-20, -20, 0}, {20, 20, 40}));
+  const Lift l = lift(block, Assembly(cutters::flat(6, 5)), {{0, 0, 15}, kUp}, {});
+  EXPECT_GT(l.before, 0);
+  EXPECT_FALSE(l.free);
+  EXPECT_TRUE(l.swallowed);
+  EXPECT_EQ(l.height, 0);
+}
+
+TEST(Lift, InABowlThatIsOpenAboveIsFree) {
+  // The bowl surrounds the tool on more than half of all sides, but with its normals towards it.
+  Mesh bowl = box_mesh({-20, -20, 0}, {20, 20, 40});
+  std::erase_if(bowl.triangles, [&](const Vec3i& t) {
+    return bowl.vertices[t.x].z > 1 && bowl.vertices[t.y].z > 1 && bowl.vertices[t.z].z > 1;
+  });
+  for (Vec3i& t : bowl.triangles) std::swap(t.y, t.z);
+  const Lift l = lift(Collider(bowl), Assembly(cutters::flat(6, 5)), {{0, 0, 2}, kUp}, {});
+  EXPECT_TRUE(l.free);
+  EXPECT_EQ(l.height, 0);
+}
+
 TEST(Lift, SaysWhichPieceIsInTheWay) {
   const Mesh wall = box_mesh({10, -30, -10}, {20, 30, 25});
   const Tool tool = cutters::ball(6, 20).with_shank({{20, 3, 30, 3}}).with_holder({{30, 12, 60, 12}});

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "reference/cutter_distance.hpp"
+#include "stress/random.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
@@ -109,6 +110,28 @@ TEST(Outline, OfAToolWithAGapComesBackToTheAxis) {
   EXPECT_NEAR(outline.nearest(0, 13.5).distance, 1.5, 1e-15);
   EXPECT_EQ(outline.nearest(0, 13.5).part, Part::Holder);
   EXPECT_NEAR(outline.nearest(0, 9).distance, -1, 1e-15);
+}
+
+TEST(Outline, WithMarginsHasAllThatIsThatNearToTheHolderAndBesideTheShank) {
+  const Tool tool = cutters::ball(6, 20).with_shank({{20, 2, 30, 5}}).with_holder({{30, 14, 40, 9}, {40, 9, 60, 16}});
+  const Outline grown(tool.with_margins(0.5, 2));
+  stress::Random random(8);
+  const auto inside = [&](const Frustum& f, double margin, bool ends) {
+    const double share = random.uniform(), z = f.z0 + share * (f.z1 - f.z0), rho = f.r0 + share * (f.r1 - f.r0);
+    const double angle = random.uniform(-1.57, 1.57), slope = (f.r1 - f.r0) / (f.z1 - f.z0);
+    const Vec2 way = ends ? Vec2(std::cos(angle), std::sin(angle)) : glm::normalize(Vec2(1, -slope));
+    const Vec2 p = Vec2(rho, z) + margin * random.uniform(0, 0.999) * way;
+    return (!ends && (p.y < f.z0 || p.y > f.z1)) || grown.inside(p.x, p.y);
+  };
+  for (int n = 0; n < 2000; ++n) {
+    EXPECT_TRUE(inside(tool.shank()[0], 0.5, false));
+    EXPECT_TRUE(inside(tool.holder()[0], 2, true));
+    EXPECT_TRUE(inside(tool.holder()[1], 2, true));
+  }
+  EXPECT_FALSE(grown.inside(3.01, 19.9)) << "the shank's margin is not the cutter's";
+  EXPECT_FALSE(grown.inside(17, 27.9));
+  EXPECT_THROW(tool.with_margins(-1, 0), std::invalid_argument);
+  EXPECT_THROW(tool.with_margins(0, std::numeric_limits<double>::infinity()), std::invalid_argument);
 }
 
 }  // namespace
