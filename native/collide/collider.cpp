@@ -139,6 +139,10 @@ Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optiona
   return out;
 }
 
+Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const {
+  return SweptSearch(assembly, motion, wanted, most)(data_->surfaces);
+}
+
 bool Collider::inside_part(const Vec3& p) const {
   std::call_once(data_->asked, [&] { data_->winding.emplace(data_->part); });
   return (*data_->winding)(p) > 0.5;

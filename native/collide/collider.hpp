@@ -7,6 +7,7 @@
 
 #include "collide/assembly.hpp"
 #include "collide/contact.hpp"
+#include "collide/swept_search.hpp"
 #include "dexel/volume.hpp"
 #include "geom/pose.hpp"
 #include "mesh/mesh.hpp"
@@ -55,6 +56,10 @@ class Collider {
   /// Whether that distance is at least `wanted`. The first place with less will do: how deep the least one is takes
   /// a hundred times longer to prove where a holder stands in the part.
   bool keeps(const Assembly& assembly, const Pose& pose, double wanted) const;
+
+  /// Whether the clearance from part and fixtures is at least `wanted` all along a motion, from and to poses that are
+  /// in no fixture; gives up after `most` evaluations.
+  Swept sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const;
 
   /// Whether a point is in the part's material, behind its normals, by its winding number (collide/winding.hpp): a tool
   /// that the part has swallowed whole touches none of its surface. Of an open surface only what it mostly surrounds is

@@ -26,7 +26,8 @@ void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts)
   const bool items = tree.holds_items(e.index);
   const std::size_t first = items ? tree.first_item(e.index) : kLanes * e.index + 1;
   if (items)
-    triangle_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, spheres, &surface.corners(first), distance, low);
+    triangle_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, spheres, &surface.corners(first), nullptr,
+                    distance, low);
   else
     for (int k = 0; k < kLanes; ++k) low[k] = distance[k] - spheres.radius[k];
   for (int k = 0; k < kLanes; ++k)

@@ -31,12 +31,12 @@ HWY_INLINE M in_sector(const LaneEdge& e, V x, V y) {
 
 /// Centres of spheres in the half-plane of the tool.
 struct Centres {
+  V x, y, h;  // from the tip, in the part's directions
   V u, v, rho, z;
 
   HWY_INLINE Centres(const ToolFrame& frame, const SphereGroup& spheres, int k) {
-    const V x = sub(hn::Load(kD, spheres.x + k), set(frame.tip.x)),
-            y = sub(hn::Load(kD, spheres.y + k), set(frame.tip.y)),
-            h = sub(hn::Load(kD, spheres.z + k), set(frame.tip.z));
+    x = sub(hn::Load(kD, spheres.x + k), set(frame.tip.x)), y = sub(hn::Load(kD, spheres.y + k), set(frame.tip.y));
+    h = sub(hn::Load(kD, spheres.z + k), set(frame.tip.z));
     u = dot(x, y, h, frame.u), v = dot(x, y, h, frame.v), z = dot(x, y, h, frame.axis);
     rho = sqrt(squared(u, v));
   }
@@ -165,18 +165,45 @@ struct Radial {
   }
 };
 
+/// What of a drift is the same for all lanes.
+struct Drifts {
+  const Drift& drift;
+  double way, turn;
+
+  explicit Drifts(const Drift& d) : drift(d), way(glm::length(d.way)), turn(glm::length(d.turn)) {}
+
+  HWY_INLINE V most(V distance) const { return add(set(way), mul(set(turn), add(distance, set(way)))); }
+  HWY_INLINE V nearer(V distance) const {
+    return add(set(way), mul(set(turn), min(add(distance, set(way)), set(drift.reach))));
+  }
+  HWY_INLINE V second_order(V distance) const {
+    return mul(set(0.5 * turn), add(mul(set(turn), add(distance, set(way))), set(2 * way)));
+  }
+};
+
 /// The least of what planes or a ball say of the distance at the corners, which bounds it on the triangle; −∞ where
 /// that says nothing.
 class RunBound {
  public:
   HWY_INLINE RunBound(const ToolFrame& frame, const Centres& at, const Corners* triangles, const SphereGroup& spheres,
-                      int k, V distance)
+                      int k, V distance, const Drifts* drifts)
       : frame_(frame),
         at_(at),
         radial_(frame, at),
         corners_(triangles, spheres, k),
-        radius_(hn::Load(kD, spheres.radius + k)),
-        outside_(hn::Ge(distance, radius_)) {}
+        drifts_(drifts),
+        reach_(hn::Load(kD, spheres.radius + k)),
+        far_(zero()) {
+    nearer_ = zero();
+    if (drifts) {
+      far_ = add(sqrt(squared(at.rho, at.z)), reach_);
+      nearer_ = drifts->nearer(far_), reach_ = add(reach_, drifts->most(far_));
+    }
+    outside_ = hn::Ge(distance, reach_);
+    by_sphere_ = sub(sub(distance, hn::Load(kD, spheres.radius + k)), nearer_);
+  }
+
+  HWY_INLINE V by_sphere() const { return by_sphere_; }
 
   HWY_INLINE V by_plane(const OutlineRuns::Run& run, std::span<const LaneEdge> outline) const {
     Plane plane;
@@ -186,11 +213,8 @@ class RunBound {
     const V x = in_space(plane.out, radial_.x, plane.up, frame_.axis.x),
             y = in_space(plane.out, radial_.y, plane.up, frame_.axis.y),
             z = in_space(plane.out, radial_.z, plane.up, frame_.axis.z);
-    V least = set(kInfinity);
-    for (int i = 0; i < 3; ++i)
-      least = min(least, add(add(mul(x, corners_.x[i]), mul(y, corners_.y[i])), mul(z, corners_.z[i])));
-    const V bound = add(plane.distance, least);
-    const M own = both(behind(run.lower, at_, radius_), behind(run.upper, at_, radius_));
+    const V bound = add(plane.distance, drifts_ ? least_drifting(x, y, z) : least(x, y, z));
+    const M own = both(behind(run.lower, at_, reach_), behind(run.upper, at_, reach_));
     return pick(either(either(outside_, own), hn::Ge(bound, zero())), bound, set(-kInfinity));
   }
 
@@ -203,17 +227,47 @@ class RunBound {
     for (int i = 0; i < 3; ++i)
       far = max(far, add(squared(sub(corners_.x[i], x), sub(corners_.y[i], y)),
                          mul(sub(corners_.z[i], z), sub(corners_.z[i], z))));
-    return pick(both(outside_, radial_.off_axis), sub(set(hollow.radius), sqrt(far)), set(-kInfinity));
+    V bound = sub(set(hollow.radius), sqrt(far));
+    if (drifts_) bound = sub(bound, drifts_->most(far_));
+    return pick(both(outside_, radial_.off_axis), bound, set(-kInfinity));
   }
 
  private:
   static HWY_INLINE V in_space(V out, V radial, V up, double axis) { return add(mul(out, radial), mul(up, set(axis))); }
+  static HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
+    return add(add(mul(ax, bx), mul(ay, by)), mul(az, bz));
+  }
+
+  /// How far down a direction the corners lie.
+  HWY_INLINE V least(V x, V y, V z) const {
+    V low = set(kInfinity);
+    for (int i = 0; i < 3; ++i) low = min(low, dot3(x, y, z, corners_.x[i], corners_.y[i], corners_.z[i]));
+    return low;
+  }
+  /// The same as they drift: a corner's way along the direction is that of the centre and what its place adds.
+  HWY_INLINE V least_drifting(V x, V y, V z) const {
+    const Drift& d = drifts_->drift;
+    // (turn × q) · g = (g × turn) · q
+    const V hx = sub(mul(y, set(d.turn.z)), mul(z, set(d.turn.y))),
+            hy = sub(mul(z, set(d.turn.x)), mul(x, set(d.turn.z))),
+            hz = sub(mul(x, set(d.turn.y)), mul(y, set(d.turn.x)));
+    const V centre = add(dot(x, y, z, d.way), dot3(hx, hy, hz, at_.x, at_.y, at_.h));
+    V low = set(kInfinity);
+    for (int i = 0; i < 3; ++i) {
+      const V down = dot3(x, y, z, corners_.x[i], corners_.y[i], corners_.z[i]);
+      const V along = add(centre, dot3(hx, hy, hz, corners_.x[i], corners_.y[i], corners_.z[i]));
+      low = min(low, sub(down, abs(along)));
+    }
+    return sub(low, drifts_->second_order(far_));
+  }
 
   const ToolFrame& frame_;
   const Centres& at_;
   Radial radial_;
   FromCentres corners_;
-  V radius_;
+  const Drifts* drifts_;
+  V reach_, far_;  // of the sphere as it drifts, and of its farthest point from the tip
+  V nearer_, by_sphere_;
   M outside_;
 };
 
@@ -230,15 +284,16 @@ void CentreDistances(std::span<const LaneEdge> outline, const ToolFrame& frame, 
 }
 
 void TriangleBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
-                    const SphereGroup& spheres, const Corners* triangles, const double* distance, double* low) {
+                    const SphereGroup& spheres, const Corners* triangles, const Drift* drift, const double* distance,
+                    double* low) {
+  const Drifts drifts(drift ? *drift : Drift());
   for (int k = 0; k < kLanes; k += lanes()) {
     const Centres at(frame, spheres, k);
-    const V centre = hn::LoadU(kD, distance + k);
-    const RunBound runs_at(frame, at, triangles, spheres, k, centre);
+    const RunBound runs_at(frame, at, triangles, spheres, k, hn::LoadU(kD, distance + k), drift ? &drifts : nullptr);
     V bound = set(kInfinity);
     for (const OutlineRuns::Run& run : runs.all())
       bound = min(bound, run.reach < kInfinity ? runs_at.by_ball(outline[run.first]) : runs_at.by_plane(run, outline));
-    hn::StoreU(max(bound, sub(centre, hn::Load(kD, spheres.radius + k))), kD, low + k);
+    hn::StoreU(max(bound, runs_at.by_sphere()), kD, low + k);
   }
 }
 
@@ -279,8 +334,9 @@ void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame,
 }
 
 void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
-                     const SphereGroup& spheres, const Corners* triangles, const double* distance, double* low) {
-  HWY_DYNAMIC_DISPATCH(TriangleBounds)(runs, outline, frame, spheres, triangles, distance, low);
+                     const SphereGroup& spheres, const Corners* triangles, const Drift* drift, const double* distance,
+                     double* low) {
+  HWY_DYNAMIC_DISPATCH(TriangleBounds)(runs, outline, frame, spheres, triangles, drift, distance, low);
 }
 
 }  // namespace riffler

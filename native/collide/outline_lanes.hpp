@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "collide/drift.hpp"
 #include "collide/outline_runs.hpp"
 #include "collide/sphere_tree.hpp"
 #include "collide/tool_frame.hpp"
@@ -30,8 +31,10 @@ void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame,
 /// low[k]: no point of triangle k, round which sphere k is, is nearer or deeper than this. By the sphere, and by a
 /// tangent plane of every run (outline_runs.hpp): all of the run's solid lies behind it, so it bounds the distance
 /// outside of the tool; inside, the depth, if all that is near has its feet on the run and not beyond its ends. A
-/// hollow has a ball instead, of use outside only.
+/// hollow has a ball instead, of use outside only. With a `drift`, in the part's directions: at no time of that
+/// stretch.
 void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
-                     const SphereGroup& spheres, const Corners* triangles, const double* distance, double* low);
+                     const SphereGroup& spheres, const Corners* triangles, const Drift* drift, const double* distance,
+                     double* low);
 
 }  // namespace riffler

@@ -109,17 +109,20 @@ TriangleSearch::Look TriangleSearch::look_beside(const Vec3& p) {
   return l;
 }
 
-/// Values at the corners of the tangent plane of what a slope belongs to.
-std::array<double, 3> TriangleSearch::plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from) {
+/// Values at the corners of the tangent plane of what a slope belongs to. Less what the corners may drift, which makes
+/// them those of a concave function: the plane through them is below.
+std::array<double, 3> TriangleSearch::plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const {
   const Vec3 g = s.normal.x * from.radial + Vec3(0, 0, s.normal.y);
-  const auto value = [&](const Vec3& p) { return s.distance + glm::dot(g, p - from.point); };
+  const auto value = [&](const Vec3& p) {
+    return s.distance + glm::dot(g, p - from.point) - (drift_ ? drift_->along(g, p) : 0);
+  };
   return {value(t.a), value(t.b), value(t.c)};
 }
 
 /// The same of the ball that touches the foot: from any of its points its surface is that near, which is concave.
-std::array<double, 3> TriangleSearch::ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from) {
+std::array<double, 3> TriangleSearch::ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const {
   const Vec3 out = s.normal.x * from.out() + Vec3(0, 0, s.normal.y), centre = from.point + (s.reach - s.distance) * out;
-  const auto value = [&](const Vec3& p) { return s.reach - glm::length(p - centre); };
+  const auto value = [&](const Vec3& p) { return s.reach - glm::length(p - centre) - drift_of(p); };
   return {value(t.a), value(t.b), value(t.c)};
 }
 
@@ -132,7 +135,8 @@ std::array<double, 3> TriangleSearch::outer(const Corners& t, const Look& from, 
   if (from.at.margin >= radius && (from.at.outermost || from.at.distance + radius <= 0))
     return from.at.reach < kInfinity ? ball(from.at, t, from) : plane(from.at, t, from);
   const Vec3 foot = from.at.foot.x * from.out() + Vec3(0, 0, from.at.foot.y);
-  return {-glm::length(t.a - foot), -glm::length(t.b - foot), -glm::length(t.c - foot)};
+  const auto value = [&](const Vec3& p) { return -glm::length(p - foot) - drift_of(p); };
+  return {value(t.a), value(t.b), value(t.c)};
 }
 
 double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
@@ -161,6 +165,7 @@ double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& 
 /// By the corners alone: ρ is convex, so where it makes leaving the sector more likely it is greatest at one of them,
 /// and elsewhere it is at least the way along the radial direction.
 bool TriangleSearch::in_sector(std::size_t run, const Corners& t, const Look& from) const {
+  if (drift_) return false;
   const auto in = [&](const Vec3& p) {
     return runs_.in_sector(run, std::sqrt(p.x * p.x + p.y * p.y), glm::dot(p, from.radial), p.z);
   };
@@ -168,7 +173,7 @@ bool TriangleSearch::in_sector(std::size_t run, const Corners& t, const Look& fr
 }
 
 double TriangleSearch::lower(const Corners& t, const Look& from) const {
-  const double radius = farthest(t, from.point);
+  const double radius = farthest(t, from.point) + std::max({drift_of(t.a), drift_of(t.b), drift_of(t.c)});
   const std::array<double, 3> by_surface = outer(t, from, radius);
   double by_runs = kInfinity;
   for (std::size_t j = 0; j < runs_.size(); ++j) by_runs = std::min(by_runs, run_bound(j, t, from, radius, by_surface));
@@ -177,6 +182,16 @@ double TriangleSearch::lower(const Corners& t, const Look& from) const {
 
 double TriangleSearch::bound(const Corners& t) {
   return lower(t, look((t.a + t.b + t.c) / 3.0));
+}
+
+double TriangleSearch::bound(const Corners& t, const Drift& drift) {
+  drift_ = &drift;
+  const Look middle = look((t.a + t.b + t.c) / 3.0);
+  double low = lower(t, middle);
+  const Look lowest = downhill(t, middle);
+  if (lowest.point != middle.point) low = std::max(low, lower(t, look(lowest.point)));
+  drift_ = nullptr;
+  return low;
 }
 
 /// Newton's method on the triangle, as long as the distance falls. Inside, near an inner corner of the tool, the

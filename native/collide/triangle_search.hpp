@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collide/deadline.hpp"
+#include "collide/drift.hpp"
 #include "collide/outline_runs.hpp"
 #include "geom/vec.hpp"
 
@@ -36,6 +37,8 @@ class TriangleSearch {
 
   /// A lower bound over the triangle from one look at its middle, which may lower the least.
   double bound(const Corners& t);
+  /// The same for all times of a stretch, looked at in its middle: a few looks, which may lower the least.
+  double bound(const Corners& t, const Drift& drift);
   /// `low`: no place on the triangle is known to be lower. Stops at the deadline.
   void search(const Corners& t, double low, Deadline& deadline);
   /// A search may end at a place with less than this, without proof that it is the least.
@@ -47,6 +50,9 @@ class TriangleSearch {
   static constexpr std::size_t kMostCells = 20000;
 
   std::size_t cells() const { return cells_; }
+
+  /// For another triangle by itself.
+  void forget() { least_ = {}, left_ = std::numeric_limits<double>::infinity(); }
 
  private:
   /// A look at a point: the distance there, in space.
@@ -69,8 +75,8 @@ class TriangleSearch {
   Look look_beside(const Vec3& p);  // a place that is not on the triangle
   bool in_sector(std::size_t run, const Corners& t, const Look& from) const;
   double lower(const Corners& t, const Look& from) const;
-  static std::array<double, 3> plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from);
-  static std::array<double, 3> ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from);
+  std::array<double, 3> plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const;
+  std::array<double, 3> ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const;
   std::array<double, 3> outer(const Corners& t, const Look& from, double radius) const;
   double run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
                    const std::array<double, 3>& outer) const;
@@ -79,7 +85,10 @@ class TriangleSearch {
   void push(const Cell& cell);
   bool halve(const Corners& cell, double low);
 
+  double drift_of(const Vec3& p) const { return drift_ ? drift_->most(glm::length(p)) : 0; }
+
   const OutlineRuns& runs_;
+  const Drift* drift_ = nullptr;        // that bounds are to allow for
   std::vector<OutlineRuns::RunAt> at_;  // of the last look
   Least least_;
   std::vector<Cell> heap_;

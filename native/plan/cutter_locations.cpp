@@ -9,7 +9,6 @@
 #include "geom/parallel.hpp"
 #include "plan/contact_location.hpp"
 #include "plan/lift.hpp"
-#include "plan/swept_check.hpp"
 
 namespace riffler {
 
@@ -109,22 +108,22 @@ class Planner {
     if (glm::dot(from.pose.axis, to.pose.axis) < -1 + 1e-12)
       return unsafe(std::min(from.clearance, to.clearance), -assembly_.reach(), "opposite axes: no motion joins them");
     const Motion motion(from.pose, to.pose);
-    const Collider::Nearest start{from.clearance, {}, from.touch}, end{to.clearance, {}, to.touch};
     const double wanted = rule_.clearance - rule_.tolerance;
-    const SweptCheck check = swept_check(collider_, assembly_, motion, wanted, rule_.max_evaluations, &start, &end);
-    out.evaluations += static_cast<std::size_t>(check.evaluations);
-    if (check.answer == SweptCheck::Answer::Clear) {
-      out.least = std::min(out.least, check.clearance), out.bound = std::min(out.bound, check.bound);
+    const Swept check = collider_.sweep(assembly_, motion, wanted, static_cast<std::size_t>(rule_.max_evaluations));
+    const double least = std::min({check.clearance, from.clearance, to.clearance}),
+                 bound = std::min(check.bound, least);
+    out.evaluations += check.evaluations;
+    if (check.answer == Swept::Answer::Clear) {
+      out.least = std::min(out.least, least), out.bound = std::min(out.bound, bound);
       return std::nullopt;
     }
-    if (check.answer == SweptCheck::Answer::Unknown)
-      return unsafe(check.clearance, check.bound, "the evaluations ran out");
+    if (check.answer == Swept::Answer::Unknown) return unsafe(least, bound, "the evaluations ran out");
     if (out.made >= rule_.max_inserted)
-      return unsafe(check.clearance, check.bound,
+      return unsafe(least, bound,
                     std::string(kOf[static_cast<int>(check.touch)]) + ", and no more points may be inserted");
     const Try middle = try_pose(motion.at(check.at), -1);
     out.evaluations += static_cast<std::size_t>(middle.evaluations);
-    if (!middle.blocked.empty()) return unsafe(check.clearance, check.bound, middle.blocked);
+    if (!middle.blocked.empty()) return unsafe(least, bound, middle.blocked);
     ++out.made;
     return middle.row;
   }

@@ -16,9 +16,9 @@ struct LocationRule {
   /// How much less than `clearance` it may be, mm. Finishing cuts touch the part everywhere: less than this deep counts
   /// as touching. Points are lifted to within half of it, so that the way between them has the other half.
   double tolerance = 0.01;
-  double max_lift = 100;        ///< mm along the axis
-  int max_inserted = 200;       ///< points, between two of the path
-  int max_evaluations = 20000;  ///< of the clearance, between two rows
+  double max_lift = 100;         ///< mm along the axis
+  int max_inserted = 200;        ///< points, between two of the path
+  int max_evaluations = 100000;  ///< between two rows
 };
 
 /// One row of the result.
@@ -58,11 +58,10 @@ struct CutterLocations {
 };
 
 /// Poses by plan/contact_location.hpp from the path's axes, lifted by plan/lift.hpp where they gouge. Between rows the
-/// tip moves on a line and the axis on the great circle (geom/pose.hpp), checked by plan/swept_check.hpp; where that
-/// gouges, the pose that does is lifted and becomes a row between them. Orientations are kept as they are. A point that
-/// cannot be freed has no row, but an entry in `blocked`; nothing is made to fit silently.
-/// std::invalid_argument for a path without axes, or naming a setting; parallel over points, then over ways between
-/// them.
+/// tip moves on a line and the axis on the great circle (geom/pose.hpp), checked by collide/swept_search.hpp; where
+/// that gouges, the pose that does is lifted and becomes a row between them. Orientations are kept as they are. A point
+/// that cannot be freed has no row, but an entry in `blocked`; nothing is made to fit silently. std::invalid_argument
+/// for a path without axes, or naming a setting; parallel over points, then over ways between them.
 CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembly, const Collider& collider,
                                  const LocationRule& rule, const Progress& progress = {});
 

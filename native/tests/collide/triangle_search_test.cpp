@@ -244,7 +244,7 @@ struct Group {
       spheres.put(k, round_triangle(triangles[k].a, triangles[k].b, triangles[k].c));
     }
     centre_distances(edges, frame, spheres, distance);
-    triangle_bounds(runs, edges, frame, spheres, triangles.data(), distance, low);
+    triangle_bounds(runs, edges, frame, spheres, triangles.data(), nullptr, distance, low);
   }
   Corners in_tool(int k, const ToolFrame& frame) const {
     const Corners& t = triangles[static_cast<std::size_t>(k)];

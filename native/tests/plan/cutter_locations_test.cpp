@@ -7,7 +7,6 @@
 #include "mesh/shapes.hpp"
 #include "plan/least_tilt.hpp"
 #include "plan/orientation.hpp"
-#include "plan/swept_check.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
@@ -30,36 +29,6 @@ Corner corner(double radius, double height, int points) {
     out.path.normals.push_back({kUp, Vec3(1, 0, 0)});
   }
   return out;
-}
-
-TEST(SweptCheck, OfNoMotionIsTheClearance) {
-  const Collider collider(box_mesh({-20, -20, -5}, {20, 20, 0}));
-  const Assembly ball(cutters::ball(6, 20));
-  const Motion still({{0, 0, 1}, kUp}, {{0, 0, 1}, kUp});
-  const SweptCheck check = swept_check(collider, ball, still, 0, 100);
-  EXPECT_EQ(check.answer, SweptCheck::Answer::Clear);
-  EXPECT_NEAR(check.bound, 1, 3e-3);
-  EXPECT_EQ(check.evaluations, 2);
-}
-
-TEST(SweptCheck, FindsAPostThatEndPosesStepOver) {
-  const Collider collider(box_mesh({-0.1, -0.1, -5}, {0.1, 0.1, 5}));
-  const Assembly ball(cutters::ball(6, 20));
-  const Motion past({{-50, 2.9, 0}, kUp}, {{50, 2.9, 0}, kUp});
-  const SweptCheck check = swept_check(collider, ball, past, -0.01, 100000);
-  EXPECT_EQ(check.answer, SweptCheck::Answer::Gouges);
-  EXPECT_LT(std::abs(past.tip(check.at).x), 3);
-  const Motion beside({{-50, 3.2, 0}, kUp}, {{50, 3.2, 0}, kUp});
-  EXPECT_EQ(swept_check(collider, ball, beside, 0, 100000).answer, SweptCheck::Answer::Clear);
-  EXPECT_EQ(swept_check(collider, ball, beside, 0.05, 3).answer, SweptCheck::Answer::Unknown);
-}
-
-TEST(SweptCheck, BoundsATurnByTheReach) {
-  // The holder sweeps over a block while the tip stands still.
-  const Tool tool = cutters::ball(6, 20).with_holder({{40, 5, 60, 5}});
-  const Collider collider(box_mesh({30, -2, 30}, {40, 2, 45}));
-  const Motion turn({{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}});
-  EXPECT_EQ(swept_check(collider, Assembly(tool), turn, 0, 100000).answer, SweptCheck::Answer::Gouges);
 }
 
 TEST(CutterLocations, OfAFreeCornerAreTheBallsPath) {
