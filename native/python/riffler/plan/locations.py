@@ -15,7 +15,8 @@ class LocationReport:
     ``"fixture"``: what was in the way, or is nearest. ``blocked``: a list of (point, reason) of the points that no lift
     frees; they have no row. ``unsafe``: a list of (row, least clearance seen, bound, reason) of the ways from a row to
     the next that were not made free. ``least_clearance``: over every pose that was looked at; ``bound``: nowhere along
-    the rows is the clearance less. ``evaluations``: of the clearance. ``ok``: nothing is blocked or unsafe.
+    the rows is the clearance less. ``evaluations``: of the clearance, and looks along
+    the way. ``ok``: nothing is blocked or unsafe.
     """
 
     def __init__(self, found: dict) -> None:

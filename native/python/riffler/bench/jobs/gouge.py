@@ -88,8 +88,8 @@ def swept(out: Report, settings: Settings, progress: Progress) -> None:
         Column("pencil", "pencil_s", report.micro),
         Column("orientations", "orient_s", report.micro),
         Column("locations", "locate_s", report.micro),
-        Column("clearances a point", "evaluations", report.three),
-        Column("a clearance", "clearance_s", report.micro),
+        Column("looks a point", "evaluations", report.three),
+        Column("a look", "look_s", report.micro),
     )
     meshes, most = {}, 60.0 if settings.quick else 400.0
     for name in MODELS:
@@ -111,8 +111,9 @@ def swept(out: Report, settings: Settings, progress: Progress) -> None:
         times.row(part=name, rule=rule, triangles=len(meshes[name].triangles), **rows.times)
     table.notes += notes(most, table.rows)
     times.notes.append(
-        "All with one thread: finding all paths, the maps of free orientations, and the cutter locations; clearances "
-        "of part, jaws, shank and holder a point of the path, and the locations' time for each."
+        "All with one thread: finding all paths, the maps of free orientations, and the cutter locations. Looks: "
+        "clearances of part and jaws at a pose, and groups of bounds or triangles along a way; the locations' time for "
+        "each."
     )
 
 
@@ -270,7 +271,7 @@ def planned(scene: Scene, rule: str, quick: bool) -> Rows:
     }  # fmt: skip
     times = {
         "pencil_s": scene.pencil_s, "orient_s": turned - begun, "locate_s": ended - turned,
-        "evaluations": evaluations / max(points, 1), "clearance_s": (ended - turned) / max(evaluations, 1),
+        "evaluations": evaluations / max(points, 1), "look_s": (ended - turned) / max(evaluations, 1),
     }  # fmt: skip
     return Rows([path for path in oriented if path is not None], cls, figures, times)
 
