@@ -47,7 +47,7 @@ class TriangleSearch {
   /// No place on any triangle is lower than this: the least, or less where kMostCells or the time did not suffice. The
   /// first happens deep in a tool where three of its surfaces are equally near.
   double low() const { return std::min(left_, least_.distance); }
-  static constexpr std::size_t kMostCells = 20000;
+  static constexpr std::size_t kMostCells = 50000;
 
   std::size_t cells() const { return cells_; }
 
