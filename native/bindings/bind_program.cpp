@@ -268,7 +268,14 @@ FormatError names file and line; nothing that is not understood is skipped.)")
 
 Every row is the end of a block; more blocks come between two rows where machine axes that move linearly would take the
 tip more than ``tolerance`` (mm) off the straight line or the axis more than ``axis_tolerance`` (rad) off the great
-circle. The same program gives the same bytes.)")
+circle. The same program gives the same bytes.
+
+Options of ``linuxcnc-xyzac`` and ``linuxcnc-xyzbc``: ``direction`` ``"linuxcnc"`` (a positive angle turns the part
+right-handed) or ``"iso"`` (both the other way); ``rot_point`` [x, y, z], ``offset`` [dx, dy, dz] and ``tool_offset``, mm,
+named as LinuxCNC's pins; ``tcp``: False writes where the axes stand, for kinematics that are off (M429), True the tip
+in part coordinates, for kinematics that are on (M428). Of all: ``max_rotary``, deg/min (3600). Where a rotary axis moves
+beside linear ones that are written as they stand, blocks are under G93, each with F = 1 / minutes: the tip's way at the
+feed, or longer where ``max_rotary`` asks for it.)")
       .def_property_readonly("poses", &poses, "(n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.")
       .def_property_readonly("feed", column_getter(&Program::feed), "(n,) mm/min at the tip; 0 for rapids.")
       .def_property_readonly(

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,6 +20,11 @@ using Joints = std::array<double, 6>;
 /// Index in Joints of an axis letter X Y Z A B C.
 inline std::size_t joint_index(char letter) {
   return static_cast<std::size_t>(letter >= 'X' ? letter - 'X' : letter - 'A' + 3);
+}
+
+/// `angle` (deg) by whole turns as near to `near` as it can be.
+inline double nearest_turn(double angle, double near) {
+  return angle + 360 * std::round((near - angle) / 360);
 }
 
 class Machine {
@@ -38,6 +44,10 @@ class Machine {
   virtual Joints joints(const Pose& pose, int branch, const Joints& near, double free) const = 0;
   /// A tool axis (unit vector; its opposite is another) at which a rotary axis is free: the singularity. Zero: none.
   virtual Vec3 pole() const = 0;
+
+  /// Whether the words X Y Z are where linear axes stand, so that the tip's way follows from all axes together: then a
+  /// feed along the words means nothing where a rotary axis moves, and such blocks say how long they take (G93).
+  virtual bool joint_words() const { return false; }
 
   /// The block that makes the coordinates mean what pose() says: tool length offset of tool `number`.
   virtual std::string offset_block(int number) const = 0;
@@ -59,5 +69,7 @@ std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& optio
 // The factories, each in its own file.
 std::unique_ptr<Machine> make_tcp(OptionReader& options);
 std::unique_ptr<Machine> make_three_axis(OptionReader& options);
+std::unique_ptr<Machine> make_linuxcnc_xyzac(OptionReader& options);
+std::unique_ptr<Machine> make_linuxcnc_xyzbc(OptionReader& options);
 
 }  // namespace riffler

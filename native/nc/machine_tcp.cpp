@@ -12,11 +12,6 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kA = 3, kC = 5;
 
-/// `angle` (deg) by whole turns as near to `near` as it can be.
-double nearest_turn(double angle, double near) {
-  return angle + 360 * std::round((near - angle) / 360);
-}
-
 class Tcp final : public Machine {
  public:
   std::string_view axes() const override { return "XYZAC"; }

@@ -10,6 +10,12 @@ namespace {
 constexpr MachineEntry kMachines[] = {
     {"tcp", "five axes, the control keeps the tip (G43.4): X Y Z tip in part coordinates, axis = Rz(C) Rx(A) ez",
      make_tcp},
+    {"linuxcnc-xyzac",
+     "LinuxCNC, tilting table A under rotary table C (xyzac-trt-kins): X Y Z A C where the axes stand",
+     make_linuxcnc_xyzac},
+    {"linuxcnc-xyzbc",
+     "LinuxCNC, tilting table B under rotary table C (xyzbc-trt-kins): X Y Z B C where the axes stand",
+     make_linuxcnc_xyzbc},
     {"3-axis", "three axes, the tool stands upright (G43): X Y Z tip in part coordinates", make_three_axis},
 };
 

@@ -1,17 +1,67 @@
 #include "nc/options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace riffler {
 
-std::optional<double> OptionReader::positive(const std::string& name) {
+std::optional<OptionValue> OptionReader::take(const std::string& name) {
   known_.push_back(name);
-  const auto node = options_.extract(name);
+  auto node = options_.extract(name);
   if (node.empty()) return std::nullopt;
-  const double* value = std::get_if<double>(&node.mapped());
-  if (!value || !(std::isfinite(*value) && *value > 0))
-    throw std::invalid_argument(owner_ + ": option " + name + " must be a positive, finite number");
+  return std::move(node.mapped());
+}
+
+void OptionReader::refuse(const std::string& name, const std::string& must) const {
+  throw std::invalid_argument(owner_ + ": option " + name + " must be " + must);
+}
+
+std::optional<double> OptionReader::positive(const std::string& name) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return std::nullopt;
+  const double* value = std::get_if<double>(&*given);
+  if (!value || !(std::isfinite(*value) && *value > 0)) refuse(name, "a positive, finite number");
+  return *value;
+}
+
+double OptionReader::number(const std::string& name, double otherwise) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return otherwise;
+  const double* value = std::get_if<double>(&*given);
+  if (!value || !std::isfinite(*value)) refuse(name, "a finite number");
+  return *value;
+}
+
+Vec3 OptionReader::vector(const std::string& name, const Vec3& otherwise) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return otherwise;
+  const auto* value = std::get_if<std::vector<double>>(&*given);
+  if (!value || value->size() != 3 ||
+      !std::all_of(value->begin(), value->end(), [](double x) { return std::isfinite(x); }))
+    refuse(name, "three finite numbers");
+  return {(*value)[0], (*value)[1], (*value)[2]};
+}
+
+bool OptionReader::flag(const std::string& name, bool otherwise) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return otherwise;
+  const bool* value = std::get_if<bool>(&*given);
+  if (!value) refuse(name, "true or false");
+  return *value;
+}
+
+std::string OptionReader::word(const std::string& name, const std::vector<std::string>& known,
+                               const std::string& otherwise) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return otherwise;
+  const std::string* value = std::get_if<std::string>(&*given);
+  if (!value || std::find(known.begin(), known.end(), *value) == known.end()) {
+    std::string all;
+    for (const std::string& w : known) all += (all.empty() ? "" : ", ") + w;
+    refuse(name, "one of " + all);
+  }
   return *value;
 }
 

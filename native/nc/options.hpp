@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "geom/vec.hpp"
+
 namespace riffler {
 
 using OptionValue = std::variant<bool, double, std::string, std::vector<double>>;
@@ -24,10 +26,19 @@ class OptionReader {
   /// The number `name`, or nothing where it was not given; std::invalid_argument unless it is positive and finite.
   std::optional<double> positive(const std::string& name);
 
+  /// A finite number, three of them, true or false, or one of some words; what is given where it was not.
+  double number(const std::string& name, double otherwise);
+  Vec3 vector(const std::string& name, const Vec3& otherwise);
+  bool flag(const std::string& name, bool otherwise);
+  std::string word(const std::string& name, const std::vector<std::string>& known, const std::string& otherwise);
+
   /// Throws std::invalid_argument naming an option that nobody took, and those that are known.
   void done() const;
 
  private:
+  std::optional<OptionValue> take(const std::string& name);
+  [[noreturn]] void refuse(const std::string& name, const std::string& must) const;
+
   Options options_;
   std::string owner_;
   std::vector<std::string> known_;

@@ -35,6 +35,7 @@ class Reader {
         words_(machine_->axes(), lexer_) {
     chord_tolerance_ = taken_.positive("chord_tolerance").value_or(0.002);
     axis_tolerance_ = taken_.positive("axis_tolerance");
+    taken_.positive("max_rotary");  // of the post: the same options write and read
     taken_.done();
     if (chord_tolerance_ < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
     if (axis_tolerance_ && *axis_tolerance_ < 1e-6)
@@ -192,7 +193,7 @@ class Reader {
 
   void line_to(const Joints& to) {
     const Pose from = machine_->pose(at_), end = machine_->pose(to);
-    const int parts = mode_ == Mode::Feed && axis_tolerance_ ? rotary_parts(to) : 1;
+    const int parts = machine_->joint_words() || (mode_ == Mode::Feed && axis_tolerance_) ? rotary_parts(to) : 1;
     double way = glm::length(end.tip - from.tip);
     if (parts > 1) {
       way = 0;
@@ -209,7 +210,8 @@ class Reader {
     return machine_->pose(joints);
   }
 
-  /// Equal parts after which each great circle keeps to the axis's true way.
+  /// Equal parts after which each great circle keeps to the axis's true way, where that was asked, and each line to the
+  /// tip's, where linear and rotary axes make it together.
   int rotary_parts(const Joints& to) const {
     if (at_[3] == to[3] && at_[4] == to[4] && at_[5] == to[5]) return 1;
     for (int parts = 1; parts <= kMaxChords; parts *= 2) {
@@ -218,15 +220,19 @@ class Reader {
         const Pose a = between(to, 4 * i, 4 * parts), b = between(to, 4 * i + 4, 4 * parts);
         // A chord between axes more than 120° apart says nothing about the way between them.
         good = glm::dot(a.axis, b.axis) > -0.5;
-        const Motion turn(a, b);
-        for (int k = 1; k < 4 && good; ++k)
-          good = glm::length(between(to, 4 * i + k, 4 * parts).axis - turn.axis(k / 4.0)) <= *axis_tolerance_;
+        const Motion straight(a, b);
+        for (int k = 1; k < 4 && good; ++k) {
+          const Pose is = between(to, 4 * i + k, 4 * parts);
+          if (mode_ == Mode::Feed && axis_tolerance_)
+            good = glm::length(is.axis - straight.axis(k / 4.0)) <= *axis_tolerance_;
+          if (machine_->joint_words()) good = good && glm::length(is.tip - straight.tip(k / 4.0)) <= chord_tolerance_;
+        }
       }
       // Two parts at least: a full turn begins and ends at the same axis.
       if (good && (parts > 1 || std::abs(to[3] - at_[3]) + std::abs(to[4] - at_[4]) + std::abs(to[5] - at_[5]) < 90))
         return parts;
     }
-    lexer_.fail("rotary axes turn too far in one block for axis_tolerance");
+    lexer_.fail("rotary axes turn too far in one block for chord_tolerance or axis_tolerance");
   }
 
   void arc_to(const Joints& to) {

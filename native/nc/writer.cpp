@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "geom/io.hpp"
@@ -18,6 +19,7 @@ namespace riffler {
 namespace {
 
 constexpr int kLengthDecimals = 5, kAngleDecimals = 6;
+constexpr double kMaxRotary = 3600;  // deg/min, where nothing else is said: ten turns a minute
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
 
 std::int64_t scale(int decimals) {
@@ -73,7 +75,8 @@ class Writer {
         options_(options),
         taken_(options.options, "post " + options.post),
         machine_(make_machine(options.post, taken_)),
-        splitter_(*machine_, options.tolerance, options.axis_tolerance) {
+        splitter_(*machine_, options.tolerance, options.axis_tolerance),
+        max_rotary_(taken_.positive("max_rotary").value_or(kMaxRotary)) {
     taken_.done();
     if (!(options.tolerance >= 2e-5 && options.tolerance <= kMaxLength))
       throw std::invalid_argument("tolerance must be a length of at least 0.00002 mm: lengths have 5 decimals");
@@ -159,28 +162,35 @@ class Writer {
       printed_.fill(kNever);
       motion_ = ' ';
       feed_ = kNever;
+      if (inverse_) text_ += "G94\n", inverse_ = false;
     }
   }
 
   /// One block; `must`: a row ends here, so that it is written even where nothing moves.
   void block(std::size_t row, const Joints& joints, bool rapid, bool must) {
-    const std::size_t before = text_.size();
+    std::string words;
+    bool turns = false;
+    for (const char letter : machine_->axes())
+      if (axis_word(words, row, letter, joints, false)) turns |= joint_index(letter) >= 3;
+    if (words.empty() && !must) return;
+    if (words.empty()) axis_word(words, row, machine_->axes().front(), joints, true);
+    const bool inverse = !rapid && turns && machine_->joint_words() && stands_;
+    std::string code;
+    if (!rapid && inverse != inverse_) code = inverse ? "G93 " : "G94 ", inverse_ = inverse, feed_ = kNever;
     const char motion = rapid ? '0' : '1';
-    if (motion != motion_) text_ += std::string("G") + motion;
-    bool moves = false;
-    for (const char letter : machine_->axes()) moves |= axis_word(row, letter, joints, false);
-    if (!moves && !must) {
-      text_.resize(before);
-      return;
-    }
-    if (!moves) axis_word(row, machine_->axes().front(), joints, true);
+    if (motion != motion_ || !code.empty()) code += std::string("G") + motion;
     motion_ = motion;
-    if (!rapid) feed_word(row);
-    if (text_[before] == ' ') text_.erase(before, 1);
+    if (code.empty()) words.erase(0, 1);
+    text_ += code, text_ += words;
+    if (!rapid && inverse)
+      time_word(row, joints);
+    else if (!rapid)
+      feed_word(row);
     text_ += '\n';
+    stands_ = joints;
   }
 
-  bool axis_word(std::size_t row, char letter, const Joints& joints, bool always) {
+  bool axis_word(std::string& text, std::size_t row, char letter, const Joints& joints, bool always) {
     const std::size_t k = joint_index(letter);
     const bool angle = k >= 3;
     if (!(std::abs(joints[k]) <= (angle ? kMaxAngle : kMaxLength)))
@@ -189,9 +199,9 @@ class Writer {
     const std::int64_t value = ticks(joints[k], decimals);
     if (value == printed_[k] && !always) return false;
     printed_[k] = value;
-    text_ += ' ';
-    text_ += letter;
-    put_ticks(text_, value, decimals);
+    text += ' ';
+    text += letter;
+    put_ticks(text, value, decimals);
     return true;
   }
 
@@ -201,6 +211,18 @@ class Writer {
     feed_ = value;
     text_ += " F";
     put_ticks(text_, value, kFeedDecimals, true);
+  }
+
+  /// Under G93: 1 / minutes, on every block. The tip's way at the row's feed, or as fast as the rotary axes may turn,
+  /// whichever takes longer.
+  void time_word(std::size_t row, const Joints& joints) {
+    const double way = glm::length(machine_->pose(joints).tip - machine_->pose(*stands_).tip);
+    double degrees = 0;
+    for (std::size_t k = 3; k < joints.size(); ++k) degrees = std::max(degrees, std::abs(joints[k] - (*stands_)[k]));
+    const double feed = program_.feed()[row];
+    const double minutes = std::max({feed > 0 ? way / feed : 0.0, degrees / max_rotary_, 1 / kMaxFeed});
+    text_ += " F";
+    put_ticks(text_, std::max<std::int64_t>(1, ticks(1 / minutes, kFeedDecimals)), kFeedDecimals, true);
   }
 
   /// A row in which the tip stands still has no feed of its own: the one before goes on, or the next to come.
@@ -224,6 +246,9 @@ class Writer {
   std::string text_;
   std::array<std::int64_t, 6> printed_{};
   char motion_ = ' ';
+  bool inverse_ = false;          // G93
+  std::optional<Joints> stands_;  // after the last block
+  double max_rotary_;             // deg/min
   std::int64_t feed_ = kNever;
   int tool_ = 0;
   double spindle_ = 0;

@@ -174,10 +174,10 @@ TEST(Writer, NamesWhatIsWrong) {
   EXPECT_EQ(error_of(p, {}), "");
   WriteOptions options;
   options.post = "heidenhain";
-  EXPECT_EQ(error_of(p, options), "unknown post heidenhain; known: tcp, 3-axis");
+  EXPECT_EQ(error_of(p, options), "unknown post heidenhain; known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, 3-axis");
   options = {};
   options.options["offset"] = 1.0;
-  EXPECT_EQ(error_of(p, options), "post tcp: unknown option 'offset'; it takes none");
+  EXPECT_EQ(error_of(p, options), "post tcp: unknown option 'offset'; known: max_rotary");
   options = {};
   options.tolerance = 0;
   EXPECT_NE(error_of(p, options).find("tolerance"), std::string::npos);

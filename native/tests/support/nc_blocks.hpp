@@ -15,8 +15,9 @@
 namespace riffler::test {
 
 struct NcBlockEnd {
-  std::map<char, double> at;  // modal values of X Y Z A C and F after the block
-  bool rapid = false;
+  std::map<char, double> at;            // modal values of X Y Z A B C and F after the block
+  bool rapid = false, inverse = false;  // G93
+  bool fed = false;                     // F stands in this very block
 };
 
 /// The ends of all blocks that move something.
@@ -28,14 +29,17 @@ inline std::vector<NcBlockEnd> block_ends(const std::string& text) {
     if (line.empty() || line[0] == '(') continue;
     std::istringstream words(line);
     bool moves = false;
+    now.fed = false;
     for (std::string word; words >> word;) {
       const double value = std::stod(word.substr(1));
       if (word == "G0" || word == "G1")
         now.rapid = word == "G0";
-      else if (std::string("XYZAC").find(word[0]) != std::string::npos)
+      else if (std::string("XYZABC").find(word[0]) != std::string::npos)
         now.at[word[0]] = value, moves = true;
       else if (word[0] == 'F')
-        now.at['F'] = value;
+        now.at['F'] = value, now.fed = true;
+      else if (word == "G93" || word == "G94")
+        now.inverse = word == "G93";
     }
     if (moves) out.push_back(now);
   }
