@@ -243,7 +243,8 @@ def test_joint_posts_read_back_with_the_same_options(tmp_path, ball, post):
     path = spiral(20)
     options = {"rot_point": [10, -5, 40], "offset": [3, 4, -20], "tool_offset": 60.0, "direction": "iso"}
     file = tmp_path / "p.ngc"
-    riffler.Program.from_cl([path], tools=[ball], feed=400).write(file, post=post, options={**options, "max_rotary": 5e3})
+    program = riffler.Program.from_cl([path], tools=[ball], feed=400)
+    program.write(file, post=post, options={**options, "max_rotary": 5e3})
     text = file.read_text()
     assert "M429" in text and "\nG93 G1 " in text and "G94" in text
     back = riffler.Program.read(file, machine=post, options=options).poses
@@ -255,7 +256,8 @@ def test_joint_posts_read_back_with_the_same_options(tmp_path, ball, post):
 
 
 def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball):
-    assert set(riffler.machines()) == {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "3-axis"} and all(riffler.machines().values())
+    assert set(riffler.machines()) == {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "3-axis"}
+    assert all(riffler.machines().values())
     p = riffler.Program.from_cl([spiral(3)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"
     with pytest.raises(ValueError, match="known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, 3-axis"):
