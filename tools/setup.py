@@ -15,6 +15,7 @@ import sys
 
 import system
 from environments import blender_environment, blender_versions, install_wheel, make_environment, rivals_environment
+from linuxcnc import linuxcnc
 from shell import ROOT, VENV, StepError, main, run, say
 from wheel import build_wheel
 
@@ -22,7 +23,7 @@ DEMO_BLENDER = "4.5"
 EXTRA_NEEDS = {
     "build": [],
     "demo": system.BLENDER_MODULE,
-    "test": system.CPP_TESTS + system.BLENDER_MODULE + system.BLENDER_WINDOW,
+    "test": system.CPP_TESTS + system.BLENDER_MODULE + system.BLENDER_WINDOW + system.LINUXCNC,
     "cpp-tests": system.CPP_TESTS,
     "bench": system.BENCH,
 }
@@ -37,6 +38,8 @@ def setup(purpose: str) -> None:
     install_wheel(VENV, wheel, key)
     for version in {"demo": [DEMO_BLENDER], "test": blender_versions()}.get(purpose, []):
         install_wheel(blender_environment(version), wheel, key)
+    if purpose == "test":
+        linuxcnc()
     if purpose == "bench":
         rivals_environment()
 

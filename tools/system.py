@@ -117,6 +117,13 @@ BLENDER_WINDOW = [
     Need("ImageMagick's import", "imagemagick", "https://imagemagick.org", program("import")),
 ]
 
+# What LinuxCNC's interpreter links beside what is unpacked with it (tools/linuxcnc.py).
+LINUXCNC = [
+    Need("shared library of Python 3.11", "libpython3.11", "your Python's packages", library("libpython3.11.so.1.0")),
+    Need("libedit", "libedit2", "https://thrysoee.dk/editline", library("libedit.so.2")),
+    Need("libtirpc", "libtirpc3", "https://sourceforge.net/projects/libtirpc", library("libtirpc.so.3")),
+]
+
 BENCH = [
     Need("Google Benchmark", "libbenchmark-dev", "https://github.com/google/benchmark", header("benchmark/benchmark.h"))
 ]

@@ -1,0 +1,159 @@
+"""What is written for LinuxCNC, judged by its own interpreter and by forward kinematics of the tests' own."""
+
+import numpy as np
+import pytest
+import riffler
+
+import linuxcnc
+
+pytestmark = linuxcnc.needed
+
+ROT_POINT, OFFSET = [12.0, -7.0, 30.0], [3.0, 4.0, -25.0]
+POSTS = {"linuxcnc-xyzac": "A", "linuxcnc-xyzbc": "B"}
+PRINTED = 2e-4  # rs274 prints 4 decimals
+
+
+def normed(v):
+    v = np.asarray(v, float)
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def path(name):
+    t = np.linspace(0, 1, 40)[:, None]
+    one = np.ones_like(t)
+    tips, axes = {
+        "smooth": (
+            np.hstack([80 * t, 20 * np.sin(9 * t), -5 * t]),
+            np.hstack([np.sin(7 * t), np.sin(5 * t) - 0.3, one]),
+        ),
+        "through the pole": (np.hstack([60 * t, 0 * t, 0 * t]), np.hstack([t - 0.5, 0.02 * (t - 0.5), one])),
+        "beside the pole": (np.hstack([60 * t, 5 * t, 0 * t]), np.hstack([t - 0.5, 1e-3 * one, one])),
+        "wound up": (
+            np.hstack([20 * np.cos(15 * t), 20 * np.sin(15 * t), -9 * t]),
+            np.hstack([np.cos(15 * t), np.sin(15 * t), 2 * one]),
+        ),
+        "turning in place": (
+            np.tile([[10.0, 20.0, -3.0]], (40, 1)),
+            np.hstack([np.sin(4 * t), np.cos(3 * t) - 1, one]),
+        ),
+        "long and straight": (np.hstack([900 * t, -700 * t, 30 * t]), np.hstack([0.3 * one, 0.1 + 0.5 * t, one])),
+    }[name]
+    return np.hstack([tips, normed(axes)])
+
+
+PATHS = ["smooth", "through the pole", "beside the pole", "wound up", "turning in place", "long and straight"]
+
+
+def written(tmp_path, poses, post, tolerance=0.01, **options):
+    tool = riffler.Tool.ball(6, 30)
+    # One pose a move: what has no length of its own still has the feed of those beside it.
+    program = riffler.Program.from_cl([poses], tools=[tool], feed=600, spindle=8000)
+    file = tmp_path / "p.ngc"
+    program.write(file, post=post, tolerance=tolerance, options={"rot_point": ROT_POINT, "offset": OFFSET, **options})
+    return file
+
+
+def off(a, b):
+    """mm and rad between poses (…, 6)."""
+    far = np.linalg.norm(a[..., :3] - b[..., :3], axis=-1)
+    return far, 2 * np.arcsin(np.minimum(1, np.linalg.norm(a[..., 3:] - b[..., 3:], axis=-1) / 2))
+
+
+def judged(file, post, poses, **kinematics):
+    """How far the program is off the poses at their blocks, and off the moves between them, mm and rad."""
+    moves = linuxcnc.interpreted(file)
+    where = {"tilt": POSTS[post], "rot_point": ROT_POINT, "offset": OFFSET, **kinematics}
+    joints = moves.joints[1:]
+    at = linuxcnc.table_table(joints, **where)
+    # Every pose is the end of a block, in their order.
+    ends, start, worst = [], 0, np.zeros(2)
+    for pose in poses:
+        far, turned = off(at[start:], pose)
+        k = start + int(np.argmax((far < 2e-3) & (turned < 4e-5)))
+        worst = np.maximum(worst, [off(at[k], pose)[0], off(at[k], pose)[1]])
+        ends.append(k)
+        start = k + (len(ends) < len(poses) and not np.array_equal(pose, poses[len(ends)]))
+    inner = np.zeros(2)
+    for first, last, a, b in zip(ends, ends[1:], poses, poses[1:], strict=False):
+        dense = linuxcnc.table_table(linuxcnc.between(joints[first : last + 1], 16).reshape(-1, 6), **where)
+        way = b[:3] - a[:3]
+        share = np.clip((dense[:, :3] - a[:3]) @ way / max(way @ way, 1e-300), 0, 1)[:, None]
+        aside = np.linalg.norm(dense[:, :3] - a[:3] - share * way, axis=1).max(initial=0)
+        plane = np.cross(a[3:], b[3:])
+        length = np.linalg.norm(plane)
+        lifted = np.arcsin(np.clip(abs(dense[:, 3:] @ plane) / length, 0, 1)).max(initial=0) if length > 1e-9 else 0
+        inner = np.maximum(inner, [aside, lifted])
+    return worst, inner, moves
+
+
+@pytest.mark.parametrize("post", POSTS)
+@pytest.mark.parametrize("name", PATHS)
+def test_blocks_hold_the_poses_and_the_ways_between_them_the_tolerances(tmp_path, post, name):
+    poses = path(name)
+    worst, inner, moves = judged(written(tmp_path, poses, post), post, poses)
+    reach = np.abs(moves.joints[:, :3]).max() + 50  # what a printed angle's last digit moves
+    assert worst[0] <= 1e-3 + reach * 2e-6 and np.degrees(worst[1]) <= 1e-3
+    assert inner[0] <= 0.01 + PRINTED + reach * 2e-6 and inner[1] <= 0.00175 + 1e-5
+
+
+@pytest.mark.parametrize("post", POSTS)
+def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, post):
+    poses = path("smooth")
+    moves = linuxcnc.interpreted(written(tmp_path, poses, post, max_rotary=2000.0))
+    at = linuxcnc.table_table(moves.joints, POSTS[post], ROT_POINT, OFFSET)
+    way = np.linalg.norm(np.diff(at[:, :3], axis=0), axis=1)
+    turn = abs(np.diff(moves.joints[:, 3:], axis=0)).max(1)
+    wanted = np.maximum(way / 600, turn / 2000)
+    fed = ~moves.rapid[1:]
+    assert fed.sum() > 40
+    np.testing.assert_allclose(moves.minutes[1:][fed], wanted[fed], atol=5e-7, rtol=2e-3)
+
+
+def test_mutations_do_not_pass(tmp_path):
+    post, poses = "linuxcnc-xyzac", path("smooth")
+    file = written(tmp_path, poses, post)
+    text = file.read_text()
+
+    def error(changed):
+        file.write_text(changed)
+        try:
+            worst, inner, moves = judged(file, post, poses)
+        except linuxcnc.RefusedError:
+            return np.inf
+        at = linuxcnc.table_table(moves.joints, "A", ROT_POINT, OFFSET)
+        minutes = np.linalg.norm(np.diff(at[:, :3], axis=0), axis=1) / 600
+        fed = ~moves.rapid[1:]
+        late = abs(moves.minutes[1:] - minutes)[fed].max()
+        return max(worst.max(), inner[0], late)
+
+    assert error(text) < 0.02
+    assert error(text.replace(" C-", " C").replace(" C1", " C-1")) > 1, "the sign of C"
+    assert error(text.replace(" A", " Q").replace(" C", " A").replace(" Q", " C")) > 1, "A and C exchanged"
+    assert error(text.replace("G21", "G20")) > 1, "millimetres as inches"
+    lines = text.splitlines()
+    dropped = next(k for k, line in enumerate(lines) if "F" in line and "G" not in line and "(" not in line)
+    lines[dropped] = lines[dropped].split(" F")[0]
+    assert error("\n".join(lines)) > 1, "an F that is missing under G93"
+    worst, _, _ = judged(written(tmp_path, poses, post), post, poses, offset=[0, 0, 0])
+    assert worst[0] > 1, "another machine"
+
+
+@pytest.mark.parametrize("post", POSTS)
+def test_iso_directions_turn_the_other_way(tmp_path, post):
+    poses = path("smooth")
+    own = linuxcnc.interpreted(written(tmp_path, poses, post)).joints
+    iso = linuxcnc.interpreted(written(tmp_path, poses, post, direction="iso")).joints
+    assert len(own) == len(iso)
+    np.testing.assert_allclose(own[:, :3], iso[:, :3], atol=PRINTED)
+    turned = np.mod(own[:, 3:] + iso[:, 3:] + 180, 360) - 180
+    np.testing.assert_allclose(turned, 0, atol=PRINTED)
+
+
+def test_three_axis_programs_are_read_as_they_are(tmp_path):
+    t = np.linspace(0, 1, 50)
+    poses = np.column_stack([50 * t, 9 * np.sin(6 * t), -t, 0 * t, 0 * t, 1 + 0 * t])
+    file = tmp_path / "p.ngc"
+    riffler.Program.from_cl([poses], tools=[riffler.Tool.flat(6, 30)], feed=600).write(file, post="3-axis")
+    joints = linuxcnc.interpreted(file).joints
+    for pose in poses:
+        assert np.linalg.norm(joints[:, :3] - pose[:3], axis=1).min() <= PRINTED
