@@ -3,6 +3,7 @@
 
 #include "bindings/bindings.hpp"
 #include "nc/cutter_path.hpp"
+#include "nc/edit.hpp"
 #include "nc/limits.hpp"
 #include "nc/machine.hpp"
 #include "nc/program.hpp"
@@ -207,6 +208,21 @@ py::dict machine_list() {
   return out;
 }
 
+Program edited_transform(const Program& program, const Doubles& matrix) {
+  if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
+    throw py::value_error("matrix must have the shape (4, 4)");
+  const auto m = matrix.unchecked<2>();
+  if (m(3, 0) != 0 || m(3, 1) != 0 || m(3, 2) != 0 || m(3, 3) != 1)
+    throw py::value_error("matrix: its last row must be 0, 0, 0, 1");
+  Mat3 turn;
+  Vec3 shift;
+  for (int row = 0; row < 3; ++row) {
+    shift[row] = m(row, 3);
+    for (int column = 0; column < 3; ++column) turn[column][row] = m(row, column);
+  }
+  return transformed(program, turn, shift);
+}
+
 std::string repr(const Program& program) {
   std::string text = "<riffler.Program: " + std::to_string(program.size()) + " rows, ";
   const std::size_t runs = program.runs().size();
@@ -294,6 +310,17 @@ feed, or longer where ``max_rotary`` asks for it.)")
             return out;
           },
           "dict of strings.")
+      .def("trimmed", &trimmed, py::arg("first"), py::arg("last"),
+           "Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.")
+      .def("transformed", &edited_transform, py::arg("matrix"),
+           "In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.")
+      .def("retimed", &retimed, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
+      .def_static(
+          "joined", [](const std::vector<const Program*>& programs) { return joined(programs); }, py::arg("programs"),
+          "One after the other. ValueError where one number stands for tools of two shapes.")
+      .def("retooled", &retooled, py::arg("numbers"),
+           "Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share "
+           "one.")
       .def("cuts", &cuts,
            "For replay: a list of (tool number, poses (k, 6)), one per run of rows with one tool, rapids included.")
       .def("__len__", &Program::size)

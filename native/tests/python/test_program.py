@@ -255,6 +255,26 @@ def test_joint_posts_read_back_with_the_same_options(tmp_path, ball, post):
         riffler.Program.read(file, machine=post, options={"offset": [1, 2]})
 
 
+def test_programs_are_edited_into_new_ones(ball):
+    p = riffler.Program.from_cl([spiral(10), spiral(6)], tools=[ball], feed=100)
+    q = p.trimmed(2, 9)
+    assert len(q) == 7 and q.rapid[0] and np.array_equal(q.poses, p.poses[2:9])
+    turned = np.array([[0, -1, 0, 5], [1, 0, 0, 0], [0, 0, 1, -2], [0, 0, 0, 1]], float)
+    moved = p.transformed(turned)
+    np.testing.assert_allclose(moved.poses[:, :3], p.poses[:, :3] @ turned[:3, :3].T + turned[:3, 3], atol=1e-12)
+    np.testing.assert_allclose(moved.poses[:, 3:], p.poses[:, 3:] @ turned[:3, :3].T, atol=1e-15)
+    assert np.array_equal(p.retimed(0.5).feed, 0.5 * p.feed)
+    both = riffler.Program.joined([p, q])
+    assert len(both) == len(p) + 7 and set(both.tools) == {1}
+    assert set(p.retooled({1: 4}).tool) == {4} and set(p.retooled({1: 4}).tools) == {4}
+    with pytest.raises(ValueError, match="last row"):
+        p.transformed(np.ones((4, 4)))
+    with pytest.raises(ValueError, match="rows 5 to 2"):
+        p.trimmed(5, 2)
+    with pytest.raises(ValueError, match="would be"):
+        riffler.Program.joined([p, riffler.Program.from_cl([spiral(3)], tools=[riffler.Tool.flat(3, 20)], feed=1)])
+
+
 def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball):
     assert set(riffler.machines()) == {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "3-axis"}
     assert all(riffler.machines().values())
