@@ -35,8 +35,8 @@ void SweptSearch::push(const Entry& e) {
   std::push_heap(heap_.begin(), heap_.end());
 }
 
-/// The same for either half of the stretch; false where it has none.
-bool SweptSearch::halve(Entry e) {
+/// The same for either half of the stretch, of a group looked at anew there; false where it has none.
+bool SweptSearch::halve(const Surface& surface, Entry e) {
   const Stretch& whole = stretches_[e.stretch];
   const double from = whole.from, to = whole.to, middle = 0.5 * (from + to);
   if (to - from < kShortest) return false;
@@ -45,13 +45,34 @@ bool SweptSearch::halve(Entry e) {
     add_stretch(middle, to);
     stretches_[e.stretch].half = first;
   }
-  e.drifts *= 0.5;
   const std::uint32_t first = stretches_[e.stretch].half;
   for (const std::uint32_t half : {first, first + 1}) {
-    e.stretch = half;
-    push(e);
+    Entry next = e;
+    next.stretch = half, next.drifts = 0.5 * e.drifts;
+    if (e.kind == Entry::Group) look_again(surface, next);
+    push(next);
   }
   return true;
+}
+
+void SweptSearch::look_again(const Surface& surface, Entry& e) {
+  const SphereGroup& siblings = surface.tree().group((e.index - 1) / kLanes);
+  const int k = static_cast<int>((e.index - 1) % kLanes);
+  const Stretch& s = stretches_[e.stretch];
+  double distance[kLanes];
+  centre_distances(assembly_.lane_edges(), s.frame, siblings, distance);
+  ++out_.evaluations;
+  e.distance = distance[k];
+  e.drifts = s.drift.nearer(glm::length(siblings.sphere(k).centre - s.frame.tip) + e.radius);
+  e.low = std::max(e.low, e.distance - e.radius - e.drifts);
+}
+
+/// Space or time, whichever leaves more open. A group that is too near anyway has a triangle that is, and in short
+/// stretches tangent planes say more than spheres.
+bool SweptSearch::is_better_halved(const Entry& e) const {
+  constexpr double kShort = 0.05;  // of the cutter's diameter
+  return e.kind == Entry::Group && e.drifts > std::max(e.radius, kShort * assembly_.tool().diameter()) &&
+         e.distance + e.radius >= wanted_;
 }
 
 void SweptSearch::attained(const Entry& e) {
@@ -78,8 +99,9 @@ void SweptSearch::open(const Surface& surface, const Entry& e) {
     if (radius < 0) continue;
     const double drifts = s.drift.nearer(glm::length(spheres.sphere(k).centre - s.frame.tip) + radius);
     if (!items) low[k] = distance[k] - radius - drifts;
-    push({std::max(low[k], e.low), radius, drifts, static_cast<std::uint32_t>(first + static_cast<std::size_t>(k)),
-          e.stretch, e.surface, items ? Entry::Triangle : Entry::Group});
+    push({std::max(low[k], e.low), radius, drifts, distance[k],
+          static_cast<std::uint32_t>(first + static_cast<std::size_t>(k)), e.stretch, e.surface,
+          items ? Entry::Triangle : Entry::Group});
   }
 }
 
@@ -100,20 +122,19 @@ void SweptSearch::test(const Surface& surface, const Entry& e) {
     next.low = std::max(next.low, search_.low() - e.drifts);
     if (out_.clearance < wanted_ || next.low >= wanted_) return push(next);
   }
-  if (!halve(next)) out_.bound = std::min(out_.bound, next.low);  // rounding is all that is left
+  if (!halve(surface, next)) out_.bound = std::min(out_.bound, next.low);  // rounding is all that is left
 }
 
 Swept SweptSearch::operator()(std::span<const Surface* const> surfaces) {
   for (std::size_t i = 0; i < surfaces.size(); ++i)
-    push({-kInfinity, kInfinity, 0, 0, 0, static_cast<std::uint16_t>(i), Entry::Group});
+    push({-kInfinity, kInfinity, 0, 0, 0, 0, static_cast<std::uint16_t>(i), Entry::Group});
   while (!heap_.empty() && !(out_.clearance < wanted_) && out_.evaluations < most_) {
     std::pop_heap(heap_.begin(), heap_.end());
     const Entry e = heap_.back();
     heap_.pop_back();
-    // Space or time, whichever leaves more open.
-    if (e.kind == Entry::Group && e.drifts > e.radius && halve(e)) continue;
-    ++out_.evaluations;
     const Surface& surface = *surfaces[e.surface];
+    if (is_better_halved(e) && halve(surface, e)) continue;
+    ++out_.evaluations;
     e.kind == Entry::Group ? open(surface, e) : test(surface, e);
   }
   if (!heap_.empty()) out_.bound = std::min(out_.bound, heap_.front().low);

@@ -47,6 +47,7 @@ class SweptSearch {
   };
   struct Entry {
     double low, radius, drifts;  // of its sphere; how much nearer the tool may come in half the stretch
+    double distance;             // of the sphere's centre in the stretch's middle
     std::uint32_t index;         // of a group, or place of a triangle
     std::uint32_t stretch;
     std::uint16_t surface;
@@ -56,7 +57,9 @@ class SweptSearch {
 
   std::uint32_t add_stretch(double from, double to);
   void push(const Entry& e);
-  bool halve(Entry e);
+  bool halve(const Surface& surface, Entry e);
+  bool is_better_halved(const Entry& e) const;
+  void look_again(const Surface& surface, Entry& e);
   void open(const Surface& surface, const Entry& e);
   void test(const Surface& surface, const Entry& e);
   void attained(const Entry& e);

@@ -61,6 +61,35 @@ TEST(SweptSearch, SlidesAlongAPlaneAndACornerInAFewLooks) {
   EXPECT_EQ(turned.answer, Answer::Clear);
 }
 
+TEST(SweptSearch, EndsOnTrianglesThatAreAllOnePoint) {
+  // Their spheres have no size, which the drift exceeds in any stretch.
+  Mesh points = box_mesh({-30, -30, -20}, {30, 30, -10});
+  for (const Vec3& p : {Vec3(0, 3.2, 1), Vec3(0, 3.005, 3), Vec3(5, 0, -9)}) {
+    const int first = static_cast<int>(points.vertices.size());
+    for (int k = 0; k < 200; ++k) {
+      points.vertices.push_back(p);
+      points.triangles.emplace_back(first, first, first);
+    }
+  }
+  const Collider collider(points);
+  const Assembly ball(cutters::ball(6, 20));
+  const auto sweep = [&](double y, double wanted) {
+    return collider.sweep(ball, Motion({{-500, y, 0}, kUp}, {{500, y, 0}, kUp}), wanted, 100000);
+  };
+  EXPECT_EQ(sweep(0, 0).answer, Answer::Clear);
+  EXPECT_EQ(sweep(0, 0.01).answer, Answer::Gouges);
+  EXPECT_EQ(sweep(0.1, 0).answer, Answer::Gouges);
+  EXPECT_LT(sweep(0, 0).evaluations, 10000U);
+}
+
+TEST(SweptSearch, OfALongRapidPastASmallPartTakesFewLooks) {
+  const Collider collider(sphere_mesh(10, 5));
+  const Assembly tool(cutters::ball(6, 20).with_holder({{40, 20, 80, 20}}));
+  const Swept swept = collider.sweep(tool, Motion({{-2000, 0, 10.5}, kUp}, {{2000, 0, 10.5}, kUp}), 0.4, 100000);
+  EXPECT_EQ(swept.answer, Answer::Clear);
+  EXPECT_LT(swept.evaluations, 10000U);
+}
+
 /// How much of the surface is how deep in the tool, by branch and bound that shares no code, at many poses.
 double least_clearance(const Mesh& mesh, const Tool& tool, const Motion& motion, int poses) {
   std::vector<reference::Corners> triangles;
