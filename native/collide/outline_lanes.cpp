@@ -167,7 +167,7 @@ struct Radial {
 
 /// What of a drift is the same for all lanes.
 struct Drifts {
-  const Drift& drift;
+  Drift drift;
   double way, turn;
 
   explicit Drifts(const Drift& d) : drift(d), way(glm::length(d.way)), turn(glm::length(d.turn)) {}
