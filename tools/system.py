@@ -89,6 +89,7 @@ BUILD = [
     Need("OpenMesh", "libopenmesh-dev", "https://www.graphics.rwth-aachen.de/software/openmesh/",
          header("OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh")),
     Need("hidapi (hidraw)", "libhidapi-dev", "https://github.com/libusb/hidapi", header("hidapi/hidapi.h")),
+    Need("toml++", "libtomlplusplus-dev", "https://marzer.github.io/tomlplusplus", header("toml++/toml.h")),
     Need("zlib headers", "zlib1g-dev", "https://zlib.net", header("zlib.h")),
     Need("Python.h of this Python", "python3-dev", "your Python's development package", python_header),
     Need("ensurepip or pip 22.3", "python3-venv", "https://pip.pypa.io", python_environments),

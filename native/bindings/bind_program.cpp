@@ -5,7 +5,7 @@
 #include "nc/cutter_path.hpp"
 #include "nc/edit.hpp"
 #include "nc/limits.hpp"
-#include "nc/machine.hpp"
+#include "nc/machines.hpp"
 #include "nc/program.hpp"
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
@@ -204,8 +204,18 @@ py::dict tools_of(const Program& program) {
 
 py::dict machine_list() {
   py::dict out;
-  for (const MachineEntry& entry : machines()) out[py::str(std::string(entry.name))] = std::string(entry.description);
+  for (const MachineEntry& entry : machines()) out[py::str(entry.name)] = entry.description;
   return out;
+}
+
+py::dict to_dict(const WriteReport& report) {
+  using namespace py::literals;
+  py::list passages;
+  for (const PolePassage& p : report.passages)
+    passages.append(py::dict("first_row"_a = p.first, "last_row"_a = p.last, "tool_degrees"_a = p.tool,
+                             "rotary_degrees"_a = p.rotary, "slowed"_a = p.slowed));
+  return py::dict("blocks"_a = report.blocks, "slowed_blocks"_a = report.slowed, "rewinds"_a = report.rewinds,
+                  "pole_passages"_a = passages);
 }
 
 Program edited_transform(const Program& program, const Doubles& matrix) {
@@ -275,8 +285,12 @@ FormatError names file and line; nothing that is not understood is skipped.)")
           [](const Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,
              double axis_tolerance, const py::object& options) {
             const WriteOptions how{post, tolerance, axis_tolerance, to_options(options)};
-            const py::gil_scoped_release release;
-            write_nc(self, path, how);
+            WriteReport report;
+            {
+              const py::gil_scoped_release release;
+              report = write_nc(self, path, how);
+            }
+            return to_dict(report);
           },
           py::arg("path"), py::arg("post") = "tcp", py::arg("tolerance") = 0.01, py::arg("axis_tolerance") = 0.00175,
           py::arg("options") = py::none(),

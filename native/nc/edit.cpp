@@ -12,18 +12,23 @@ namespace riffler {
 
 namespace {
 
-/// A program with the same tools and provenance, its rows as `change` leaves them.
+/// A program with the same tools and provenance, its rows [first, last) as `change` leaves them.
 template <class Change>
-Program copied(const Program& program, const Change& change) {
+Program copied(const Program& program, std::size_t first, std::size_t last, const Change& change) {
   Program out;
-  out.reserve(program.size());
-  for (std::size_t row = 0; row < program.size(); ++row) {
+  out.reserve(last - first);
+  for (std::size_t row = first; row < last; ++row) {
     Move move = program[row];
-    change(move);
+    change(move, row);
     out.append(move);
   }
   out.tools = program.tools, out.provenance = program.provenance;
   return out;
+}
+
+template <class Change>
+Program copied(const Program& program, const Change& change) {
+  return copied(program, 0, program.size(), [&](Move& move, std::size_t) { change(move); });
 }
 
 bool same_shape(const Tool& a, const Tool& b) {
@@ -48,15 +53,7 @@ Program trimmed(const Program& program, std::size_t first, std::size_t last) {
   if (first >= last || last > program.size())
     throw std::invalid_argument("rows " + std::to_string(first) + " to " + std::to_string(last) + " of " +
                                 std::to_string(program.size()));
-  Program out;
-  out.reserve(last - first);
-  for (std::size_t row = first; row < last; ++row) {
-    Move move = program[row];
-    move.rapid |= row == first;
-    out.append(move);
-  }
-  out.tools = program.tools, out.provenance = program.provenance;
-  return out;
+  return copied(program, first, last, [&](Move& move, std::size_t row) { move.rapid |= row == first; });
 }
 
 Program transformed(const Program& program, const Mat3& turn, const Vec3& shift) {

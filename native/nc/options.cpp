@@ -8,7 +8,7 @@
 namespace riffler {
 
 std::optional<OptionValue> OptionReader::take(const std::string& name) {
-  known_.push_back(name);
+  if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
   auto node = options_.extract(name);
   if (node.empty()) return std::nullopt;
   return std::move(node.mapped());
@@ -42,6 +42,16 @@ Vec3 OptionReader::vector(const std::string& name, const Vec3& otherwise) {
       !std::all_of(value->begin(), value->end(), [](double x) { return std::isfinite(x); }))
     refuse(name, "three finite numbers");
   return {(*value)[0], (*value)[1], (*value)[2]};
+}
+
+std::optional<std::pair<double, double>> OptionReader::range(const std::string& name) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return std::nullopt;
+  const auto* value = std::get_if<std::vector<double>>(&*given);
+  if (!value || value->size() != 2 || !std::isfinite((*value)[0]) || !std::isfinite((*value)[1]) ||
+      !((*value)[0] < (*value)[1]))
+    refuse(name, "two finite numbers that grow");
+  return std::pair((*value)[0], (*value)[1]);
 }
 
 bool OptionReader::flag(const std::string& name, bool otherwise) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -25,6 +26,12 @@ class OptionReader {
 
   /// The number `name`, or nothing where it was not given; std::invalid_argument unless it is positive and finite.
   std::optional<double> positive(const std::string& name);
+
+  /// Whether `name` was given and nobody has taken it yet.
+  bool given(const std::string& name) const { return options_.count(name) > 0; }
+
+  /// Two finite numbers that grow, or nothing where they were not given.
+  std::optional<std::pair<double, double>> range(const std::string& name);
 
   /// A finite number, three of them, true or false, or one of some words; what is given where it was not.
   double number(const std::string& name, double otherwise);

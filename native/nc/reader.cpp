@@ -12,7 +12,8 @@
 #include "nc/arc.hpp"
 #include "nc/lexer.hpp"
 #include "nc/limits.hpp"
-#include "nc/machine.hpp"
+#include "nc/machines.hpp"
+#include "nc/post.hpp"
 #include "nc/words.hpp"
 
 namespace riffler {
@@ -35,7 +36,7 @@ class Reader {
         words_(machine_->axes(), lexer_) {
     chord_tolerance_ = taken_.positive("chord_tolerance").value_or(0.002);
     axis_tolerance_ = taken_.positive("axis_tolerance");
-    taken_.positive("max_rotary");  // of the post: the same options write and read
+    take_post_options(taken_);  // the same options write and read
     taken_.done();
     if (chord_tolerance_ < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
     if (axis_tolerance_ && *axis_tolerance_ < 1e-6)

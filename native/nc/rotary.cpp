@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdio>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "geom/directions.hpp"
+#include "nc/subdivider.hpp"
 
 namespace riffler {
 
 namespace {
+
+/// mm and deg by which a limit may seem to be passed: rounding.
+constexpr double kSlack = 1e-9;
 
 /// Angle to the pole or to its opposite, whichever is nearer.
 double pole_angle(const Vec3& axis, const Vec3& pole) {
@@ -35,151 +38,324 @@ double arc_pole_angle(const Vec3& a, const Vec3& b, const Vec3& pole) {
   return on_arc ? std::min(ends, std::asin(off)) : ends;
 }
 
-double rotary_way(const Joints& a, const Joints& b) {
-  return std::abs(b[3] - a[3]) + std::abs(b[4] - a[4]) + std::abs(b[5] - a[5]);
+bool opposite(const Pose& a, const Pose& b) {
+  return angle_between(a.axis, b.axis) > std::numbers::pi - 1e-9;
 }
 
-Joints mix(const Joints& a, const Joints& b, double t) {
-  Joints out;
-  for (std::size_t k = 0; k < out.size(); ++k) out[k] = a[k] + t * (b[k] - a[k]);
-  return out;
-}
-
-/// Machine::joints with the row in its message.
-Joints joints_of_row(const Program& program, std::size_t row, const Machine& machine, int branch, const Joints& near) {
-  try {
-    return machine.joints(program.poses()[row], branch, near, kFreeAngle);
-  } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + e.what());
-  }
-}
-
-constexpr std::size_t kMaxBranches = 2;
-
-struct State {
-  double cost = 0;
+/// One way to stand at a node, and the best way to have come there.
+struct Stand {
   Joints joints{};
+  double way = 0;          // deg, all rotary axes
+  std::uint32_t from = 0;  // among the stands of the node before
+  std::uint16_t rewinds = 0;
+  std::uint8_t branch = 0;
+
+  bool better(const Stand& other) const { return rewinds != other.rewinds ? rewinds < other.rewinds : way < other.way; }
 };
 
-using States = std::array<State, kMaxBranches>;
+using Stands = std::vector<Stand>;
 
-/// Where the axes stand before the first row: a free axis as the first row that needs it will have it. A tie goes to
-/// branch 0 whatever the rounding: its head start is the least step that is printed.
-States start_states(const Program& program, const Machine& machine) {
-  States states;
-  const auto away = std::find_if(program.poses().begin(), program.poses().end(),
-                                 [&](const Pose& pose) { return pole_angle(pose.axis, machine.pole()) > kFreeAngle; });
-  for (int b = 0; b < machine.branches(); ++b) {
-    State& state = states[static_cast<std::size_t>(b)];
-    state.cost = 1e-6 * b;
-    if (away != program.poses().end())
-      state.joints = joints_of_row(program, static_cast<std::size_t>(away - program.poses().begin()), machine, b, {});
+/// What is kept of a stand when the next node is reached.
+struct Trace {
+  double first, second;  // deg, rotary axes in the order of their letters
+  std::uint32_t from;
+  std::uint8_t branch;
+};
+
+class Chooser {
+ public:
+  Chooser(const Program& program, const Machine& machine, double axis_tolerance)
+      : program_(program), machine_(machine), axis_tolerance_(axis_tolerance), free_(free_rapids(program)) {
+    for (const char letter : machine.axes().substr(3)) rotary_.push_back(joint_index(letter));
   }
-  return states;
-}
+
+  std::vector<Waypoint> run() {
+    if (program_.empty()) return {};
+    keep({0, 1, false}, start());
+    for (std::size_t row = 1; row < program_.size(); ++row) {
+      if (free_[row])
+        keep({row, 1, false}, freely(row));
+      else
+        follow(row);
+    }
+    return traced();
+  }
+
+ private:
+  struct Node {
+    std::size_t row;
+    double share;
+    bool rewound;
+    std::size_t begin = 0;  // of its stands in traces_
+  };
+
+  const Pose& pose(std::size_t row) const { return program_.poses()[row]; }
+
+  Joints joints_of(std::size_t row, const Pose& pose, int branch, const Joints& near) const {
+    try {
+      return machine_.joints(pose, branch, near, kFreeAngle);
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + e.what());
+    }
+  }
+
+  bool within(const Joints& joints) const { return machine_.beyond(joints, kSlack) == joints.size(); }
+
+  /// Adds where nothing as good stands at the same place.
+  void add(Stands& stands, const Stand& stand) const {
+    constexpr double kSame = 1e-6;  // deg: the least step that is printed
+    // Without limits one place per branch is enough: what is shorter so far stays so.
+    const bool limits = !machine_.limited().empty();
+    for (Stand& other : stands) {
+      if (other.branch != stand.branch || (limits && rotary_way(other.joints, stand.joints) > kSame)) continue;
+      if (stand.better(other)) other = stand;
+      return;
+    }
+    stands.push_back(stand);
+  }
+
+  /// Every place of the rotary axes at this pose that limits allow: on every branch, of the turns of a limited axis the
+  /// lowest, the highest and the one nearest to where it was.
+  void add_places(Stands& stands, std::size_t row, const Pose& pose, const Stand& from) const {
+    for (int b = 0; b < machine_.branches(); ++b) {
+      const Joints principal = joints_of(row, pose, b, from.joints);
+      std::vector<Joints> all{principal};
+      for (const std::size_t k : rotary_) {
+        if (!machine_.range(k).limited()) continue;
+        std::vector<Joints> more;
+        for (const Joints& joints : all)
+          for (const double angle : turns_within(machine_.range(k), joints[k])) {
+            more.push_back(joints);
+            more.back()[k] = angle;
+          }
+        all = std::move(more);
+      }
+      for (const Joints& place : all) {
+        Stand stand = from;
+        stand.joints = machine_.with_tip(place, pose.tip), stand.branch = static_cast<std::uint8_t>(b);
+        stand.way += rotary_way(from.joints, stand.joints);
+        if (within(stand.joints)) add(stands, stand);
+      }
+    }
+  }
+
+  static std::vector<double> turns_within(const AxisRange& range, double angle) {
+    std::vector<double> out;
+    const auto put = [&](double a) {
+      if (a < range.low - kSlack || a > range.high + kSlack) return;
+      a = std::clamp(a, range.low, range.high);
+      if (std::find(out.begin(), out.end(), a) == out.end()) out.push_back(a);
+    };
+    put(angle);
+    if (std::isfinite(range.low)) put(angle + 360 * std::ceil((range.low - kSlack - angle) / 360));
+    if (std::isfinite(range.high)) put(angle + 360 * std::floor((range.high + kSlack - angle) / 360));
+    return out;
+  }
+
+  /// Where the axes stand before the first row: a free axis as the first row that needs it will have it. A tie goes to
+  /// branch 0 and to the turn nearest to 0 whatever the rounding: their head start is the least step that is printed.
+  Stands start() const {
+    const auto away = std::find_if(program_.poses().begin(), program_.poses().end(),
+                                   [&](const Pose& p) { return pole_angle(p.axis, machine_.pole()) > kFreeAngle; });
+    Stands stands;
+    for (int b = 0; b < machine_.branches(); ++b) {
+      Stand before;
+      if (away != program_.poses().end())
+        before.joints = joints_of(static_cast<std::size_t>(away - program_.poses().begin()), *away, b, {});
+      Stands here;
+      add_places(here, 0, pose(0), before);
+      for (Stand& stand : here) {
+        if (stand.branch != b) continue;
+        stand.way = 1e-6 * b + 1e-9 * rotary_way({}, stand.joints);
+        add(stands, stand);
+      }
+    }
+    if (stands.empty()) refuse(0, pose(0));
+    return stands;
+  }
+
+  Stands freely(std::size_t row) const {
+    Stands next;
+    for (std::uint32_t k = 0; k < stands_.size(); ++k) {
+      Stand from = stands_[k];
+      from.from = k;
+      add_places(next, row, pose(row), from);
+    }
+    if (next.empty()) refuse(row, pose(row));
+    return next;
+  }
+
+  /// Along the great circle, with as many stops to turn axes back as limits ask for.
+  void follow(std::size_t row) {
+    const Pose &a = pose(row - 1), &b = pose(row);
+    if (opposite(a, b))
+      throw std::invalid_argument("poses, row " + std::to_string(row) +
+                                  ": the axis is opposite to that of the row before");
+    const bool may_change =
+        machine_.branches() > 1 && arc_pole_angle(a.axis, b.axis, machine_.pole()) <= axis_tolerance_ / 4;
+    bool dead = false;
+    Stands next = tied(row, b, stands_, may_change, &dead);
+    if (!dead) return keep({row, 1, false}, std::move(next));
+    // Somebody meets a limit: what could be gained by turning back first?
+    const Motion motion(a, b);
+    double share = 0;
+    for (int round = 0;; ++round) {
+      Stands turned = rewound(row, motion.at(share));
+      Stands after = tied(row, b, turned, may_change, nullptr);
+      if (!next.empty() || !after.empty()) {
+        if (after.empty() || (!next.empty() && !gains(after, next))) return keep({row, 1, false}, std::move(next));
+        keep({share > 0 ? row : row - 1, share > 0 ? share : 1, true}, std::move(turned));
+        return keep({row, 1, false}, std::move(after));
+      }
+      const double reached = reach(row, motion, share, turned);
+      if (!(reached > share + 1e-9) || round > 64) refuse(row, motion.at(std::min(1.0, share + 1e-6)));
+      keep({share > 0 ? row : row - 1, share > 0 ? share : 1, true}, std::move(turned));
+      Stands stop = tied(row, motion.at(reached), stands_, false, nullptr);
+      share = reached;
+      keep({row, share, false}, std::move(stop));
+      next = tied(row, b, stands_, may_change, nullptr);
+    }
+  }
+
+  /// Whether one of `after` stands where none of `next` does: a turn back costs more than any way, and is of use only
+  /// for a place that cannot be had without.
+  bool gains(const Stands& after, const Stands& next) const {
+    return std::any_of(after.begin(), after.end(), [&](const Stand& a) {
+      return std::none_of(next.begin(), next.end(), [&](const Stand& n) {
+        return n.branch == a.branch && rotary_way(n.joints, a.joints) <= 1e-6;
+      });
+    });
+  }
+
+  /// From `before` along the great circle to `to`. `dead`: whether one of them cannot go on.
+  Stands tied(std::size_t row, const Pose& to, const Stands& before, bool may_change, bool* dead) const {
+    Stands next;
+    for (std::uint32_t k = 0; k < before.size(); ++k) {
+      bool goes = false;
+      for (int b = 0; b < machine_.branches(); ++b) {
+        if (b != before[k].branch && !may_change) continue;
+        Stand stand = before[k];
+        stand.from = k, stand.branch = static_cast<std::uint8_t>(b);
+        stand.joints = joints_of(row, to, b, before[k].joints);
+        if (!within(stand.joints)) continue;
+        stand.way += rotary_way(before[k].joints, stand.joints);
+        add(next, stand), goes = true;
+      }
+      if (!goes && dead) *dead = true;
+    }
+    return next;
+  }
+
+  /// The stands of the node before and what they can be turned into.
+  Stands rewound(std::size_t row, const Pose& pose) const {
+    Stands out;
+    for (std::uint32_t k = 0; k < stands_.size(); ++k) {
+      Stand stay = stands_[k];
+      stay.from = k;
+      add(out, stay);
+      Stand leave = stay;
+      ++leave.rewinds;
+      add_places(out, row, pose, leave);
+    }
+    return out;
+  }
+
+  /// The largest share of the move at which one of the stands is still within the limits.
+  double reach(std::size_t row, const Motion& motion, double from, const Stands& stands) const {
+    constexpr int kSteps = 256;
+    double best = from;
+    for (const Stand& stand : stands) {
+      Joints at = stand.joints;
+      double good = from;
+      const auto goes_to = [&](double t) {
+        const Joints joints = joints_of(row, motion.at(t), stand.branch, at);
+        if (!within(joints)) return false;
+        at = joints, good = t;
+        return true;
+      };
+      int step = 1;
+      while (step <= kSteps && goes_to(from + (1 - from) * step / kSteps)) ++step;
+      double bad = from + (1 - from) * std::min(step, kSteps) / kSteps;
+      for (int k = 0; k < 60 && bad - good > 1e-15; ++k)
+        if (const double middle = (good + bad) / 2; !goes_to(middle)) bad = middle;
+      best = std::max(best, good);
+    }
+    return best;
+  }
+
+  void keep(Node node, Stands stands) {
+    node.begin = traces_.size();
+    nodes_.push_back(node);
+    for (const Stand& s : stands)
+      traces_.push_back({rotary_.empty() ? 0 : s.joints[rotary_[0]], rotary_.size() < 2 ? 0 : s.joints[rotary_[1]],
+                         s.from, s.branch});
+    stands_ = std::move(stands);
+  }
+
+  std::vector<Waypoint> traced() const {
+    const auto best =
+        std::min_element(stands_.begin(), stands_.end(), [](const Stand& a, const Stand& b) { return a.better(b); });
+    auto at = static_cast<std::size_t>(best - stands_.begin());
+    std::vector<Waypoint> out(nodes_.size());
+    for (std::size_t n = nodes_.size(); n-- > 0;) {
+      const Node& node = nodes_[n];
+      const Trace& trace = traces_[node.begin + at];
+      Joints joints{};
+      if (!rotary_.empty()) joints[rotary_[0]] = trace.first;
+      if (rotary_.size() > 1) joints[rotary_[1]] = trace.second;
+      const Vec3 tip = node.share < 1 ? Motion(pose(node.row - 1), pose(node.row)).tip(node.share) : pose(node.row).tip;
+      out[n] = {node.row, node.share, machine_.with_tip(joints, tip), node.rewound};
+      at = trace.from;
+    }
+    // Where turning back was possible but this way did without, there is nothing to see.
+    std::vector<Waypoint> kept;
+    for (const Waypoint& w : out)
+      if (!w.rewound || rotary_way(kept.back().joints, w.joints) > 1e-6) kept.push_back(w);
+    return kept;
+  }
+
+  [[noreturn]] void refuse(std::size_t row, const Pose& pose) const {
+    std::string text =
+        "poses, row " + std::to_string(row) + ": machine " + machine_.name() + " cannot hold it within its limits:";
+    for (int b = 0; b < machine_.branches(); ++b) {
+      const Joints joints = joints_of(row, pose, b, {});
+      if (const std::size_t k = machine_.beyond(joints, kSlack); k < joints.size()) {
+        const AxisRange& range = machine_.range(k);
+        char part[128];
+        std::snprintf(part, sizeof part, "%s %c would stand at %.6g (%.6g to %.6g)", b ? ";" : "", kJointLetters[k],
+                      joints[k], range.low, range.high);
+        text += part;
+      }
+    }
+    throw std::invalid_argument(text + "; place the part otherwise or tilt the tool less");
+  }
+
+  const Program& program_;
+  const Machine& machine_;
+  double axis_tolerance_;
+  std::vector<bool> free_;
+  std::vector<std::size_t> rotary_;  // in Joints
+  Stands stands_;                    // of the last node
+  std::vector<Node> nodes_;
+  std::vector<Trace> traces_;
+};
 
 }  // namespace
 
-std::vector<Joints> choose_joints(const Program& program, const Machine& machine, double axis_tolerance) {
-  const std::size_t n = program.size();
-  const int branches = machine.branches();
-  const Vec3 pole = machine.pole();
-  const States start = start_states(program, machine);
-  // came_from[row][b]: the branch of the row before on the shortest way to branch b of this row.
-  std::vector<std::array<std::uint8_t, kMaxBranches>> came_from(n);
-  States states = start;
-  for (std::size_t row = 0; row < n; ++row) {
-    bool may_change = row > 0 && branches > 1;
-    if (row > 0 && !program.rapid()[row]) {
-      const Vec3 &a = program.poses()[row - 1].axis, &b = program.poses()[row].axis;
-      if (angle_between(a, b) > std::numbers::pi - 1e-9)
-        throw std::invalid_argument("poses, row " + std::to_string(row) +
-                                    ": the axis is opposite to that of the row before");
-      may_change = may_change && arc_pole_angle(a, b, pole) <= axis_tolerance / 4;
-    }
-    States next;
-    for (int b = 0; b < branches; ++b) {
-      State& to = next[static_cast<std::size_t>(b)];
-      to.cost = std::numeric_limits<double>::infinity();
-      for (int from = 0; from < branches; ++from) {
-        if (from != b && !may_change) continue;
-        const State& before = states[static_cast<std::size_t>(from)];
-        const Joints joints = joints_of_row(program, row, machine, b, before.joints);
-        const double cost = before.cost + (row > 0 ? rotary_way(before.joints, joints) : 0);
-        if (cost < to.cost) {
-          to = {cost, joints};
-          came_from[row][static_cast<std::size_t>(b)] = static_cast<std::uint8_t>(from);
-        }
-      }
-    }
-    states = next;
+std::vector<bool> free_rapids(const Program& program) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t row = 0; row < program.size(); ++row)
+    if (!program.rapid()[row]) highest = std::max(highest, program.poses()[row].tip.z);
+  std::vector<bool> out(program.size());
+  for (std::size_t row = 1; row < program.size(); ++row) {
+    const Pose &a = program.poses()[row - 1], &b = program.poses()[row];
+    out[row] = program.rapid()[row] && ((a.tip.z > highest && b.tip.z > highest) || opposite(a, b));
   }
-
-  std::vector<std::uint8_t> branch(n);
-  std::uint8_t b = branches > 1 && states[1].cost < states[0].cost;
-  for (std::size_t row = n; row-- > 0; b = came_from[row][b]) branch[row] = b;
-  std::vector<Joints> out(n);
-  for (std::size_t row = 0; row < n; ++row)
-    out[row] = joints_of_row(program, row, machine, branch[row], row > 0 ? out[row - 1] : start[branch[0]].joints);
   return out;
 }
 
-/// A stretch of a move: shares t0 to t1 of it and the joints there.
-struct Subdivider::Part {
-  double t0, t1;
-  Joints j0, j1;
-};
-
-bool Subdivider::fits(const Motion& motion, const Part& part, bool rapid) const {
-  // Both errors vanish at the ends and are smooth between them: where the largest of nine samples is within 0.8 of the
-  // tolerance, so is what lies between the samples within the whole of it.
-  constexpr int kSamples = 9;
-  for (int i = 1; i <= kSamples; ++i) {
-    const double s = i / (kSamples + 1.0), t = part.t0 + s * (part.t1 - part.t0);
-    const Pose is = machine_.pose(mix(part.j0, part.j1, s)), wanted = motion.at(t);
-    if (glm::length(is.tip - wanted.tip) > 0.8 * tolerance_) return false;
-    if (!rapid && angle_between(is.axis, wanted.axis) > 0.8 * axis_tolerance_) return false;
-  }
-  return true;
-}
-
-/// Joints at the middle of the part, on the branch that is nearer to the joints' own middle. Close to the pole, closer
-/// than the axis need be held, the free axis moves on evenly: this is how a move that passes the pole changes branches.
-Joints Subdivider::between(const Motion& motion, const Part& part) const {
-  const Joints near = mix(part.j0, part.j1, 0.5);
-  const Pose pose = motion.at((part.t0 + part.t1) / 2);
-  Joints best{};
-  double least = std::numeric_limits<double>::infinity();
-  for (int b = 0; b < machine_.branches(); ++b) {
-    const Joints joints = machine_.joints(pose, b, near, axis_tolerance_ / 2);
-    const double way = rotary_way(near, joints);
-    if (way < least) least = way, best = joints;
-  }
-  return best;
-}
-
-const std::vector<Joints>& Subdivider::split(const Pose& a, const Joints& ja, const Pose& b, const Joints& jb,
-                                             bool rapid) {
-  // 2^40 parts of one move cannot be told apart in doubles; where the rotary axes are continuous it never comes to
-  // that.
-  constexpr double kLeast = 0x1p-40;
-  out_.clear();
-  const Motion motion(a, b);
-  // A stack of parts that are still to be done, the earliest on top.
-  std::vector<Part> todo{{0, 1, ja, jb}};
-  while (!todo.empty()) {
-    const Part part = todo.back();
-    todo.pop_back();
-    if (part.t1 - part.t0 <= kLeast || fits(motion, part, rapid)) {
-      out_.push_back(part.j1);
-      continue;
-    }
-    const double middle = (part.t0 + part.t1) / 2;
-    const Joints joints = between(motion, part);
-    todo.push_back({middle, part.t1, joints, part.j1});
-    todo.push_back({part.t0, middle, part.j0, joints});
-  }
-  return out_;
+std::vector<Waypoint> choose_joints(const Program& program, const Machine& machine, double axis_tolerance) {
+  return Chooser(program, machine, axis_tolerance).run();
 }
 
 }  // namespace riffler

@@ -1,5 +1,5 @@
-// From tool poses to the positions of a machine's axes: which of the two rotary branches, how many turns, and where a
-// move needs more blocks because rotary axes do not move along great circles.
+// From tool poses to the positions of a machine's axes: which of the two rotary branches, how many turns, and where
+// limits force the tool out of the material, so that an axis can be turned back.
 #pragma once
 
 #include <vector>
@@ -13,32 +13,29 @@ namespace riffler {
 /// precision must not turn the table.
 inline constexpr double kFreeAngle = 1e-6;
 
-/// One row of joints per row of the program: of all continuous choices of branches the one with the shortest rotary
-/// path over the whole program (Viterbi's dynamic programme over the branches). The branch may change in rapids and
-/// where the move passes the pole within axis_tolerance / 4, nowhere else: in between the rotary axes can follow the
-/// great circle on one branch only. Before the first row that is away from the pole, the free axis stands where that
-/// row has it. Throws std::invalid_argument naming the row that the machine cannot hold, and a feed move between
-/// opposite axes.
-std::vector<Joints> choose_joints(const Program& program, const Machine& machine, double axis_tolerance);
-
-/// Splits moves until axes that move linearly keep the tip within `tolerance` (mm) of the line and, in feed moves, the
-/// axis within `axis_tolerance` (rad) of the great circle, each at the same share of the move.
-class Subdivider {
- public:
-  Subdivider(const Machine& machine, double tolerance, double axis_tolerance)
-      : machine_(machine), tolerance_(tolerance), axis_tolerance_(axis_tolerance) {}
-
-  /// Joints at the ends of the blocks of the move from (pose a, joints ja) to (pose b, joints jb); the last is jb.
-  const std::vector<Joints>& split(const Pose& a, const Joints& ja, const Pose& b, const Joints& jb, bool rapid);
-
- private:
-  struct Part;
-  bool fits(const Motion& motion, const Part& part, bool rapid) const;
-  Joints between(const Motion& motion, const Part& part) const;
-
-  const Machine& machine_;
-  double tolerance_, axis_tolerance_;
-  std::vector<Joints> out_;
+/// Where the axes stand at the end of a row, or on its way.
+struct Waypoint {
+  std::size_t row;
+  double share;  ///< of the row's move; 1 at its end
+  Joints joints;
+  /// Not reached by the move: the waypoint before has the same pose with other joints, and the tool leaves the material
+  /// in between.
+  bool rewound = false;
 };
+
+/// Which rapids may turn the rotary axes in whatever way: those whose both ends lie above the tip of every feed move,
+/// and those between opposite axes, which have no great circle between them. Everywhere else the axes follow the great
+/// circle between two rows.
+std::vector<bool> free_rapids(const Program& program);
+
+/// One waypoint per row of the program, and more where the tool must leave. Of all choices of branches and turns within
+/// the machine's limits those that leave the material least often, and of these the one with the shortest rotary path
+/// over the whole program (dynamic programming over the places that the axes can have reached; Viterbi, IEEE Trans.
+/// Inf. Theory 13, 1967). The tool leaves at the last row that it can reach; within a move only where no row would do.
+/// The branch may change in free rapids and where a move passes the pole within axis_tolerance / 4, nowhere else: in
+/// between the rotary axes can follow the great circle on one branch only. Before the first row that is away from the
+/// pole, the free axis stands where that row has it. Throws std::invalid_argument naming the row that the machine
+/// cannot hold, and a feed move between opposite axes.
+std::vector<Waypoint> choose_joints(const Program& program, const Machine& machine, double axis_tolerance);
 
 }  // namespace riffler

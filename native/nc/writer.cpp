@@ -1,82 +1,38 @@
 #include "nc/writer.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <initializer_list>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
+#include "geom/directions.hpp"
 #include "geom/io.hpp"
 #include "nc/limits.hpp"
+#include "nc/machines.hpp"
+#include "nc/number_text.hpp"
+#include "nc/post.hpp"
 #include "nc/rotary.hpp"
+#include "nc/subdivider.hpp"
+#include "nc/way_out.hpp"
 
 namespace riffler {
 
 namespace {
 
-constexpr int kLengthDecimals = 5, kAngleDecimals = 6;
-constexpr double kMaxRotary = 3600;  // deg/min, where nothing else is said: ten turns a minute
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
+constexpr double kDegrees = 57.295779513082321;
 
-std::int64_t scale(int decimals) {
-  std::int64_t s = 1;
-  while (decimals-- > 0) s *= 10;
-  return s;
-}
-
-/// `value` in units of its last printed decimal: what is equal here is equal in print.
-std::int64_t ticks(double value, int decimals) {
-  return std::llround(value * static_cast<double>(scale(decimals)));
-}
-
-void put_integer(std::string& out, std::int64_t value) {
-  char digits[24];
-  out.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-}
-
-/// Fixed decimals; `trim` drops zeros at the end and a bare point.
-void put_ticks(std::string& out, std::int64_t value, int decimals, bool trim = false) {
-  if (value < 0) out += '-';
-  const std::int64_t size = std::abs(value);
-  put_integer(out, size / scale(decimals));
-  std::string rest;
-  put_integer(rest, size % scale(decimals));
-  rest.insert(0, static_cast<std::size_t>(decimals) - rest.size(), '0');
-  if (trim) rest.erase(rest.find_last_not_of('0') + 1);
-  if (!rest.empty()) out += '.', out += rest;
-}
-
-std::string number(double value, int decimals = 6) {
-  if (!(std::abs(value) < 1e9)) return "out of range";  // only sizes in comments can be
-  std::string out;
-  put_ticks(out, ticks(value, decimals), decimals, true);
-  return out;
-}
-
-/// Text that is safe inside a comment on any control: printable ASCII without brackets, not too long.
-std::string plain(std::string_view text) {
-  constexpr std::size_t kLongest = 200;
-  std::string out;
-  for (const char c : text.substr(0, kLongest)) {
-    const bool ascii = c >= ' ' && c <= '~';
-    out += c == '(' ? '[' : c == ')' ? ']' : ascii ? c : '?';
-  }
-  return out;
+std::string describe(const Tool& tool) {
+  std::string out = tool.kind();
+  for (const auto& [name, value] : tool.parameters()) out += ", " + name + " " + number_text(value);
+  return tool.name().empty() ? out : out + ", named " + tool.name();
 }
 
 class Writer {
  public:
   Writer(const Program& program, const WriteOptions& options)
-      : program_(program),
-        options_(options),
-        taken_(options.options, "post " + options.post),
-        machine_(make_machine(options.post, taken_)),
-        splitter_(*machine_, options.tolerance, options.axis_tolerance),
-        max_rotary_(taken_.positive("max_rotary").value_or(kMaxRotary)) {
+      : program_(program), options_(options), taken_(options.options, "post " + options.post) {
+    machine_ = make_machine(options.post, taken_);
+    post_ = make_post(*machine_, take_post_options(taken_));
     taken_.done();
     if (!(options.tolerance >= 2e-5 && options.tolerance <= kMaxLength))
       throw std::invalid_argument("tolerance must be a length of at least 0.00002 mm: lengths have 5 decimals");
@@ -84,184 +40,222 @@ class Writer {
       throw std::invalid_argument("axis_tolerance must be at least 1e-7 rad (angles have 6 decimals) and at most 1");
   }
 
-  std::string run() {
-    const std::vector<Joints> joints = choose_joints(program_, *machine_, options_.axis_tolerance);
-    header();
-    for (std::size_t row = 0; row < program_.size(); ++row) {
-      set_up(row);
-      const bool rapid = program_.rapid()[row];
-      if (row == 0) {
-        block(row, joints[row], rapid, true);
-        continue;
-      }
-      const std::vector<Pose>& poses = program_.poses();
-      const auto& parts = splitter_.split(poses[row - 1], joints[row - 1], poses[row], joints[row], rapid);
-      for (std::size_t k = 0; k < parts.size(); ++k) block(row, parts[k], rapid, k + 1 == parts.size());
-    }
-    if (spindle_ != 0) text_ += "M5\n";
-    text_ += "G49\nM30\n";
-    return std::move(text_);
+  std::string run(WriteReport& report) {
+    if (post_->wants_joints())
+      by_joints();
+    else
+      by_poses();
+    report_.blocks = post_->blocks();
+    report = std::move(report_);
+    return post_->text();
   }
 
  private:
-  void line(std::initializer_list<std::string_view> parts) {
-    for (const std::string_view part : parts) text_ += part;
-    text_ += '\n';
+  void by_poses() {
+    begin();
+    for (std::size_t row = 0; row < program_.size(); ++row) {
+      set_up(row);
+      const Pose& pose = program_.poses()[row];
+      check(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
+      put({pose, {}, program_.rapid()[row] != 0, false, feed_of(row), 0, true});
+    }
+    post_->end();
   }
 
-  void comment(std::initializer_list<std::string_view> parts) {
-    std::string text;
-    for (const std::string_view part : parts) text += part;
-    line({"(", plain(text), ")"});
+  void by_joints() {
+    const std::vector<Waypoint> way = choose_joints(program_, *machine_, options_.axis_tolerance);
+    const std::vector<bool> free = free_rapids(program_);
+    Subdivider splitter(*machine_, options_.tolerance, options_.axis_tolerance);
+    begin();
+    Pose before{};
+    for (const Waypoint& w : way) {
+      const std::size_t row = w.row;
+      if (w.rewound) {
+        rewind(row, before, w.joints, splitter);
+        continue;
+      }
+      set_up(row);
+      const Pose& end = program_.poses()[row];
+      if (row == 0) {
+        block(row, w.joints, end, true);
+        before = end;
+        continue;
+      }
+      const Pose to = w.share < 1 ? Motion(program_.poses()[row - 1], end).at(w.share) : end;
+      const Joints start = *stands_;
+      const auto& parts = splitter.split(before, start, to, w.joints, free[row]);
+      slowest_ = 1;
+      for (std::size_t k = 0; k < parts.size(); ++k) block(row, parts[k], to, k + 1 == parts.size());
+      if (!free[row]) note_passage(row, angle_between(before.axis, to.axis) * kDegrees, rotary_way(start, w.joints));
+      before = to;
+    }
+    post_->end();
   }
 
-  void header() {
-    comment({"Riffler, post ", options_.post});
-    comment({machine_->meaning()});
-    comment({"mm, degrees, feed in mm/min at the tip; tolerance ", number(options_.tolerance), " mm, axis ",
-             number(options_.axis_tolerance, 8), " rad"});
+  void begin() {
+    std::vector<std::string> comments{"Riffler " RIFFLER_VERSION ", post " + machine_->name(), machine_->meaning(),
+                                      "mm, degrees, feed in mm/min at the tip; tolerance " +
+                                          number_text(options_.tolerance) + " mm, axis " +
+                                          number_text(options_.axis_tolerance, 8) + " rad"};
     for (auto [key, value] : program_.provenance) {
       // "(LOGOPEN," and its like are commands to LinuxCNC.
       std::replace(key.begin(), key.end(), ',', ' ');
-      comment({key, ": ", value});
+      comments.push_back(key + ": " + value);
     }
-    for (const auto& [number, tool] : program_.tools) comment({"T", std::to_string(number), ": ", describe(tool)});
-    text_ += "G21 G90 G94\nG17 G40 G49 G80 G54\n";
-  }
-
-  static std::string describe(const Tool& tool) {
-    std::string out = tool.kind();
-    for (const auto& [name, value] : tool.parameters()) out += ", " + name + " " + number(value);
-    return tool.name().empty() ? out : out + ", named " + tool.name();
+    for (const auto& [number, tool] : program_.tools)
+      comments.push_back(std::string("T") + std::to_string(number) + ": " + describe(tool));
+    post_->begin(comments);
   }
 
   /// Tool and spindle as the row wants them, before its first block.
   void set_up(std::size_t row) {
     const int tool = program_.tool()[row];
     const double spindle = program_.spindle()[row];
-    const bool change = row == 0 || tool != tool_;
+    const bool change = !tool_ || tool != *tool_;
     if (change) {
-      if (row > 0) {
-        if (spindle_ != 0) text_ += "M5\n";
-        text_ += "G49\n";
-        spindle_ = 0;
-      }
-      if (tool > 0) line({"T", std::to_string(tool), " M6"});
-      tool_ = tool;
+      const auto shape = program_.tools.find(tool);
+      post_->change_tool(tool, shape == program_.tools.end() ? nullptr : &shape->second, !tool_);
+      tool_ = tool, spindle_ = 0;
     }
-    if (spindle != spindle_) {
-      if (spindle == 0)
-        text_ += "M5\n";
-      else
-        line({"S", number(std::abs(spindle)), spindle > 0 ? " M3" : " M4"});
-      spindle_ = spindle;
-    }
-    if (change) {
-      line({machine_->offset_block(tool)});
-      // A control may lose its modes in a tool change, and an offset moves the coordinates: say everything again.
-      printed_.fill(kNever);
-      motion_ = ' ';
-      feed_ = kNever;
-      if (inverse_) text_ += "G94\n", inverse_ = false;
-    }
+    if (spindle != spindle_) post_->spindle(spindle);
+    spindle_ = spindle;
+    if (change) post_->ready(tool);
   }
 
-  /// One block; `must`: a row ends here, so that it is written even where nothing moves.
-  void block(std::size_t row, const Joints& joints, bool rapid, bool must) {
-    std::string words;
+  /// Out along the axis, the rotary axes to `to` with the tip held, and back; the last stretch in feed.
+  void rewind(std::size_t row, const Pose& pose, const Joints& to, Subdivider& splitter) {
+    constexpr double kGap = 1;  // mm that the tool comes back in feed
+    if (!space_) space_ = space();
+    const auto shape = program_.tools.find(program_.tool()[row]);
+    std::vector<Pose> out = way_out(pose, Reach(shape == program_.tools.end() ? nullptr : &shape->second), *space_);
+    report_.rewinds.push_back(row);
+    Pose at = pose;
+    const auto straight = [&](const Pose& end, bool rapid) {
+      const std::vector<Joints> parts = splitter.split(at, *stands_, end, machine_->with_tip(*stands_, end.tip), false);
+      for (const Joints& part : parts) block(row, part, end, true, rapid);
+      at = end;
+    };
+    for (const Pose& p : out) straight(p, true);
+    const std::vector<Joints> turn = splitter.split(at, *stands_, at, machine_->with_tip(to, at.tip), true);
+    for (const Joints& part : turn) block(row, part, at, true, true);
+    out.pop_back();
+    for (std::size_t k = out.size(); k-- > 0;) straight(out[k], true);
+    const double apart = glm::length(at.tip - pose.tip);
+    if (apart > kGap) straight({pose.tip + kGap / apart * (at.tip - pose.tip), pose.axis}, true);
+    straight(pose, program_.rapid()[row] != 0);
+  }
+
+  Space space() const {
+    constexpr double kClearance = 10;
+    Box3 box;
+    double top = -std::numeric_limits<double>::infinity();
+    for (std::size_t row = 0; row < program_.size(); ++row) {
+      box.add(program_.poses()[row].tip);
+      if (program_.rapid()[row]) top = std::max(top, program_.poses()[row].tip.z);
+    }
+    // As high as the program itself goes; one without rapids gets its own height.
+    return {box.grown(kClearance), std::max(top, box.upper.z + (top < box.upper.z ? kClearance : 0))};
+  }
+
+  /// One block to `joints`; `must`: a row ends here, so that it is written even where nothing moves.
+  void block(std::size_t row, const Joints& joints, const Pose& pose, bool must) {
+    block(row, joints, pose, must, program_.rapid()[row] != 0);
+  }
+
+  void block(std::size_t row, const Joints& joints, const Pose& pose, bool must, bool rapid) {
+    check(row, joints);
+    PostBlock b{pose, joints, rapid, false, rapid ? 0 : feed_of(row), 0, must};
+    const Vec3 tip =
+        machine_->joint_words() || !stands_ ? machine_->pose(joints).tip : Vec3(joints[0], joints[1], joints[2]);
+    if (!rapid && stands_) take_time(row, b, glm::length(tip - tip_));
+    stands_ = joints, tip_ = tip;
+    put(b);
+  }
+
+  /// The tip's way at the row's feed, or as fast as the axes may go, whichever takes longer.
+  void take_time(std::size_t row, PostBlock& b, double way) {
+    double own = program_.feed()[row] > 0 ? way / program_.feed()[row] : 0, least = 0;
     bool turns = false;
-    for (const char letter : machine_->axes())
-      if (axis_word(words, row, letter, joints, false)) turns |= joint_index(letter) >= 3;
-    if (words.empty() && !must) return;
-    if (words.empty()) axis_word(words, row, machine_->axes().front(), joints, true);
-    const bool inverse = !rapid && turns && machine_->joint_words() && stands_;
-    std::string code;
-    if (!rapid && inverse != inverse_) code = inverse ? "G93 " : "G94 ", inverse_ = inverse, feed_ = kNever;
-    const char motion = rapid ? '0' : '1';
-    if (motion != motion_ || !code.empty()) code += std::string("G") + motion;
-    motion_ = motion;
-    if (code.empty()) words.erase(0, 1);
-    text_ += code, text_ += words;
-    if (!rapid && inverse)
-      time_word(row, joints);
-    else if (!rapid)
-      feed_word(row);
-    text_ += '\n';
-    stands_ = joints;
+    for (std::size_t k = 0; k < b.joints.size(); ++k) {
+      const double apart = std::abs(b.joints[k] - (*stands_)[k]);
+      if (apart == 0) continue;
+      if (k >= 3) turns |= ticks(b.joints[k], kAngleDecimals) != ticks((*stands_)[k], kAngleDecimals);
+      if (k >= 3 || machine_->joint_words()) least = std::max(least, apart / machine_->range(k).rate);
+    }
+    b.inverse = turns && machine_->joint_words();
+    b.minutes = std::max({own, least, 1 / kMaxFeed});
+    if (least > own * (1 + 1e-9)) {
+      report_.slowed += own > 0;
+      if (own > 0) slowest_ = std::max(slowest_, least / own);
+      if (!b.inverse && way > 0) b.feed = way / b.minutes;
+    }
   }
 
-  bool axis_word(std::string& text, std::size_t row, char letter, const Joints& joints, bool always) {
-    const std::size_t k = joint_index(letter);
-    const bool angle = k >= 3;
-    if (!(std::abs(joints[k]) <= (angle ? kMaxAngle : kMaxLength)))
-      throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + letter + " is out of range");
-    const int decimals = angle ? kAngleDecimals : kLengthDecimals;
-    const std::int64_t value = ticks(joints[k], decimals);
-    if (value == printed_[k] && !always) return false;
-    printed_[k] = value;
-    text += ' ';
-    text += letter;
-    put_ticks(text, value, decimals);
-    return true;
+  /// Where the rotary axes turn much more than the tool.
+  void note_passage(std::size_t row, double tool, double rotary) {
+    constexpr double kTimes = 5, kLeast = 10;  // deg
+    if (!(rotary > kTimes * tool && rotary > kLeast)) return;
+    if (!report_.passages.empty() && report_.passages.back().last + 1 >= row) {
+      PolePassage& last = report_.passages.back();
+      last.last = row, last.tool += tool, last.rotary += rotary, last.slowed = std::max(last.slowed, slowest_);
+    } else {
+      report_.passages.push_back({row, row, tool, rotary, slowest_});
+    }
   }
 
-  void feed_word(std::size_t row) {
-    const std::int64_t value = feed_of(row);
-    if (value == feed_) return;
-    feed_ = value;
-    text_ += " F";
-    put_ticks(text_, value, kFeedDecimals, true);
+  void check(std::size_t row, const Joints& joints) const {
+    for (const char letter : machine_->axes()) {
+      const std::size_t k = joint_index(letter);
+      if (!(std::abs(joints[k]) <= (k >= 3 ? kMaxAngle : kMaxLength)))
+        throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + letter + " is out of range");
+    }
+    const std::size_t k = machine_->beyond(joints, 1e-6);
+    if (k == joints.size()) return;
+    const AxisRange& range = machine_->range(k);
+    throw std::invalid_argument("poses, row " + std::to_string(row) + ": on the way there machine " + machine_->name() +
+                                " would leave the limits of " + kJointLetters[k] + ", " + number_text(range.low) +
+                                " to " + number_text(range.high) + ": " + number_text(joints[k]));
   }
 
-  /// Under G93: 1 / minutes, on every block. The tip's way at the row's feed, or as fast as the rotary axes may turn,
-  /// whichever takes longer.
-  void time_word(std::size_t row, const Joints& joints) {
-    const double way = glm::length(machine_->pose(joints).tip - machine_->pose(*stands_).tip);
-    double degrees = 0;
-    for (std::size_t k = 3; k < joints.size(); ++k) degrees = std::max(degrees, std::abs(joints[k] - (*stands_)[k]));
-    const double feed = program_.feed()[row];
-    const double minutes = std::max({feed > 0 ? way / feed : 0.0, degrees / max_rotary_, 1 / kMaxFeed});
-    text_ += " F";
-    put_ticks(text_, std::max<std::int64_t>(1, ticks(1 / minutes, kFeedDecimals)), kFeedDecimals, true);
-  }
+  void put(const PostBlock& b) { post_->block(b); }
 
   /// A row in which the tip stands still has no feed of its own: the one before goes on, or the next to come.
-  std::int64_t feed_of(std::size_t row) const {
+  double feed_of(std::size_t row) {
     const std::vector<double>& feed = program_.feed();
-    if (feed[row] == 0 && feed_ != kNever) return feed_;
+    if (program_.rapid()[row]) return 0;
+    if (feed[row] > 0) return last_feed_ = feed[row];
+    if (last_feed_ > 0) return last_feed_;
     const auto own =
         std::find_if(feed.begin() + static_cast<std::ptrdiff_t>(row), feed.end(), [](double f) { return f > 0; });
     if (own == feed.end()) throw std::invalid_argument("feed, row " + std::to_string(row) + ": no feed is known");
-    return std::max<std::int64_t>(1, ticks(*own, kFeedDecimals));
+    return last_feed_ = *own;
   }
-
-  static constexpr int kFeedDecimals = 6;
 
   const Program& program_;
   const WriteOptions& options_;
   OptionReader taken_;
   std::unique_ptr<Machine> machine_;
-  Subdivider splitter_;
+  std::unique_ptr<Post> post_;
+  WriteReport report_;
 
-  std::string text_;
-  std::array<std::int64_t, 6> printed_{};
-  char motion_ = ' ';
-  bool inverse_ = false;          // G93
   std::optional<Joints> stands_;  // after the last block
-  double max_rotary_;             // deg/min
-  std::int64_t feed_ = kNever;
-  int tool_ = 0;
-  double spindle_ = 0;
+  Vec3 tip_{0};                   // there
+  std::optional<Space> space_;
+  std::optional<int> tool_;
+  double spindle_ = 0, last_feed_ = 0, slowest_ = 1;
 };
 
 }  // namespace
 
-std::string to_nc(const Program& program, const WriteOptions& options) {
-  return Writer(program, options).run();
+std::string to_nc(const Program& program, const WriteOptions& options, WriteReport* report) {
+  WriteReport own;
+  return Writer(program, options).run(report ? *report : own);
 }
 
-void write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options) {
-  write_file(path, to_nc(program, options));
+WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options) {
+  WriteReport report;
+  write_file(path, to_nc(program, options, &report));
+  return report;
 }
 
 }  // namespace riffler

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "nc/cutter_path.hpp"
-#include "nc/machine.hpp"
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
 #include "support/nc_blocks.hpp"

@@ -8,6 +8,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "nc/machines.hpp"
+#include "nc/subdivider.hpp"
 #include "support/nc_blocks.hpp"
 
 namespace riffler {
@@ -34,6 +36,18 @@ Program feeds(const std::vector<Vec3>& axes) {
   Program p;
   for (std::size_t k = 0; k < axes.size(); ++k) p.append({{{static_cast<double>(k), 0, 0}, axes[k]}, 100});
   return p;
+}
+
+/// The joints at the rows' ends, of a machine without limits.
+std::vector<Joints> choose(const Program& program, const Machine& machine, double axis_tolerance) {
+  std::vector<Joints> out;
+  for (const Waypoint& w : choose_joints(program, machine, axis_tolerance)) {
+    EXPECT_FALSE(w.rewound);
+    EXPECT_EQ(w.row, out.size());
+    out.push_back(w.joints);
+  }
+  EXPECT_EQ(out.size(), program.size());
+  return out;
 }
 
 double way(const std::vector<Joints>& joints) {
@@ -70,7 +84,7 @@ TEST(TcpMachine, BothBranchesHoldThePoseAndKeepNearTheJointsBefore) {
 TEST(ChooseJoints, TurnsOnAndOnWithoutAJump) {
   std::vector<Vec3> axes;
   for (int k = 0; k <= 300; ++k) axes.push_back(tilted(20, 10.0 * k));
-  const auto joints = choose_joints(feeds(axes), *tcp(), kAxisTolerance);
+  const auto joints = choose(feeds(axes), *tcp(), kAxisTolerance);
   for (std::size_t k = 1; k < joints.size(); ++k) EXPECT_NEAR(joints[k][5] - joints[k - 1][5], 10, 1e-9);
   EXPECT_NEAR(joints.back()[5] - joints.front()[5], 3000, 1e-8);
 }
@@ -78,7 +92,7 @@ TEST(ChooseJoints, TurnsOnAndOnWithoutAJump) {
 TEST(ChooseJoints, SwingsThroughThePoleByTheSignOfA) {
   std::vector<Vec3> axes;
   for (int k = -10; k <= 10; ++k) axes.push_back(tilted(3 * k, 77));
-  const auto joints = choose_joints(feeds(axes), *tcp(), kAxisTolerance);
+  const auto joints = choose(feeds(axes), *tcp(), kAxisTolerance);
   EXPECT_NEAR(way(joints), 60, 1e-6) << "C never turns";
   for (std::size_t k = 0; k < joints.size(); ++k)
     EXPECT_LT(angle(axis_of(joints[k][3], joints[k][5]), axes[k]), 1.1e-6);
@@ -87,17 +101,18 @@ TEST(ChooseJoints, SwingsThroughThePoleByTheSignOfA) {
 TEST(ChooseJoints, KeepsCWhereItIsFree) {
   std::vector<Vec3> axes{tilted(0, 0), tilted(20, 130),   tilted(1e-6, 0),
                          tilted(0, 0), tilted(2e-6, 250), tilted(20, 150)};
-  const auto joints = choose_joints(feeds(axes), *tcp(), kAxisTolerance);
+  const auto joints = choose(feeds(axes), *tcp(), kAxisTolerance);
   for (std::size_t k : {0U, 2U, 3U, 4U}) EXPECT_EQ(joints[k][5], joints[1][5]);
   EXPECT_NEAR(way(joints), 20 + 20 + 20 + 20, 1e-4);
   // The same downwards, where C is free too.
   for (Vec3& axis : axes) axis.z = -axis.z;
-  const auto below = choose_joints(feeds(axes), *tcp(), kAxisTolerance);
+  const auto below = choose(feeds(axes), *tcp(), kAxisTolerance);
   EXPECT_NEAR(way(below), way(joints), 1e-4);
 }
 
-/// All 2^n choices of branches, with the rule that only rapids may change them.
+/// All 2^n choices of branches, with the rule that only rapids above everything may change them.
 double shortest_way(const Program& p, const Machine& machine) {
+  const std::vector<bool> free = free_rapids(p);
   double best = std::numeric_limits<double>::infinity();
   for (unsigned mask = 0; mask < 1U << p.size(); ++mask) {
     double sum = 0;
@@ -105,7 +120,7 @@ double shortest_way(const Program& p, const Machine& machine) {
     Joints before{};
     for (std::size_t row = 0; row < p.size() && allowed; ++row) {
       const unsigned branch = mask >> row & 1;
-      if (row > 0 && !p.rapid()[row] && branch != (mask >> (row - 1) & 1)) allowed = false;
+      if (row > 0 && !free[row] && branch != (mask >> (row - 1) & 1)) allowed = false;
       const Joints j = machine.joints(p.poses()[row], static_cast<int>(branch), before, 1e-6);
       if (row > 0) sum += std::abs(j[3] - before[3]) + std::abs(j[5] - before[5]);
       before = j;
@@ -121,10 +136,16 @@ TEST(ChooseJoints, IsTheShortestOfAllChoicesOverTheWholeProgram) {
   std::uniform_real_distribution<double> unit;
   for (int round = 0; round < 60; ++round) {
     Program p;
-    for (int k = 0; k < 9; ++k)
-      p.append(
-          {{{0.0 + k, 0, 0}, tilted(15 + 60 * unit(random), 360 * unit(random))}, 100, 0, 1, 0, unit(random) < 0.5});
-    EXPECT_NEAR(way(choose_joints(p, *machine, kAxisTolerance)), shortest_way(p, *machine), 1e-4) << "round " << round;
+    for (int k = 0; k < 9; ++k) {
+      const bool rapid = unit(random) < 0.6;
+      p.append({{{0.0 + k, 0, rapid ? 10.0 : 0.0}, tilted(15 + 60 * unit(random), 360 * unit(random))},
+                100,
+                0,
+                1,
+                0,
+                rapid});
+    }
+    EXPECT_NEAR(way(choose(p, *machine, kAxisTolerance)), shortest_way(p, *machine), 1e-4) << "round " << round;
   }
 }
 
@@ -174,7 +195,7 @@ TEST(Subdivider, HoldsTheAxisBetweenBlocksForAnyMove) {
     Program p;
     p.append({{{0, 0, 0}, oa}, 100});
     p.append({{{10, 5, 3}, ob}, 100});
-    const auto joints = choose_joints(p, *machine, tolerance);
+    const auto joints = choose(p, *machine, tolerance);
     Subdivider splitter(*machine, 0.01, tolerance);
     const auto& ends = splitter.split(p.poses()[0], joints[0], p.poses()[1], joints[1], false);
     EXPECT_EQ(ends.back(), joints[1]) << "the row is the end of a block";
@@ -190,7 +211,7 @@ TEST(Subdivider, AddsNothingWhereNothingTurnsAndInRapids) {
   const auto machine = tcp();
   Program p = feeds({tilted(30, 40), tilted(30, 40), tilted(30, 40)});
   p.append({{{50, 0, 0}, tilted(30, 170)}, 0, 0, 0, 0, true});
-  const auto joints = choose_joints(p, *machine, kAxisTolerance);
+  const auto joints = choose(p, *machine, kAxisTolerance);
   Subdivider splitter(*machine, 0.01, kAxisTolerance);
   for (std::size_t row = 1; row < p.size(); ++row)
     EXPECT_EQ(splitter.split(p.poses()[row - 1], joints[row - 1], p.poses()[row], joints[row], p.rapid()[row]).size(),

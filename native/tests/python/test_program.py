@@ -276,17 +276,17 @@ def test_programs_are_edited_into_new_ones(ball):
 
 
 def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball):
-    assert set(riffler.machines()) == {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "3-axis"}
-    assert all(riffler.machines().values())
+    machines = "tcp linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain apt"
+    assert list(riffler.machines()) == machines.split() and all(riffler.machines().values())
     p = riffler.Program.from_cl([spiral(3)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"
-    with pytest.raises(ValueError, match="known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, 3-axis"):
-        p.write(file, post="apt")
-    with pytest.raises(ValueError, match="known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, 3-axis"):
-        riffler.Program.read(__file__, machine="apt")
+    with pytest.raises(ValueError, match="known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
+        p.write(file, post="lathe")
+    with pytest.raises(ValueError, match="known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
+        riffler.Program.read(__file__, machine="lathe")
     with pytest.raises(ValueError, match="unknown option 'direction'"):
         p.write(file, options={"direction": "iso"})
-    with pytest.raises(ValueError, match="known: chord_tolerance"):
+    with pytest.raises(ValueError, match="known: tcp, .*chord_tolerance"):
         riffler.Program.read(__file__, options={"chords": 3})
     assert not file.exists()
 

@@ -1,4 +1,4 @@
-#include "nc/chain.hpp"
+#include "nc/machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,20 +71,23 @@ TEST(LinuxCncMachines, IsoTurnsBothAxesTheOtherWay) {
 }
 
 /// Every order of axes: two tables, a table and a head, two heads, one of them nutating by 45°.
-std::vector<ChainMachine> chains() {
+std::vector<Machine> chains() {
   const Vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), oblique = glm::normalize(Vec3(0, 1, 1));
-  std::vector<ChainMachine> out;
-  out.emplace_back(Chain{"ac tables", {{{'C', z, {1, 2, 3}}, {'A', x, {1, -7, 40}}}}, 2});
-  out.emplace_back(Chain{"bc tables", {{{'C', -z, {0, 0, 0}}, {'B', y, {5, 0, -20}}}}, 2});
-  out.emplace_back(Chain{"nutating table", {{{'C', z}, {'B', oblique, {0, 30, 30}}}}, 2});
-  out.emplace_back(Chain{"head and table", {{{'C', z, {9, 9, 9}}, {'B', y, {0, 0, 150}}}}, 1});
-  out.emplace_back(Chain{"heads", {{{'C', z, {0, 0, 180}}, {'A', x, {0, 0, 150}}}}, 0});
-  out.emplace_back(Chain{"nutating head", {{{'C', z, {0, 0, 200}}, {'B', oblique, {0, 0, 120}}}}, 0});
+  const auto joints = [](const char* name, std::vector<RotaryAxis> rotary) {
+    return Machine({name, std::move(rotary), {}, false, {}});
+  };
+  std::vector<Machine> out;
+  out.push_back(joints("ac tables", {{'C', z, {1, 2, 3}}, {'A', x, {1, -7, 40}}}));
+  out.push_back(joints("bc tables", {{'C', -z, {0, 0, 0}}, {'B', y, {5, 0, -20}}}));
+  out.push_back(joints("nutating table", {{'C', z}, {'B', oblique, {0, 30, 30}}}));
+  out.push_back(joints("head and table", {{'C', z, {9, 9, 9}}, {'B', y, {0, 0, 150}, false}}));
+  out.push_back(joints("heads", {{'C', z, {0, 0, 180}, false}, {'A', x, {0, 0, 150}, false}}));
+  out.push_back(joints("nutating head", {{'C', z, {0, 0, 200}, false}, {'B', oblique, {0, 0, 120}, false}}));
   return out;
 }
 
-TEST(ChainMachine, JointsHoldThePoseOnBothBranchesAndKeepNear) {
-  for (const ChainMachine& machine : chains()) {
+TEST(Machine, JointsHoldThePoseOnBothBranchesAndKeepNear) {
+  for (const Machine& machine : chains()) {
     SCOPED_TRACE(machine.axes());
     stress::Random random(2);
     int held = 0;
@@ -110,8 +113,8 @@ TEST(ChainMachine, JointsHoldThePoseOnBothBranchesAndKeepNear) {
   }
 }
 
-TEST(ChainMachine, KeepsTheFreeAxisAtThePoleAndItsDigitsNearIt) {
-  for (const ChainMachine& machine : chains()) {
+TEST(Machine, KeepsTheFreeAxisAtThePoleAndItsDigitsNearIt) {
+  for (const Machine& machine : chains()) {
     SCOPED_TRACE(machine.axes());
     const Vec3 pole = machine.pole();
     for (const double off : {0.0, 1e-15, 1e-12, 1e-9, 5e-7, 2e-6, 1e-4}) {
@@ -128,14 +131,45 @@ TEST(ChainMachine, KeepsTheFreeAxisAtThePoleAndItsDigitsNearIt) {
   }
 }
 
-TEST(ChainMachine, RefusesWhatIsNoMachine) {
-  const RotaryAxis a{'A', {1, 0, 0}}, c{'C', {0, 0, 1}};
-  EXPECT_THROW(ChainMachine(Chain{"", {a, a}}), std::invalid_argument);
-  EXPECT_THROW(ChainMachine(Chain{"", {RotaryAxis{'C', {1, 0, 0}}, c}}), std::invalid_argument);
-  EXPECT_THROW(ChainMachine(Chain{"", {RotaryAxis{'X', {1, 0, 0}}, c}}), std::invalid_argument);
-  EXPECT_THROW(ChainMachine(Chain{"", {RotaryAxis{'A', {0, 0, 1}}, c}}), std::invalid_argument);
-  EXPECT_THROW(ChainMachine(Chain{"", {RotaryAxis{'A', {2, 0, 0}}, c}}), std::invalid_argument);
-  EXPECT_THROW(ChainMachine(Chain{"", {RotaryAxis{'A', {1, 0, 0}, Vec3(0), 10, -10}, c}}), std::invalid_argument);
+TEST(Machine, RefusesWhatIsNoMachine) {
+  const RotaryAxis a{'A', {1, 0, 0}}, b{'B', {0, 1, 0}}, c{'C', {0, 0, 1}};
+  const auto machine = [](std::vector<RotaryAxis> rotary, AxisRange range = {}) {
+    MachineDescription d{"m", std::move(rotary), {}, true, {}};
+    d.ranges[3] = range;
+    return Machine(d);
+  };
+  EXPECT_NO_THROW(machine({c, a}));
+  EXPECT_THROW(machine({a, a}), std::invalid_argument);
+  EXPECT_THROW(machine({a, b, c}), std::invalid_argument);
+  EXPECT_THROW(machine({RotaryAxis{'C', {1, 0, 0}}, c}), std::invalid_argument);
+  EXPECT_THROW(machine({RotaryAxis{'X', {1, 0, 0}}, c}), std::invalid_argument);
+  EXPECT_THROW(machine({RotaryAxis{'A', {0, 0, 1}}, c}), std::invalid_argument) << "parallel";
+  EXPECT_THROW(machine({RotaryAxis{'A', {2, 0, 0}}, c}), std::invalid_argument);
+  EXPECT_THROW(machine({RotaryAxis{'C', {0, 0, 1}, {}, false}, a}), std::invalid_argument) << "a head before a table";
+  EXPECT_THROW(machine({c, a}, {10, -10}), std::invalid_argument);
+  EXPECT_THROW(machine({c, a}, {-10, 10, 0}), std::invalid_argument);
+}
+
+/// Axis at `tilt` from z towards the azimuth `around`, degrees.
+Vec3 tilted(double tilt, double around) {
+  return {std::sin(tilt * kDegree) * std::cos(around * kDegree), std::sin(tilt * kDegree) * std::sin(around * kDegree),
+          std::cos(tilt * kDegree)};
+}
+
+TEST(Machine, OfOneRotaryAxisHoldsWhatLiesInItsPlane) {
+  const Machine a({"4-axis", {{'A', {1, 0, 0}, {0, 0, -50}}}, {}, false, {}});
+  EXPECT_EQ(a.branches(), 1);
+  EXPECT_EQ(a.pole(), Vec3(0));
+  for (const double tilt : {-170.0, -20.0, 0.0, 1e-9, 90.0}) {
+    const Pose pose{{1, 2, 3}, tilted(tilt, 90)};
+    const Joints j = a.joints(pose, 0, {0, 0, 0, 720, 0, 0}, 1e-6);
+    EXPECT_LT(glm::length(a.pose(j).axis - pose.axis) + glm::length(a.pose(j).tip - pose.tip), 1e-12);
+    EXPECT_LE(std::abs(j[3] - 720), 180);
+  }
+  EXPECT_THROW(a.joints({{0, 0, 0}, tilted(20, 80)}, 0, {}, 1e-6), std::invalid_argument);
+  const Machine c({"rotary table", {{'C', {0, 0, 1}}}, {}, false, {}});
+  EXPECT_EQ(c.joints({{1, 2, 3}, {0, 0, 1}}, 0, {0, 0, 0, 0, 0, 77}, 1e-6)[5], 77) << "C is free";
+  EXPECT_THROW(c.joints({{0, 0, 0}, tilted(1, 0)}, 0, {}, 1e-6), std::invalid_argument);
 }
 
 }  // namespace

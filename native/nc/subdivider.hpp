@@ -1,0 +1,37 @@
+// Where a move needs more blocks, because the axes of a machine move linearly and the tool is to move on a line and a
+// great circle.
+#pragma once
+
+#include <vector>
+
+#include "nc/machine.hpp"
+
+namespace riffler {
+
+/// All axes at the share t of their way from a to b.
+Joints mix(const Joints& a, const Joints& b, double t);
+/// Degrees that the rotary axes turn between them, all together.
+double rotary_way(const Joints& a, const Joints& b);
+
+/// Splits moves until axes that move linearly keep the tip within `tolerance` (mm) of the line and the axis within
+/// `axis_tolerance` (rad) of the great circle, each at the same share of the move.
+class Subdivider {
+ public:
+  Subdivider(const Machine& machine, double tolerance, double axis_tolerance)
+      : machine_(machine), tolerance_(tolerance), axis_tolerance_(axis_tolerance) {}
+
+  /// Joints at the ends of the blocks of the move from (pose a, joints ja) to (pose b, joints jb); the last is jb.
+  /// `free`: the axis may go any way between its ends.
+  const std::vector<Joints>& split(const Pose& a, const Joints& ja, const Pose& b, const Joints& jb, bool free);
+
+ private:
+  struct Part;
+  bool fits(const Motion& motion, const Part& part, bool free) const;
+  Joints between(const Motion& motion, const Part& part, bool free) const;
+
+  const Machine& machine_;
+  double tolerance_, axis_tolerance_;
+  std::vector<Joints> out_;
+};
+
+}  // namespace riffler

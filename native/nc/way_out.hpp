@@ -1,0 +1,27 @@
+// How a tool leaves the material: along its axis, then up.
+#pragma once
+
+#include <vector>
+
+#include "geom/pose.hpp"
+#include "tool/tool.hpp"
+
+namespace riffler {
+
+/// The cylinder about the axis that holds a tool; nothing is known of an unknown tool.
+struct Reach {
+  double length = 0, radius = 0;  ///< mm
+
+  explicit Reach(const Tool* tool);
+};
+
+struct Space {
+  Box3 box;    ///< all tips and what is occupied, grown by the clearance
+  double top;  ///< z of the tip in rapids from cut to cut
+};
+
+/// Where the tip goes from `pose` to safe height with the axis kept: first along the axis out of the space, last the
+/// point at safe height.
+std::vector<Pose> way_out(const Pose& pose, const Reach& reach, const Space& space);
+
+}  // namespace riffler
