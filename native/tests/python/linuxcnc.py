@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -65,31 +65,40 @@ def interpreted(path: Path) -> Moves:
     return Moves(np.array(joints), np.array(rapid), np.array(minutes))
 
 
-def rotation(axis: int, degrees: np.ndarray) -> np.ndarray:
-    """(n, 3, 3): right-handed about coordinate axis 0, 1 or 2."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    out = np.zeros((len(degrees), 3, 3))
-    u, v = (axis + 1) % 3, (axis + 2) % 3
-    out[:, axis, axis] = 1
-    out[:, u, u] = out[:, v, v] = c
-    out[:, u, v], out[:, v, u] = -s, s
+@dataclass
+class Axes:
+    """A machine by its rotary axes: (letter, direction, point), tables from the part to the bed, heads from the bed to
+    the tool; directions about which a positive angle turns what the axis carries, right-handed; points of tables in
+    part coordinates, of heads from the tip, all at 0. tip: X Y Z are the tip's place in part coordinates."""
+
+    tables: list = field(default_factory=list)
+    heads: list = field(default_factory=list)
+    tip: bool = False
+
+
+def about(direction, point, degrees: np.ndarray) -> np.ndarray:
+    """(n, 4, 4): turns about a line, by the matrix exponential of the cross product."""
+    k = np.asarray(direction, float) / np.linalg.norm(direction)
+    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    angle = np.radians(degrees)[:, None, None]
+    out = np.tile(np.eye(4), (len(degrees), 1, 1))
+    out[:, :3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    out[:, :3, 3] = np.asarray(point, float) - out[:, :3, :3] @ np.asarray(point, float)
     return out
 
 
-def table_table(joints: np.ndarray, tilt: str, rot_point, offset) -> np.ndarray:
-    """(n, 6) tool poses on a tilting table A or B that carries a rotary table C: the part is turned by C about the
-    rot_point, then by the tilting axis, which is off it; the tool stands upright at X Y Z. With matrices, not by
-    LinuxCNC's formulas nor ours."""
-    axis = "AB".index(tilt)
-    centre = np.asarray(rot_point, float)
-    apart = np.array(offset, float)
-    apart[axis] = 0
-    c, a = rotation(2, joints[:, 5]), rotation(axis, joints[:, 3 + axis])
-    # A point q of the part is at  tilt + a (c (q − centre) + centre − tilt), tilt = centre + apart.
-    back = np.einsum("nji,nj->ni", a, joints[:, :3] - centre - apart) + apart
-    tips = np.einsum("nji,nj->ni", c, back) + centre
-    axes = np.einsum("nji,nj->ni", c, np.einsum("nji,j->ni", a, [0.0, 0.0, 1.0]))
-    return np.hstack([tips, axes])
+def poses(joints: np.ndarray, axes: Axes) -> np.ndarray:
+    """(n, 6) tool poses in part coordinates of joints (n, 6), X Y Z A B C: with matrices from the part over the bed to
+    the tool, not by LinuxCNC's formulas nor ours."""
+    part = tool = np.tile(np.eye(4), (len(joints), 1, 1))
+    for letter, direction, point in axes.tables:
+        part = about(direction, point, joints[:, 3 + "ABC".index(letter)]) @ part
+    for letter, direction, point in axes.heads:
+        tool = tool @ about(direction, point, joints[:, 3 + "ABC".index(letter)])
+    linear = np.tile(np.eye(4), (len(joints), 1, 1))
+    linear[:, :3, 3] = joints[:, :3]
+    stands = np.linalg.inv(part) @ linear @ tool
+    return np.hstack([joints[:, :3] if axes.tip else stands[:, :3, 3], stands[:, :3, 2]])
 
 
 def between(joints: np.ndarray, parts: int) -> np.ndarray:

@@ -9,7 +9,38 @@ import linuxcnc
 pytestmark = linuxcnc.needed
 
 ROT_POINT, OFFSET = [12.0, -7.0, 30.0], [3.0, 4.0, -25.0]
-POSTS = {"linuxcnc-xyzac": "A", "linuxcnc-xyzbc": "B"}
+PIVOT = 180.0
+X, Y, Z = np.eye(3)
+TABLE = {"rot_point": ROT_POINT, "offset": OFFSET}
+
+
+def tilting(letter, axis, offset=OFFSET):
+    """A tilting table under a rotary table C; the offset counts across the tilting axis."""
+    apart = np.array(ROT_POINT) + np.where(axis, 0, offset)
+    return linuxcnc.Axes(tables=[("C", Z, ROT_POINT), (letter, axis, apart)])
+
+
+def tips(axes):
+    return linuxcnc.Axes(axes.tables, axes.heads, tip=True)
+
+
+HEADS = linuxcnc.Axes(heads=[("C", Z, [0, 0, PIVOT]), ("B", Y, [0, 0, PIVOT])])
+HEAD_TABLE = linuxcnc.Axes(tables=[("C", -Z, ROT_POINT)], heads=[("B", Y, [0, 0, PIVOT])])
+# What is written, with which options, and the machine by which it is judged.
+POSTS = {
+    "linuxcnc-xyzac": ("linuxcnc-xyzac", TABLE, tilting("A", X)),
+    "linuxcnc-xyzbc": ("linuxcnc-xyzbc", TABLE, tilting("B", Y)),
+    "linuxcnc-xyzac, kinematics on": ("linuxcnc-xyzac", TABLE | {"tcp": True}, tips(tilting("A", X))),
+    "head-head": ("head-head", {}, tips(HEADS)),
+    "head-head, its axes": ("head-head", {"tcp": False, "pivot_length": PIVOT}, HEADS),
+    "head-table": ("head-table", {"rot_point": ROT_POINT}, tips(HEAD_TABLE)),
+    "head-table, its axes": (
+        "head-table", {"tcp": False, "pivot_length": PIVOT, "rot_point": ROT_POINT}, HEAD_TABLE
+    ),
+    # LinuxCNC has no G43.4; the words are the same under G43.
+    "tcp": ("tcp", {"tool_length": "G43"}, linuxcnc.Axes(heads=[("C", Z, [0, 0, 0]), ("A", X, [0, 0, 0])], tip=True)),
+}  # fmt: skip
+JOINTS = ["linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head, its axes", "head-table, its axes"]
 PRINTED = 2e-4  # rs274 prints 4 decimals
 
 
@@ -49,7 +80,8 @@ def written(tmp_path, poses, post, tolerance=0.01, **options):
     # One pose a move: what has no length of its own still has the feed of those beside it.
     program = riffler.Program.from_cl([poses], tools=[tool], feed=600, spindle=8000)
     file = tmp_path / "p.ngc"
-    program.write(file, post=post, tolerance=tolerance, options={"rot_point": ROT_POINT, "offset": OFFSET, **options})
+    name, own, _ = POSTS[post]
+    program.write(file, post=name, tolerance=tolerance, options=own | options)
     return file
 
 
@@ -59,12 +91,11 @@ def off(a, b):
     return far, 2 * np.arcsin(np.minimum(1, np.linalg.norm(a[..., 3:] - b[..., 3:], axis=-1) / 2))
 
 
-def judged(file, post, poses, **kinematics):
+def judged(file, axes, poses):
     """How far the program is off the poses at their blocks, and off the moves between them, mm and rad."""
     moves = linuxcnc.interpreted(file)
-    where = {"tilt": POSTS[post], "rot_point": ROT_POINT, "offset": OFFSET, **kinematics}
     joints = moves.joints[1:]
-    at = linuxcnc.table_table(joints, **where)
+    at = linuxcnc.poses(joints, axes)
     # Every pose is the end of a block, in their order.
     ends, start, worst = [], 0, np.zeros(2)
     for pose in poses:
@@ -75,7 +106,7 @@ def judged(file, post, poses, **kinematics):
         start = k + (len(ends) < len(poses) and not np.array_equal(pose, poses[len(ends)]))
     inner = np.zeros(2)
     for first, last, a, b in zip(ends, ends[1:], poses, poses[1:], strict=False):
-        dense = linuxcnc.table_table(linuxcnc.between(joints[first : last + 1], 16).reshape(-1, 6), **where)
+        dense = linuxcnc.poses(linuxcnc.between(joints[first : last + 1], 16).reshape(-1, 6), axes)
         way = b[:3] - a[:3]
         share = np.clip((dense[:, :3] - a[:3]) @ way / max(way @ way, 1e-300), 0, 1)[:, None]
         aside = np.linalg.norm(dense[:, :3] - a[:3] - share * way, axis=1).max(initial=0)
@@ -90,17 +121,17 @@ def judged(file, post, poses, **kinematics):
 @pytest.mark.parametrize("name", PATHS)
 def test_blocks_hold_the_poses_and_the_ways_between_them_the_tolerances(tmp_path, post, name):
     poses = path(name)
-    worst, inner, moves = judged(written(tmp_path, poses, post), post, poses)
+    worst, inner, moves = judged(written(tmp_path, poses, post), POSTS[post][2], poses)
     reach = np.abs(moves.joints[:, :3]).max() + 50  # what a printed angle's last digit moves
     assert worst[0] <= 1e-3 + reach * 2e-6 and np.degrees(worst[1]) <= 1e-3
     assert inner[0] <= 0.01 + PRINTED + reach * 2e-6 and inner[1] <= 0.00175 + 1e-5
 
 
-@pytest.mark.parametrize("post", POSTS)
+@pytest.mark.parametrize("post", JOINTS)
 def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, post):
     poses = path("smooth")
     moves = linuxcnc.interpreted(written(tmp_path, poses, post, max_rotary=2000.0))
-    at = linuxcnc.table_table(moves.joints, POSTS[post], ROT_POINT, OFFSET)
+    at = linuxcnc.poses(moves.joints, POSTS[post][2])
     way = np.linalg.norm(np.diff(at[:, :3], axis=0), axis=1)
     turn = abs(np.diff(moves.joints[:, 3:], axis=0)).max(1)
     wanted = np.maximum(way / 600, turn / 2000)
@@ -111,16 +142,17 @@ def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, pos
 
 def test_mutations_do_not_pass(tmp_path):
     post, poses = "linuxcnc-xyzac", path("smooth")
+    axes = POSTS[post][2]
     file = written(tmp_path, poses, post)
     text = file.read_text()
 
     def error(changed):
         file.write_text(changed)
         try:
-            worst, inner, moves = judged(file, post, poses)
+            worst, inner, moves = judged(file, axes, poses)
         except linuxcnc.RefusedError:
             return np.inf
-        at = linuxcnc.table_table(moves.joints, "A", ROT_POINT, OFFSET)
+        at = linuxcnc.poses(moves.joints, axes)
         minutes = np.linalg.norm(np.diff(at[:, :3], axis=0), axis=1) / 600
         fed = ~moves.rapid[1:]
         late = abs(moves.minutes[1:] - minutes)[fed].max()
@@ -134,11 +166,11 @@ def test_mutations_do_not_pass(tmp_path):
     dropped = next(k for k, line in enumerate(lines) if "F" in line and "G" not in line and "(" not in line)
     lines[dropped] = lines[dropped].split(" F")[0]
     assert error("\n".join(lines)) > 1, "an F that is missing under G93"
-    worst, _, _ = judged(written(tmp_path, poses, post), post, poses, offset=[0, 0, 0])
+    worst, _, _ = judged(written(tmp_path, poses, post), tilting("A", X, [0, 0, 0]), poses)
     assert worst[0] > 1, "another machine"
 
 
-@pytest.mark.parametrize("post", POSTS)
+@pytest.mark.parametrize("post", ["linuxcnc-xyzac", "linuxcnc-xyzbc"])
 def test_iso_directions_turn_the_other_way(tmp_path, post):
     poses = path("smooth")
     own = linuxcnc.interpreted(written(tmp_path, poses, post)).joints
@@ -157,3 +189,20 @@ def test_three_axis_programs_are_read_as_they_are(tmp_path):
     joints = linuxcnc.interpreted(file).joints
     for pose in poses:
         assert np.linalg.norm(joints[:, :3] - pose[:3], axis=1).min() <= PRINTED
+
+
+def test_where_a_limit_is_met_the_tool_turns_back_above_the_part(tmp_path):
+    poses = path("wound up")  # 15 rad round
+    for post in JOINTS:
+        file = written(tmp_path, poses, post, limits_c=[-200, 200])
+        axes = POSTS[post][2]
+        worst, _, moves = judged(file, axes, poses)
+        assert worst[0] <= 2e-3 and np.degrees(worst[1]) <= 1e-3
+        assert abs(moves.joints[:, 5]).max() <= 200
+        ways = np.diff(moves.joints, axis=0)
+        back = abs(ways[:, 5]) > 1e-9
+        at = linuxcnc.poses(moves.joints, axes)
+        # Turns against the path's sense happen in rapids, as high as the program goes.
+        against = back & (np.sign(ways[:, 5]) != np.sign(np.sum(ways[~moves.rapid[1:], 5])))
+        assert against.any() and moves.rapid[1:][against].all(), post
+        assert at[1:][against, 2].min() > poses[:, 2].max() + 9

@@ -280,13 +280,13 @@ def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball)
     assert list(riffler.machines()) == machines.split() and all(riffler.machines().values())
     p = riffler.Program.from_cl([spiral(3)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"
-    with pytest.raises(ValueError, match="known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
+    with pytest.raises(ValueError, match=r"known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
         p.write(file, post="lathe")
-    with pytest.raises(ValueError, match="known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
+    with pytest.raises(ValueError, match=r"known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
         riffler.Program.read(__file__, machine="lathe")
     with pytest.raises(ValueError, match="unknown option 'direction'"):
         p.write(file, options={"direction": "iso"})
-    with pytest.raises(ValueError, match="known: tcp, .*chord_tolerance"):
+    with pytest.raises(ValueError, match=r"known: tcp, .*chord_tolerance"):
         riffler.Program.read(__file__, options={"chords": 3})
     assert not file.exists()
 

@@ -1,0 +1,149 @@
+// What each language makes of the same program.
+#include "nc/post.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "nc/cutter_path.hpp"
+#include "nc/reader.hpp"
+#include "nc/writer.hpp"
+#include "support/nc_blocks.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler {
+namespace {
+
+Program two_tools() {
+  std::vector<CutterPath> paths;
+  for (int k = 0; k < 2; ++k) {
+    CutterPath path{{}, {600.0 + k}, k ? -9000.0 : 8000.0, 1 + k};
+    for (int i = 0; i < 6; ++i)
+      path.poses.push_back({{10.0 * i, 2.0 * i * i, -k - 0.5 * i}, glm::normalize(Vec3(0.1 * i, 0.2 - 0.1 * i, 1))});
+    paths.push_back(path);
+  }
+  Program p = program_from_paths(paths, {});
+  p.tools.emplace(1, cutters::ball(6, 30));
+  p.provenance = {{"part", "ä (1).stl"}};
+  return p;
+}
+
+std::string text_of(const Program& p, const char* post, Options options = {}) {
+  WriteOptions how;
+  how.post = post, how.options = std::move(options);
+  return to_nc(p, how);
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+TEST(Rs274Post, NumbersLinesWhereItIsAsked) {
+  int expected = 0;
+  for (const std::string& line : lines(text_of(two_tools(), "tcp", {{"line_numbers", 5.0}}))) {
+    if (line[0] == '(') continue;
+    EXPECT_TRUE(line.starts_with("N" + std::to_string(expected += 5) + " ")) << line;
+  }
+  const std::string numbered = text_of(two_tools(), "tcp", {{"line_numbers", 1.0}});
+  const Program a = parse_nc(numbered, "p.ngc"), b = parse_nc(text_of(two_tools(), "tcp"), "p.ngc");
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t row = 0; row < a.size(); ++row) EXPECT_EQ(a.poses()[row].tip, b.poses()[row].tip);
+}
+
+TEST(Rs274Post, SwitchesCoolantAndRetractsWhereItIsAsked) {
+  const std::string text = text_of(two_tools(), "tcp", {{"coolant", std::string("flood")}, {"retract", -2.5}});
+  std::size_t retracts = 0;
+  for (const std::string& line : lines(text)) retracts += line == "G53 G0 Z-2.5";
+  EXPECT_EQ(retracts, 3U) << "before everything, before the second tool, after everything";
+  EXPECT_NE(text.find("M8\nG43.4 H1"), text.npos);
+  EXPECT_NE(text.find("M9\nG49\nG53 G0 Z-2.5\nM30\n"), text.npos);
+  // After it, all words are said again.
+  EXPECT_NE(text.find("G43.4 H1\nG0 X"), text.npos);
+}
+
+TEST(HeidenhainPost, CountsItsBlocksAndKeepsTheTip) {
+  const auto all = lines(text_of(two_tools(), "heidenhain", {{"coolant", std::string("mist")}}));
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_TRUE(all[k].starts_with(std::to_string(k) + " ")) << all[k];
+  EXPECT_EQ(all.front(), "0 BEGIN PGM RIFFLER MM");
+  EXPECT_TRUE(all.back().ends_with(" END PGM RIFFLER MM"));
+  std::string text;
+  for (const std::string& line : all) text += line.substr(line.find(' ') + 1) + "\n";
+  EXPECT_NE(text.find("; part: ?? [1].stl"), text.npos);
+  EXPECT_NE(text.find("TOOL CALL 1 Z S8000\nM3\nM7\nM128\nL X"), text.npos);
+  EXPECT_NE(text.find("M129\nM5\nTOOL CALL 2 Z S9000\nM4\nM7\nM128\nL X"), text.npos);
+  EXPECT_NE(text.find(" FMAX\n"), text.npos);
+  EXPECT_NE(text.find(" F600\n"), text.npos);
+  EXPECT_TRUE(text.find("M129\nM5\nM9\nM30\nEND PGM") != text.npos);
+}
+
+/// Poses of L and LN blocks: axis words as tcp has them, or the vector.
+std::vector<Pose> heidenhain_poses(const std::string& text) {
+  std::vector<Pose> out;
+  std::map<std::string, double> at;
+  for (const std::string& line : lines(text)) {
+    std::istringstream in(line);
+    std::string number, kind, word;
+    in >> number >> kind;
+    if (kind != "L" && kind != "LN") continue;
+    while (in >> word) {
+      const std::size_t sign = word.find_first_of("+-");
+      if (sign != word.npos) at[word.substr(0, sign)] = std::stod(word.substr(sign));
+    }
+    const Vec3 axis = kind == "LN" ? Vec3(at["TX"], at["TY"], at["TZ"]) : Vec3(test::axis_of(at["A"], at["C"]));
+    out.push_back({{at["X"], at["Y"], at["Z"]}, axis});
+  }
+  return out;
+}
+
+TEST(HeidenhainPost, HoldsEveryPoseByAnglesAndByVectors) {
+  const Program p = two_tools();
+  for (const bool vectors : {false, true}) {
+    const auto poses = heidenhain_poses(text_of(p, "heidenhain", {{"vectors", vectors}}));
+    std::size_t at = 0;
+    for (const Pose& wanted : p.poses()) {
+      while (at < poses.size() &&
+             (glm::length(poses[at].tip - wanted.tip) > 1e-5 || test::angle(poses[at].axis, wanted.axis) > 1e-7))
+        ++at;
+      ASSERT_LT(at, poses.size()) << (vectors ? "vectors" : "angles");
+    }
+  }
+}
+
+TEST(AptPost, SaysEveryRowAsItIs) {
+  const Program p = two_tools();
+  const auto all = lines(text_of(p, "apt"));
+  EXPECT_EQ(all.front(), "PARTNO RIFFLER");
+  EXPECT_EQ(all.back(), "FINI");
+  std::vector<Pose> poses;
+  std::vector<bool> rapids;
+  bool rapid = false;
+  for (const std::string& line : all) {
+    EXPECT_LE(line.size(), 250U);
+    if (line == "RAPID") rapid = true;
+    if (!line.starts_with("GOTO/")) continue;
+    Pose pose;
+    ASSERT_EQ(std::sscanf(line.c_str(), "GOTO/%lf,%lf,%lf,%lf,%lf,%lf", &pose.tip.x, &pose.tip.y, &pose.tip.z,
+                          &pose.axis.x, &pose.axis.y, &pose.axis.z),
+              6);
+    poses.push_back(pose), rapids.push_back(rapid);
+    rapid = false;
+  }
+  ASSERT_EQ(poses.size(), p.size());
+  for (std::size_t row = 0; row < p.size(); ++row) {
+    EXPECT_LT(glm::length(poses[row].tip - p.poses()[row].tip), 1e-5);
+    EXPECT_LT(glm::length(poses[row].axis - p.poses()[row].axis), 2e-9);
+    EXPECT_EQ(rapids[row], p.rapid()[row] != 0);
+  }
+  const auto has = [&](const std::string& line) { return std::find(all.begin(), all.end(), line) != all.end(); };
+  EXPECT_TRUE(has("CUTTER/6,3,0,3,0,0,30"));
+  EXPECT_TRUE(has("SPINDL/8000,RPM,CLW"));
+  EXPECT_TRUE(has("SPINDL/9000,RPM,CCLW"));
+  EXPECT_TRUE(has("FEDRAT/600,MMPM"));
+}
+
+}  // namespace
+}  // namespace riffler
