@@ -243,7 +243,8 @@ std::string repr(const Program& program) {
 
 void bind_program(py::module_& m) {
   m.def("machines", &machine_list,
-        "Machines that programs are written for and read from: name to description. A post has its machine's name.");
+        "Machines that programs are written for and read from, ours and your own: name to description. A post has its "
+        "machine's name; the path of a .toml file that describes one will do as well.");
 
   py::class_<Program>(m, "Program", R"(Where the tool goes, how fast and with which tool; immutable.
 
@@ -300,12 +301,17 @@ Every row is the end of a block; more blocks come between two rows where machine
 tip more than ``tolerance`` (mm) off the straight line or the axis more than ``axis_tolerance`` (rad) off the great
 circle. The same program gives the same bytes.
 
-Options of ``linuxcnc-xyzac`` and ``linuxcnc-xyzbc``: ``direction`` ``"linuxcnc"`` (a positive angle turns the part
-right-handed) or ``"iso"`` (both the other way); ``rot_point`` [x, y, z], ``offset`` [dx, dy, dz] and ``tool_offset``, mm,
-named as LinuxCNC's pins; ``tcp``: False writes where the axes stand, for kinematics that are off (M429), True the tip
-in part coordinates, for kinematics that are on (M428). Of all: ``max_rotary``, deg/min (3600). Where a rotary axis moves
-beside linear ones that are written as they stand, blocks are under G93, each with F = 1 / minutes: the tip's way at the
-feed, or longer where ``max_rotary`` asks for it.)")
+Options are the machine's (``rot_point``, ``offset``, ``tool_offset`` of LinuxCNC's tables, named as its pins;
+``pivot_length`` of heads), and of all: ``tcp`` (False: X Y Z are where the axes stand; True: the tip in part
+coordinates), ``direction`` (``"linuxcnc"`` or ``"iso"``, of tables), ``limits_x`` … ``limits_c`` [low, high], ``rate_x`` …
+``rate_c``, ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``arcs``, ``vectors``: docs/machines.md. Where a
+rotary axis moves beside linear ones that are written as they stand, blocks are under G93, each with F = 1 / minutes: the
+tip's way at the feed, or longer where an axis's rate asks for it.
+
+Returns a dict: ``blocks``; ``slowed_blocks``, longer than their feed asks; ``rewinds``, the rows at which the tool leaves
+the material because a limit asks to turn an axis back; ``pole_passages``, near the singular direction: a list of dicts of
+``first_row``, ``last_row``, ``tool_degrees``, ``rotary_degrees`` and ``slowed`` (the worst block's time by what its feed
+would take).)")
       .def_property_readonly("poses", &poses, "(n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.")
       .def_property_readonly("feed", column_getter(&Program::feed), "(n,) mm/min at the tip; 0 for rapids.")
       .def_property_readonly(
