@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, m) {
   bind_volume(m);
   bind_mesher(m);
   bind_program(m);
+  bind_program_file(m);
   bind_journal(m);
   bind_collide(m);
   bind_path(m);

@@ -14,23 +14,12 @@
 // volumes are equal files.
 #pragma once
 
-#include <zlib.h>
-
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
-#include <span>
-#include <type_traits>
-#include <vector>
 
-namespace riffler {
+#include "geom/bytes.hpp"
 
-static_assert(std::endian::native == std::endian::little, "the file's numbers are copied as they stand in memory");
-
-namespace rvol {
-
-using Bytes = std::vector<std::uint8_t>;
+namespace riffler::rvol {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'R', 'V', 'O', 'L', '\r', '\n', 0x1A};
 inline constexpr std::uint32_t kVersion = 1;
@@ -39,27 +28,4 @@ inline constexpr std::size_t kHeader = 96, kChunkHeader = 24;
 inline constexpr std::size_t kChunkTiles = 64, kChunkSpans = std::size_t{1} << 18;
 inline constexpr std::uint32_t kMap = 0x2070616D, kTiles = 0x656C6974;  // "map ", "tile"
 
-inline std::uint32_t checksum(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b = {}) {
-  uLong crc = 0;
-  for (const auto part : {a, b})
-    if (!part.empty()) crc = crc32_z(crc, part.data(), part.size());  // a null pointer would start anew
-  return static_cast<std::uint32_t>(crc);
-}
-
-template <class T>
-void put(Bytes& out, const T& value) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  const std::size_t at = out.size();
-  out.resize(at + sizeof value);
-  std::memcpy(out.data() + at, &value, sizeof value);
-}
-
-template <class T>
-T get(std::span<const std::uint8_t> bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
-
-}  // namespace rvol
-}  // namespace riffler
+}  // namespace riffler::rvol

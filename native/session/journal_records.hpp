@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "geom/bytes.hpp"
 #include "session/journal.hpp"
 
 namespace riffler::journal_format {
 
-using Bytes = std::vector<std::uint8_t>;
-using View = std::span<const std::uint8_t>;
+using View = ByteView;
 
 Bytes journal_header();
 Bytes stock_record(const JournalStock& stock);

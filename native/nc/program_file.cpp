@@ -1,0 +1,346 @@
+#include "nc/program_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <stdexcept>
+
+#include "dexel/planes.hpp"
+#include "geom/bytes.hpp"
+#include "geom/error.hpp"
+#include "geom/io.hpp"
+#include "geom/parallel.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'R', 'P', 'R', 'G', '\r', '\n', 0x1A};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeader = 40, kRecordHeader = 20;
+/// Enough for deflate, few enough for every thread.
+constexpr std::size_t kChunkRows = 32768;
+constexpr std::uint32_t kNotes = 0x65746F6E, kTool = 0x6C6F6F74, kRows = 0x73776F72;  // "note", "tool", "rows"
+constexpr std::size_t kDoubles = 8;  // of a row: tip, axis, feed, spindle
+
+double number_of(const Program& program, std::size_t row, std::size_t column) {
+  const Pose& pose = program.poses()[row];
+  if (column < 3) return pose.tip[static_cast<int>(column)];
+  if (column < 6) return pose.axis[static_cast<int>(column) - 3];
+  return column == 6 ? program.feed()[row] : program.spindle()[row];
+}
+
+// --- Writing ---
+
+Bytes record(std::uint32_t kind, std::size_t number, const Bytes& payload) {
+  Bytes out;
+  out.reserve(kRecordHeader + payload.size());
+  put(out, kind);
+  put(out, static_cast<std::uint32_t>(number));
+  put(out, static_cast<std::uint64_t>(payload.size()));
+  put(out, checksum(out, payload));
+  out.insert(out.end(), payload.begin(), payload.end());
+  return out;
+}
+
+Bytes notes_record(const Provenance& notes) {
+  Bytes out;
+  for (const auto& [key, value] : notes) put_text(out, key), put_text(out, value);
+  return record(kNotes, notes.size(), out);
+}
+
+void put_count(Bytes& out, std::size_t count) {
+  put(out, static_cast<std::uint32_t>(count));
+}
+
+void put_pieces(Bytes& out, const std::vector<Frustum>& pieces) {
+  put_count(out, pieces.size());
+  for (const Frustum& f : pieces) put(out, std::array{f.z0, f.r0, f.z1, f.r1});
+}
+
+Bytes tool_record(int number, const Tool& tool) {
+  Bytes out;
+  put_text(out, tool.kind());
+  put_text(out, tool.name());
+  put_count(out, tool.parameters().size());
+  for (const auto& [name, value] : tool.parameters()) put_text(out, name), put(out, value);
+  put_count(out, tool.profile().segments().size());
+  for (const ProfileSegment& segment : tool.profile().segments()) {
+    put_count(out, segment.centre.has_value());
+    put(out, std::array{segment.to.x, segment.to.y});
+    if (segment.centre) put(out, std::array{segment.centre->x, segment.centre->y});
+  }
+  put_pieces(out, tool.shank());
+  put_pieces(out, tool.holder());
+  return record(kTool, static_cast<std::size_t>(number), out);
+}
+
+Bytes rows_record(const Program& program, std::size_t first, std::size_t count) {
+  Bytes out;
+  PlaneWriter planes(out);
+  std::vector<std::uint64_t> doubles(count);
+  for (std::size_t column = 0; column < kDoubles; ++column) {
+    for (std::size_t k = 0; k < count; ++k)
+      doubles[k] = std::bit_cast<std::uint64_t>(number_of(program, first + k, column));
+    planes.column(doubles);
+  }
+  std::vector<std::uint32_t> numbers(count);
+  for (const std::vector<std::int32_t>* column : {&program.tool(), &program.line()}) {
+    for (std::size_t k = 0; k < count; ++k) numbers[k] = static_cast<std::uint32_t>((*column)[first + k]);
+    planes.column(numbers);
+  }
+  std::vector<std::uint16_t> rapid(program.rapid().begin() + static_cast<std::ptrdiff_t>(first),
+                                   program.rapid().begin() + static_cast<std::ptrdiff_t>(first + count));
+  planes.column(rapid);
+  return record(kRows, count, out);
+}
+
+// --- Reading ---
+
+struct Record {
+  std::size_t at;  ///< byte of the file at which it begins
+  std::uint32_t kind, number;
+  ByteView payload;
+};
+
+struct Columns {
+  std::array<std::vector<std::uint64_t>, kDoubles> doubles;
+  std::vector<std::uint32_t> tool, line;
+  std::vector<std::uint16_t> rapid;
+
+  double number(std::size_t row, std::size_t column) const { return std::bit_cast<double>(doubles[column][row]); }
+  Vec3 vector(std::size_t row, std::size_t first) const {
+    return {number(row, first), number(row, first + 1), number(row, first + 2)};
+  }
+};
+
+class Reader {
+ public:
+  Reader(ByteView bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  Program run(const Progress& progress) {
+    check_header();
+    const std::vector<Record> all = records();
+    Program program;
+    program.provenance = notes(all[0]);
+    for (std::size_t k = 1; k <= tools_; ++k) add_tool(all[k], program.tools);
+    add_rows(std::span(all).subspan(1 + tools_), program, progress);
+    return program;
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t at, const std::string& what) const {
+    throw FormatError(name_, "byte " + std::to_string(at), what);
+  }
+
+  void check_header() {
+    if (bytes_.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes_.begin()))
+      fail(0, "not a .rprog file (its first eight bytes are others)");
+    if (bytes_.size() < kHeader) fail(bytes_.size(), "the file ends within its header");
+    if (get<std::uint32_t>(bytes_, kHeader - 4) != checksum(bytes_.first(kHeader - 4)))
+      fail(kHeader - 4, "the header's checksum does not fit");
+    const auto version = get<std::uint32_t>(bytes_, 8);
+    if (version != kVersion)
+      fail(8, "version " + std::to_string(version) + "; this program reads version " + std::to_string(kVersion));
+    const auto length = get<std::uint64_t>(bytes_, 16);
+    if (bytes_.size() < length)
+      fail(bytes_.size(), "the file ends here, but should have " + std::to_string(length) + " bytes");
+    if (bytes_.size() > length) fail(length, "there is more after the file's end");
+    tools_ = get<std::uint32_t>(bytes_, 12);
+    rows_ = get<std::uint64_t>(bytes_, 24);
+    notes_ = get<std::uint32_t>(bytes_, 32);
+  }
+
+  /// In the order in which they must stand; the payloads of rows are looked at later, in parallel.
+  std::vector<Record> records() const {
+    std::vector<Record> all;
+    std::uint64_t rows = 0;
+    for (std::size_t at = kHeader; at < bytes_.size();) {
+      if (bytes_.size() - at < kRecordHeader) fail(at, "the file ends where a record should begin");
+      const ByteView head = bytes_.subspan(at);
+      const auto length = get<std::uint64_t>(head, 8);
+      if (length > head.size() - kRecordHeader) fail(at + 8, "the record is longer than the rest of the file");
+      const Record record{at, get<std::uint32_t>(head, 0), get<std::uint32_t>(head, 4),
+                          head.subspan(kRecordHeader, length)};
+      if (get<std::uint32_t>(head, 16) != checksum(head.first(16), record.payload))
+        fail(at, "the record's checksum does not fit");
+      if (record.kind != (all.empty() ? kNotes : all.size() <= tools_ ? kTool : kRows))
+        fail(at, "a record of another kind than expected");
+      if (record.kind == kRows) {
+        if (record.number == 0 || record.number > kChunkRows) fail(at + 4, "a record holds 1 to 32768 rows");
+        rows += record.number;
+      }
+      all.push_back(record);
+      at += kRecordHeader + length;
+    }
+    if (all.size() < 1 + std::size_t{tools_}) fail(bytes_.size(), "the file ends before its last tool");
+    if (rows != rows_)
+      fail(24, "the header announces " + std::to_string(rows_) + " rows, the records hold " + std::to_string(rows));
+    return all;
+  }
+
+  /// What `take` makes of the record's payload; what is wrong with it is at the record.
+  template <class Take>
+  auto taken(const Record& record, const Take& take) const {
+    ByteTaker from(record.payload);
+    try {
+      auto out = take(from);
+      from.done();
+      return out;
+    } catch (const std::invalid_argument& e) {
+      fail(record.at, e.what());
+    }
+  }
+
+  Provenance notes(const Record& record) const {
+    if (record.number != notes_) fail(record.at + 4, "the header announces another number of notes");
+    return taken(record, [&](ByteTaker& from) {
+      Provenance out;
+      for (std::uint32_t k = 0; k < record.number; ++k) {
+        std::string key = from.text();
+        out.emplace_back(std::move(key), from.text());
+      }
+      return out;
+    });
+  }
+
+  static Vec2 take_point(ByteTaker& from) {
+    const double x = from.number<double>();
+    return {x, from.number<double>()};
+  }
+
+  static std::vector<Frustum> take_pieces(ByteTaker& from) {
+    std::vector<Frustum> out;
+    for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
+      const auto numbers = from.number<std::array<double, 4>>();
+      out.push_back({numbers[0], numbers[1], numbers[2], numbers[3]});
+    }
+    return out;
+  }
+
+  static Tool take_tool(ByteTaker& from) {
+    const std::string kind = from.text(), name = from.text();
+    std::vector<std::pair<std::string, double>> parameters;
+    for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
+      std::string key = from.text();
+      parameters.emplace_back(std::move(key), from.number<double>());
+    }
+    std::vector<ProfileSegment> segments;
+    for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
+      const auto centre = from.number<std::uint32_t>();
+      if (centre > 1) throw std::invalid_argument("a segment of the profile is neither line nor arc");
+      ProfileSegment segment{take_point(from), {}};
+      if (centre) segment.centre = take_point(from);
+      segments.push_back(segment);
+    }
+    Tool tool(kind, std::move(parameters), Profile(std::move(segments)));
+    tool = tool.with_shank(take_pieces(from));
+    return tool.with_holder(take_pieces(from)).named(name);
+  }
+
+  void add_tool(const Record& record, std::map<int, Tool>& tools) const {
+    const int number = static_cast<int>(record.number);
+    if (number < 0 || (!tools.empty() && number <= tools.rbegin()->first))
+      fail(record.at + 4, "the tools' numbers do not rise");
+    tools.emplace(number, taken(record, &Reader::take_tool));
+  }
+
+  Columns columns(const Record& record) const {
+    PlaneReader planes(record.payload, record.at + kRecordHeader, name_);
+    Columns out;
+    for (auto& column : out.doubles) column = planes.column64(record.number);
+    out.tool = planes.column32(record.number);
+    out.line = planes.column32(record.number);
+    out.rapid = planes.column16(record.number);
+    planes.finish();
+    return out;
+  }
+
+  void add_rows(std::span<const Record> records, Program& program, const Progress& progress) const {
+    std::vector<Columns> read(records.size());
+    parallel_for(
+        records.size(), 1,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) read[k] = columns(records[k]);
+        },
+        part(progress, 0, 0.8));
+    program.reserve(rows_);
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      report(progress, 0.8 + 0.2 * static_cast<double>(k) / static_cast<double>(records.size()));
+      add_rows(records[k], read[k], program);
+    }
+    report(progress, 1);
+  }
+
+  /// As Program::append takes them. It changes nothing that it let into a program before; what it would change was not
+  /// written by us.
+  void add_rows(const Record& record, const Columns& columns, Program& program) const {
+    for (std::size_t k = 0; k < record.number; ++k) {
+      if (columns.rapid[k] > 1) fail(record.at, "a row is neither rapid nor not");
+      const Move move{{columns.vector(k, 0), columns.vector(k, 3)},
+                      columns.number(k, 6),
+                      columns.number(k, 7),
+                      static_cast<int>(columns.tool[k]),
+                      static_cast<int>(columns.line[k]),
+                      columns.rapid[k] != 0};
+      try {
+        program.append(move);
+      } catch (const std::invalid_argument& e) {
+        fail(record.at, e.what());
+      }
+      const Move kept = program[program.size() - 1];
+      if (kept.pose.axis != move.pose.axis || kept.feed != move.feed)
+        fail(record.at, "row " + std::to_string(program.size() - 1) + " is none that a program holds");
+    }
+  }
+
+  ByteView bytes_;
+  const std::string& name_;
+  std::uint32_t tools_ = 0, notes_ = 0;
+  std::uint64_t rows_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> to_bytes(const Program& program, const Progress& progress) {
+  std::vector<Bytes> records{notes_record(program.provenance)};
+  for (const auto& [number, tool] : program.tools) records.push_back(tool_record(number, tool));
+  const std::size_t before = records.size(), chunks = (program.size() + kChunkRows - 1) / kChunkRows;
+  records.resize(before + chunks);
+  parallel_for(
+      chunks, 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const std::size_t first = k * kChunkRows;
+          records[before + k] = rows_record(program, first, std::min(kChunkRows, program.size() - first));
+        }
+      },
+      progress);
+  std::uint64_t length = kHeader;
+  for (const Bytes& bytes : records) length += bytes.size();
+  Bytes out;
+  out.reserve(length);
+  put(out, kMagic);
+  put(out, kVersion);
+  put_count(out, program.tools.size());
+  put(out, length);
+  put(out, static_cast<std::uint64_t>(program.size()));
+  put_count(out, program.provenance.size());
+  put(out, checksum(out));
+  for (const Bytes& bytes : records) out.insert(out.end(), bytes.begin(), bytes.end());
+  return out;
+}
+
+Program parse_program(ByteView bytes, const std::string& name, const Progress& progress) {
+  return Reader(bytes, name).run(progress);
+}
+
+void save_program(const Program& program, const std::filesystem::path& path, const Progress& progress) {
+  write_file(path, to_bytes(program, progress));
+}
+
+Program load_program(const std::filesystem::path& path, const Progress& progress) {
+  return parse_program(read_file(path), path.filename().string(), progress);
+}
+
+}  // namespace riffler
