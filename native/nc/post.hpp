@@ -55,6 +55,8 @@ class Post {
   /// Whether blocks need joints: where not, poses are written as they are.
   virtual bool wants_joints() const { return true; }
 
+  virtual bool has_arcs() const { return false; }
+
   virtual void begin(std::span<const std::string> comments) = 0;
   /// `shape` is null where it is not known.
   virtual void change_tool(int number, const Tool* shape, bool first) = 0;
@@ -63,7 +65,8 @@ class Post {
   /// After a change, when tool and spindle stand as they should.
   virtual void ready(int tool) = 0;
   virtual void block(const PostBlock& block) = 0;
-  virtual void arc(const PostArc& arc) = 0;
+  /// Called only where has_arcs().
+  virtual void arc(const PostArc&) {}
   virtual void end() = 0;
 
   const std::string& text() const { return text_; }

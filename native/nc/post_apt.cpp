@@ -60,8 +60,6 @@ class Apt final : public Post {
     line(text);
   }
 
-  void arc(const PostArc& a) override { block(a.end); }
-
   void end() override {
     if (turns_) line("SPINDL/OFF");
     if (options_.coolant != "off") line("COOLNT/OFF");

@@ -87,8 +87,6 @@ class Heidenhain final : public Post {
     line(text);
   }
 
-  void arc(const PostArc&) override { throw std::logic_error("the post has no arcs"); }
-
   void end() override {
     if (first_ || blocks_ > 0) line("M129");
     if (turns_) line("M5");

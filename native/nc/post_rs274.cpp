@@ -14,6 +14,8 @@ class Rs274 final : public Post {
  public:
   using Post::Post;
 
+  bool has_arcs() const override { return true; }
+
   void begin(std::span<const std::string> comments) override {
     for (const std::string& comment : comments) line({"(", plain(comment), ")"});
     code({"G21 G90 G94"});

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "geom/directions.hpp"
 #include "geom/io.hpp"
+#include "nc/arc_fit.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/number_text.hpp"
@@ -32,7 +34,9 @@ class Writer {
   Writer(const Program& program, const WriteOptions& options)
       : program_(program), options_(options), taken_(options.options, "post " + options.post) {
     machine_ = make_machine(options.post, taken_);
-    post_ = make_post(*machine_, take_post_options(taken_));
+    const PostOptions how = take_post_options(taken_);
+    post_ = make_post(*machine_, how);
+    arcs_ = how.arcs && post_->has_arcs();
     taken_.done();
     if (!(options.tolerance >= 2e-5 && options.tolerance <= kMaxLength))
       throw std::invalid_argument("tolerance must be a length of at least 0.00002 mm: lengths have 5 decimals");
@@ -57,7 +61,7 @@ class Writer {
       set_up(row);
       const Pose& pose = program_.poses()[row];
       check(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
-      put({pose, {}, program_.rapid()[row] != 0, false, feed_of(row), 0, true});
+      post_->block({pose, {}, program_.rapid()[row] != 0, false, feed_of(row), 0, true});
     }
     post_->end();
   }
@@ -67,29 +71,75 @@ class Writer {
     const std::vector<bool> free = free_rapids(program_);
     Subdivider splitter(*machine_, options_.tolerance, options_.axis_tolerance);
     begin();
-    Pose before{};
-    for (const Waypoint& w : way) {
-      const std::size_t row = w.row;
-      if (w.rewound) {
-        rewind(row, before, w.joints, splitter);
-        continue;
+    before_ = {};
+    for (std::size_t k = 0; k < way.size(); ++k) {
+      if (const std::size_t last = arcs_ ? run_end(way, k) : k; last > k) {
+        curves(std::span(way).subspan(k, last + 1 - k));
+        k = last;
+      } else {
+        move(way[k], free[way[k].row], splitter);
       }
-      set_up(row);
-      const Pose& end = program_.poses()[row];
-      if (row == 0) {
-        block(row, w.joints, end, true);
-        before = end;
-        continue;
-      }
-      const Pose to = w.share < 1 ? Motion(program_.poses()[row - 1], end).at(w.share) : end;
-      const Joints start = *stands_;
-      const auto& parts = splitter.split(before, start, to, w.joints, free[row]);
-      slowest_ = 1;
-      for (std::size_t k = 0; k < parts.size(); ++k) block(row, parts[k], to, k + 1 == parts.size());
-      if (!free[row]) note_passage(row, angle_between(before.axis, to.axis) * kDegrees, rotary_way(start, w.joints));
-      before = to;
     }
     post_->end();
+  }
+
+  void move(const Waypoint& w, bool free, Subdivider& splitter) {
+    const std::size_t row = w.row;
+    if (w.rewound) return rewind(row, w.joints, splitter);
+    set_up(row);
+    const Pose& end = program_.poses()[row];
+    if (row == 0) {
+      block(row, w.joints, end, true);
+      before_ = end;
+      return;
+    }
+    const Pose to = w.share < 1 ? Motion(program_.poses()[row - 1], end).at(w.share) : end;
+    const Joints start = *stands_;
+    const auto& parts = splitter.split(before_, start, to, w.joints, free);
+    slowest_ = 1;
+    for (std::size_t k = 0; k < parts.size(); ++k) block(row, parts[k], to, k + 1 == parts.size());
+    if (!free) note_passage(row, angle_between(before_.axis, to.axis) * kDegrees, rotary_way(start, w.joints));
+    before_ = to;
+  }
+
+  /// The last waypoint of a run from `first` that has one feed, tool, spindle and place of the rotary axes: what arcs
+  /// may stand for.
+  std::size_t run_end(const std::vector<Waypoint>& way, std::size_t first) const {
+    const std::size_t row = way[first].row;
+    std::size_t last = first;
+    if (!stands_ || program_.feed()[row] == 0) return first;
+    for (std::size_t k = first; k < way.size(); ++k) {
+      const Waypoint& w = way[k];
+      if (w.rewound || w.share < 1 || program_.feed()[w.row] != program_.feed()[row] || program_.rapid()[w.row] ||
+          program_.tool()[w.row] != *tool_ || program_.spindle()[w.row] != spindle_ ||
+          rotary_way(w.joints, *stands_) > 0)
+        break;
+      last = k;
+    }
+    return last;
+  }
+
+  /// Lines and arcs for a run. With the rotary axes at rest the tip's way is that of the words, turned and moved, so
+  /// that the tolerance is the same.
+  void curves(std::span<const Waypoint> run) {
+    const auto words = [](const Joints& j) { return Vec3(j[0], j[1], j[2]); };
+    std::vector<Vec3> points{words(*stands_)};
+    for (const Waypoint& w : run) points.push_back(words(w.joints));
+    for (const FittedPiece& piece : fit_arcs(points, options_.tolerance)) {
+      const Waypoint& w = run[piece.last - 1];
+      const Pose& end = program_.poses()[w.row];
+      before_ = end;
+      if (!piece.arc) {
+        block(w.row, w.joints, end, true);
+        continue;
+      }
+      check(w.row, w.joints);
+      PostBlock b{end, w.joints, false, false, feed_of(w.row), 0, true};
+      for (std::size_t k = 0; k < 3; ++k)
+        if (machine_->joint_words()) b.feed = std::min(b.feed, machine_->range(k).rate);
+      post_->arc({b, static_cast<std::size_t>(piece.normal), words(*stands_), piece.centre, piece.clockwise});
+      stands_ = w.joints, tip_ = end.tip;
+    }
   }
 
   void begin() {
@@ -123,7 +173,8 @@ class Writer {
   }
 
   /// Out along the axis, the rotary axes to `to` with the tip held, and back; the last stretch in feed.
-  void rewind(std::size_t row, const Pose& pose, const Joints& to, Subdivider& splitter) {
+  void rewind(std::size_t row, const Joints& to, Subdivider& splitter) {
+    const Pose pose = before_;
     constexpr double kGap = 1;  // mm that the tool comes back in feed
     if (!space_) space_ = space();
     const auto shape = program_.tools.find(program_.tool()[row]);
@@ -169,7 +220,7 @@ class Writer {
         machine_->joint_words() || !stands_ ? machine_->pose(joints).tip : Vec3(joints[0], joints[1], joints[2]);
     if (!rapid && stands_) take_time(row, b, glm::length(tip - tip_));
     stands_ = joints, tip_ = tip;
-    put(b);
+    post_->block(b);
   }
 
   /// The tip's way at the row's feed, or as fast as the axes may go, whichever takes longer.
@@ -217,8 +268,6 @@ class Writer {
                                 " to " + number_text(range.high) + ": " + number_text(joints[k]));
   }
 
-  void put(const PostBlock& b) { post_->block(b); }
-
   /// A row in which the tip stands still has no feed of its own: the one before goes on, or the next to come.
   double feed_of(std::size_t row) {
     const std::vector<double>& feed = program_.feed();
@@ -240,6 +289,8 @@ class Writer {
 
   std::optional<Joints> stands_;  // after the last block
   Vec3 tip_{0};                   // there
+  Pose before_;                   // of the program, there
+  bool arcs_ = false;
   std::optional<Space> space_;
   std::optional<int> tool_;
   double spindle_ = 0, last_feed_ = 0, slowest_ = 1;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -63,6 +64,44 @@ TEST(Rs274Post, SwitchesCoolantAndRetractsWhereItIsAsked) {
   EXPECT_NE(text.find("M9\nG49\nG53 G0 Z-2.5\nM30\n"), text.npos);
   // After it, all words are said again.
   EXPECT_NE(text.find("G43.4 H1\nG0 X"), text.npos);
+}
+
+TEST(Rs274Post, MakesArcsOfStraightRunsWithinTheTolerance) {
+  CutterPath path{{}, {600}, 8000, 1};
+  for (int i = 0; i <= 300; ++i) {
+    const double a = 0.03 * i;
+    path.poses.push_back({{20 * std::cos(a), 20 * std::sin(a), -0.01 * i}, glm::normalize(Vec3(0.2, 0, 1))});
+  }
+  for (int i = 1; i <= 20; ++i) path.poses.push_back({path.poses[300].tip + Vec3(i, 0, 0), path.poses[300].axis});
+  const Program p = program_from_paths(std::vector{path}, {});
+  for (const char* post : {"tcp", "linuxcnc-xyzac", "heidenhain"}) {
+    const std::string straight = text_of(p, post), curved = text_of(p, post, {{"arcs", true}});
+    if (post == std::string("heidenhain")) {
+      EXPECT_EQ(straight, curved) << "the post has none";
+      continue;
+    }
+    EXPECT_LT(lines(curved).size() + 250, lines(straight).size()) << post;
+    EXPECT_NE(curved.find("G3 X"), curved.npos);
+    const Program q = parse_nc(curved, "p.ngc", {post, {}});
+    // Every row of either is beside a move of the other.
+    const auto beside = [](const Program& a, const Program& b) {
+      double worst = 0;
+      for (std::size_t row = 0; row < a.size(); ++row) {
+        if (a.rapid()[row]) continue;
+        const Pose& is = a.poses()[row];
+        double least = 1e9;
+        for (std::size_t k = 1; k < b.size(); ++k) {
+          const Vec3 from = b.poses()[k - 1].tip, way = b.poses()[k].tip - from;
+          const double t = glm::dot(way, way) > 0 ? glm::dot(is.tip - from, way) / glm::dot(way, way) : 0;
+          least = std::min(least, glm::length(is.tip - from - std::clamp(t, 0.0, 1.0) * way));
+        }
+        worst = std::max(worst, least);
+      }
+      return worst;
+    };
+    EXPECT_LT(beside(p, q), 0.012) << post;
+    EXPECT_LT(beside(q, p), 0.012) << post;
+  }
 }
 
 TEST(HeidenhainPost, CountsItsBlocksAndKeepsTheTip) {
