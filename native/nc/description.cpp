@@ -24,8 +24,8 @@ class Describer {
   std::string summary() { return text(root_, "description"); }
 
   MachineDescription describe(const std::string& name, OptionReader& options) {
-    allow(root_, {"description", "control", "words", "direction", "tool_length", "note", "options", "rotary", "axis",
-                  "start", "end"});
+    allow(root_, {"description", "control", "words", "direction", "tool_length", "feed", "note", "options", "rotary",
+                  "axis", "start", "end"});
     summary();
     MachineDescription out;
     out.name = name;
@@ -200,6 +200,10 @@ class Describer {
     c.language = word(root_, "control", languages, "rs274");
     const std::string own = word(root_, "tool_length", {"G43", "G43.4"}, "G43");
     if (c.language == "rs274") c.tool_length = options.word("tool_length", {"G43", "G43.4"}, own);
+    const std::string feed =
+        word(root_, "feed", {"inverse-time", "per-minute"}, out.tip_words ? "per-minute" : "inverse-time");
+    c.inverse_time =
+        c.language == "rs274" && options.word("feed", {"inverse-time", "per-minute"}, feed) == "inverse-time";
     if (const toml::node* note = root_.get("note")) {
       if (!note->is_table()) fail(*note, "note must be a table");
       allow(*note->as_table(), {"tip", "joints"});

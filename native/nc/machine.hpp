@@ -51,6 +51,7 @@ struct Control {
   std::string language = "rs274";       ///< a name of languages() in nc/post.hpp
   std::string tool_length = "G43";      ///< block that makes the tool's length count
   std::string note;                     ///< for the header: how the control must be set
+  bool inverse_time = false;            ///< G93 for blocks in which a rotary axis moves; otherwise always G94
   std::vector<std::string> start, end;  ///< blocks of the machine's own before and after everything, verbatim
 };
 

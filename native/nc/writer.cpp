@@ -233,13 +233,25 @@ class Writer {
       if (k >= 3) turns |= ticks(b.joints[k], kAngleDecimals) != ticks((*stands_)[k], kAngleDecimals);
       if (k >= 3 || machine_->joint_words()) least = std::max(least, apart / machine_->range(k).rate);
     }
-    b.inverse = turns && machine_->joint_words();
+    b.inverse = turns && machine_->control().inverse_time;
     b.minutes = std::max({own, least, 1 / kMaxFeed});
-    if (least > own * (1 + 1e-9)) {
-      report_.slowed += own > 0;
-      if (own > 0) slowest_ = std::max(slowest_, least / own);
-      if (!b.inverse && way > 0) b.feed = way / b.minutes;
+    const bool slowed = least > own * (1 + 1e-9);
+    if (slowed && own > 0) ++report_.slowed, slowest_ = std::max(slowest_, least / own);
+    if (b.inverse) return;
+    if (machine_->joint_words() && turns)
+      b.feed = way_of_words(b.joints) / b.minutes;
+    else if (slowed && way > 0)
+      b.feed = way / b.minutes;
+  }
+
+  /// What F counts along under G94, by LinuxCNC's rule: X Y Z where one of them moves, otherwise the rotary axes.
+  double way_of_words(const Joints& to) const {
+    double linear = 0, rotary = 0;
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      const double apart = to[k] - (*stands_)[k];
+      (k < 3 ? linear : rotary) += apart * apart;
     }
+    return std::sqrt(linear > 1e-12 ? linear : rotary);
   }
 
   /// Where the rotary axes turn much more than the tool.

@@ -127,10 +127,13 @@ def test_blocks_hold_the_poses_and_the_ways_between_them_the_tolerances(tmp_path
     assert inner[0] <= 0.01 + PRINTED + reach * 2e-6 and inner[1] <= 0.00175 + 1e-5
 
 
+@pytest.mark.parametrize("feed", ["inverse-time", "per-minute"])
 @pytest.mark.parametrize("post", JOINTS)
-def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, post):
+def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, post, feed):
     poses = path("smooth")
-    moves = linuxcnc.interpreted(written(tmp_path, poses, post, max_rotary=2000.0))
+    file = written(tmp_path, poses, post, max_rotary=2000.0, feed=feed)
+    assert ("G93" in file.read_text()) == (feed == "inverse-time")
+    moves = linuxcnc.interpreted(file)
     at = linuxcnc.poses(moves.joints, POSTS[post][2])
     way = np.linalg.norm(np.diff(at[:, :3], axis=0), axis=1)
     turn = abs(np.diff(moves.joints[:, 3:], axis=0)).max(1)
