@@ -13,10 +13,11 @@ import traceback
 from typing import NoReturn
 
 from . import Cancelled, __version__
-from .command import audit, bench, carve, convert, doctor, mesh, pencil
+from .command import audit, bench, carve, convert, doctor, machines, mesh, pencil, post
 from .command.console import Console
 
-COMMANDS = (carve, convert, mesh, pencil, audit, doctor, bench)
+COMMANDS = (carve, convert, mesh, pencil, post, machines, audit, doctor, bench)
+LISTS = ("--origin", "--axis")
 EPILOG = "lengths in mm, angles on the command line in degrees; exit status 0, 1 (a check failed) or 2 (bad input)"
 
 
@@ -51,7 +52,7 @@ def joined(argv: list[str]) -> list[str]:
     """``--origin -5,0,0`` as ``--origin=-5,0,0``: argparse takes a list that begins with a minus for an option."""
     out: list[str] = []
     for word in argv:
-        if out and out[-1] == "--origin" and word[:1] == "-" and word[1:2] in "0123456789.":
+        if out and out[-1] in LISTS and word[:1] == "-" and word[1:2] in "0123456789.":
             out[-1] += "=" + word
         else:
             out.append(word)

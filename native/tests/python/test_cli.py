@@ -15,33 +15,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import riffler
+from commands import ENVIRONMENT, RIFFLER, result, riffle
 from riffler.command import console, doctor, tools
 
 SLOT = "G21 G90 G94\nG0 X-10 Y10 Z5\nG1 Z4 F500\nX50\nG0 Z20\nM30\n"
-
-
-RIFFLER = [sys.executable, "-m", "riffler"]
-# The same riffler as this process has, wherever the commands run.
-PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
-
-
-def riffle(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
-    """Runs a command; `more` are environment variables."""
-    command, env = [*RIFFLER, *map(str, words)], ENVIRONMENT | more
-    return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=120, check=False)
-
-
-def result(*words: object, cwd: Path, status: int = 0) -> dict:
-    """The JSON of a command that ends with `status`."""
-    done = riffle(*words, "--json", cwd=cwd)
-    assert done.returncode == status, done.stderr + done.stdout
-    assert done.stderr == ""
-
-    def refuse(name: str) -> None:
-        raise AssertionError(f"{name} is not JSON")
-
-    return json.loads(done.stdout, parse_constant=refuse)
 
 
 def box_triangles(lower, upper) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,304 @@
+"""Write a plan, a recording or a program as NC code for a machine.
+
+riffler post pencil.json --feed 800 --post linuxcnc-xyzac --option rot_point=0,0,-40 --out p.ngc
+riffler post p.ngc --machine tcp --post linuxcnc-xyzac --out q.ngc
+riffler post session.rjournal --out session.rprog
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import Collider, Journal, Mesh, Program, Tool, plan
+from . import tools
+from .arguments import MESHES, finite, input_file, length, output_file
+from .console import Console, number, times
+
+HELP = "write NC code for a machine"
+__doc__ += f"""
+files:
+  .json      a plan, as riffler pencil writes it: its cutter locations; or its paths, the ball's tip on them
+  .rjournal  a recording; without --feed as fast as the hand was
+  .rprog     a program to the bit; --out may be one, too
+  others     NC code, written for --machine
+
+{tools.FORMS}"""
+PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
+CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
+AXIS_TOLERANCE = 0.00175  # rad
+MOVING = re.compile(r"(?<![A-Z(])[XYZABC] ?[-+]?[.\d]|^GOTO ?/")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="a plan, a recording or a program, see above")
+    parser.add_argument("--post", metavar="NAME", help="the machine; riffler machines lists them")
+    parser.add_argument(
+        "--option", action="append", default=[], metavar="KEY=VALUE", help="of the post; may be repeated"
+    )
+    parser.add_argument("--tolerance", metavar="MM", default="0.01", help="of the tip between blocks (default 0.01)")
+    parser.add_argument("--axis-tolerance", metavar="DEG", help="of the tool's axis between blocks (default 0.1)")
+    parser.add_argument("--feed", metavar="F", help="mm/min at the tip; a plan has none of its own")
+    parser.add_argument("--spindle", metavar="S", help="rev/min, negative counter-clockwise")
+    parser.add_argument("--tool", action="append", default=[], metavar="TOOL", help="see above; may be repeated")
+    parser.add_argument("--safe-height", metavar="MM", help="z between cuts of a plan or a recording")
+    parser.add_argument("--axis", metavar="X,Y,Z", help="of the tool, on a plan's paths that say none (default 0,0,1)")
+    parser.add_argument("--part", metavar="FILE", help="of a plan: lift the tool along its axis where it would gouge")
+    parser.add_argument("--machine", metavar="NAME", help="that NC code was written for")
+    parser.add_argument(
+        "--machine-option", action="append", default=[], metavar="KEY=VALUE", help="of it; may be repeated"
+    )
+    parser.add_argument("--out", required=True, metavar="FILE", help="NC code (.ngc, .nc, …), or .rprog")
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    out = output_file(arguments.out, CODE + PROGRAMS)
+    saved = out.suffix.lower() in PROGRAMS
+    if not saved and arguments.post is None:
+        raise ValueError("--post: a machine's name expected; riffler machines lists them")
+    if saved and (arguments.post is not None or arguments.option):
+        raise ValueError(f"--out {out.name}: a .rprog file is for no machine, leave --post and --option out")
+    how = {
+        "tolerance": length(arguments.tolerance, "--tolerance"),
+        "axis_tolerance": AXIS_TOLERANCE
+        if arguments.axis_tolerance is None
+        else math.radians(length(arguments.axis_tolerance, "--axis-tolerance")),
+        "options": options(arguments.option, "--option"),
+    }
+    program, notes = read(arguments, console)
+    if not len(program):
+        raise ValueError(f"{Path(arguments.file).name}: nothing moves in it")
+    with console.step("write"), console.writing(out) as beside:
+        if saved:
+            program.save(beside)
+        else:
+            program.write(beside, post=arguments.post, **how)
+    data = summary(program, out, saved) | {"post": arguments.post, "notes": notes, "seconds": console.seconds}
+    console.result(data, f"{out.name} written", rows(data))
+    return 0
+
+
+# ---- what is asked for
+
+
+def options(texts: list[str], flag: str) -> dict[str, Any]:
+    """``key=value``: a number, a list of them as in 0,0,-40, true or false, or a word."""
+    found: dict[str, Any] = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not (key and equals and value):
+            raise ValueError(f"{flag} {text}: KEY=VALUE expected")
+        if key in found:
+            raise ValueError(f"{flag} {text}: {key} was given before")
+        found[key] = option(value, f"{flag} {text}")
+    return found
+
+
+def option(value: str, what: str) -> Any:
+    if value in ("true", "false"):
+        return value == "true"
+    if "," in value:
+        return [finite(part, f"{what}: an entry") for part in value.split(",")]
+    return finite(value, what) if value[0] in "+-.0123456789" else value
+
+
+def vector(text: str, what: str) -> np.ndarray:
+    numbers = np.array([finite(part, f"{what}: an entry") for part in text.split(",")])
+    if len(numbers) != 3 or not np.any(numbers):
+        raise ValueError(f"{what}: x,y,z expected, not all of them 0")
+    return numbers / np.linalg.norm(numbers)
+
+
+# ---- the program
+
+
+def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str]]:
+    """The program, and what one should know about it."""
+    kind = Path(arguments.file).suffix.lower()
+    path = input_file(arguments.file, (kind,))
+    code = kind not in PLANS + RECORDINGS + PROGRAMS
+    for name, kinds in (("safe_height", PLANS + RECORDINGS), ("axis", PLANS), ("part", PLANS)):
+        if getattr(arguments, name) is not None and kind not in kinds:
+            raise ValueError(f"--{name.replace('_', '-')}: only for {' and '.join(kinds)} files")
+    if code and arguments.machine is None:
+        raise ValueError(f"--machine: say for which machine {path.name} was written")
+    if not code and (arguments.machine is not None or arguments.machine_option):
+        raise ValueError("--machine: only for NC code")
+    notes: list[str] = []
+    with console.step("read"):
+        if kind in PLANS:
+            planned = plan.load(path)
+        elif kind in RECORDINGS:
+            program, notes = recorded(path, arguments)
+        elif kind in PROGRAMS:
+            program = Program.load(path)
+        else:
+            machine_options = options(arguments.machine_option, "--machine-option")
+            program = Program.read(path, machine=arguments.machine, options=machine_options)
+    if kind in PLANS:
+        return from_plan(planned, path.name, arguments, console)
+    return changed(program, arguments), notes
+
+
+def recorded(path: Path, arguments: argparse.Namespace) -> tuple[Program, list[str]]:
+    feed = None if arguments.feed is None else length(arguments.feed, "--feed")
+    spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
+    journal = Journal.read(path)
+    notes = [] if journal.cut_at is None else [f"the recording was cut at byte {journal.cut_at}: all whole strokes"]
+    return journal.program(feed=feed, spindle=spindle, safe_height=height(arguments)), notes
+
+
+def height(arguments: argparse.Namespace) -> float | None:
+    return None if arguments.safe_height is None else finite(arguments.safe_height, "--safe-height")
+
+
+def changed(program: Program, arguments: argparse.Namespace) -> Program:
+    """With the feed, spindle and tools of the command line."""
+    if arguments.feed is None and arguments.spindle is None and not arguments.tool:
+        return program
+    rapid = np.asarray(program.rapid)
+    feed, spindle, known = program.feed, program.spindle, program.tools
+    if arguments.feed is not None:
+        feed = np.where(rapid, 0.0, length(arguments.feed, "--feed"))
+    if arguments.spindle is not None:
+        spindle = finite(arguments.spindle, "--spindle")
+    if arguments.tool:
+        given = tools.assign(map(tools.parse, arguments.tool), np.asarray(program.tool)[1:], 0.0)
+        known |= {n: tool for n, tool in given.items() if n > 0}
+    return Program(
+        program.poses, feed, rapid, program.tool, program.line, spindle, tools=known, provenance=program.provenance
+    )
+
+
+def from_plan(
+    planned: plan.Plan, name: str, arguments: argparse.Namespace, console: Console
+) -> tuple[Program, list[str]]:
+    if arguments.feed is None:
+        raise ValueError("--feed: a plan has none of its own")
+    feed = length(arguments.feed, "--feed")
+    spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
+    axis = vector(arguments.axis or "0,0,1", f"--axis {arguments.axis}")
+    called, tool = tool_of(planned, arguments)
+    notes = []
+    paths = [path if len(path.axes) else upright(path, axis) for path in planned.paths]
+    turned = sum(len(path.axes) == 0 for path in planned.paths)
+    if turned:
+        notes.append(f"{turned} paths without axes: the tool stands along {', '.join(f'{x:g}' for x in axis)}")
+    if arguments.part is not None:
+        cl = lifted(planned, paths, tool, arguments, console, notes)
+    else:
+        cl = [tips(path, tool) if rows is None else rows for path, rows in zip(paths, located(planned), strict=True)]
+        if any(rows is None for rows in located(planned)):
+            notes.append("not checked for gouges: --part does that")
+    safe = height(arguments)
+    program = Program.from_cl(
+        [rows for rows in cl if len(rows)], tools=[tool], feed=feed, spindle=spindle, safe_height=safe,
+        provenance={"plan": name, "part": planned.part.get("name", ""), **planned.provenance},
+    )  # fmt: skip
+    return (program.retooled({1: called}) if called != 1 else program), notes
+
+
+def located(planned: plan.Plan) -> list:
+    return list(planned.cl) or [None] * len(planned.paths)
+
+
+def tool_of(planned: plan.Plan, arguments: argparse.Namespace) -> tuple[int, Tool]:
+    """The number by which the program calls the plan's tool, and the tool: the plan's, or one with the same tip."""
+    if not arguments.tool:
+        return 1, planned.tool
+    if len(arguments.tool) > 1:
+        raise ValueError("--tool: a plan has one tool")
+    given = tools.parse(arguments.tool[0])
+    tool = given.make(planned.tool.length)
+    if tip_radius(tool) != tip_radius(planned.tool) or tool.diameter != planned.tool.diameter:
+        raise ValueError(f"--tool {given.text}: the plan is for {planned.tool.name}")
+    return given.number or 1, tool
+
+
+def tip_radius(tool: Tool) -> float | None:
+    """Of the ball at its tip; None: there is none."""
+    sizes = tool.to_dict()
+    if tool.kind == "ball":
+        return sizes["diameter"] / 2
+    return sizes["tip_radius"] if tool.kind == "taper" and not sizes.get("flat_tip") else None
+
+
+def upright(path, axis: np.ndarray):
+    return path.with_axes(np.tile(axis, (len(path), 1)))
+
+
+def tips(path, tool: Tool) -> np.ndarray:
+    """(n, 6): the tip where the ball's centres are those of the path; a loop ends with its first row again."""
+    radius = tip_radius(tool)
+    if radius is None or abs(radius - path.radius) > 1e-9:
+        raise ValueError(
+            f"{tool.name} has no ball of radius {path.radius:g} mm at its tip: --part finds where it touches"
+        )
+    out = np.hstack([path.centres - radius * path.axes, path.axes])
+    return np.vstack([out, out[:1]]) if path.closed else out
+
+
+def lifted(
+    planned: plan.Plan, paths: list, tool: Tool, arguments: argparse.Namespace, console: Console, notes: list[str]
+) -> list[np.ndarray]:
+    part = input_file(arguments.part, MESHES)
+    with console.step("locate") as progress:
+        mesh = Mesh.read(part)
+        wanted = planned.part.get("sha256")
+        if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
+            raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
+        collider, found = Collider(mesh), []
+        for k, path in enumerate(paths):
+            rows, report = plan.cutter_locations(path, tool, collider)
+            if not report.ok:
+                bad = len(report.blocked) + len(report.unsafe)
+                raise ValueError(f"path {k}: {bad} places that no lift frees; give it other axes")
+            found.append(rows)
+            if progress:
+                progress((k + 1) / len(paths))
+    notes.append(f"free of {part.name} along all rows; approach and retract are not checked")
+    return found
+
+
+# ---- what is said about it
+
+
+def summary(program: Program, out: Path, saved: bool) -> dict[str, Any]:
+    way = np.linalg.norm(np.diff(program.poses[:, :3], axis=0), axis=1)
+    rapid, feed = np.asarray(program.rapid)[1:], np.asarray(program.feed)[1:]
+    cutting = ~rapid & (feed > 0)
+    blocks = None
+    if not saved:
+        with out.open(encoding="utf-8", errors="replace") as text:
+            blocks = sum(1 for line in text if MOVING.search(line.partition("(")[0]))
+    return {
+        "out": str(out),
+        "rows": len(program),
+        "blocks": blocks,
+        "subdivisions": None if blocks is None else max(0, blocks - len(program)),
+        "length": float(way[~rapid].sum()),
+        "rapid_length": float(way[rapid].sum()),
+        "minutes": float((way[cutting] / feed[cutting]).sum()),
+        "tools": sorted({int(n) for n in program.tool}),
+        "bytes": out.stat().st_size,
+    }
+
+
+def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
+    shown = [("rows", number(data["rows"]))]
+    if data["blocks"] is not None:
+        shown.append(("blocks", f"{number(data['blocks'])}, {number(data['subdivisions'])} more than rows"))
+    return [
+        *shown,
+        ("length", f"{number(data['length'], 'mm')}, and {number(data['rapid_length'], 'mm')} in rapid"),
+        ("time", f"{number(data['minutes'], 'min')} at the feed, without rapids"),
+        ("tools", ", ".join(f"T{n}" for n in data["tools"])),
+        *(("note", note) for note in data["notes"]),
+        ("file", number(data["bytes"], "bytes")),
+        ("times", times(data["seconds"])),
+    ]
