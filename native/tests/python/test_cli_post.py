@@ -94,6 +94,11 @@ def test_a_plan_becomes_code_with_the_balls_tip_on_its_paths(folder):
     assert "part: corner.stl" in (folder / "p.ngc").read_text()
 
 
+def test_a_plan_without_a_feed_is_cut_slowly_and_says_so(folder):
+    data = result("post", "plain.json", "--post", "linuxcnc-xyzac", "--out", "p.ngc", cwd=folder)
+    assert data["notes"][0].startswith("feed 500 mm/min") and data["minutes"] == pytest.approx(19 / 500)
+
+
 def test_axes_of_a_plan_and_of_the_command_line(folder):
     wanted = np.array([[3 - 3 * 0.6, y, 3 - 3 * 0.8, 0.6, 0, 0.8] for y in (0, 4, 9)])
     result("post", "leaning.json", "--feed", 700, "--post", "tcp", "--out", "a.ngc", cwd=folder)
@@ -220,7 +225,6 @@ BAD = {
     "code": (["bad.ngc", "--machine", "tcp", *POST, *OUT], "bad.ngc, line 2"),
     "nothing moves": (["empty.ngc", "--machine", "tcp", *POST, *OUT], "empty.ngc: nothing moves"),
     "a plan without paths": (["none.json", "--feed", "5", *POST, *OUT], "none.json: nothing moves"),
-    "a plan without feed": (["plain.json", *POST, *OUT], "--feed: a plan has none"),
     "feed": (["plain.json", "--feed", "-5", *POST, *OUT], "--feed"),
     "no ball": (["flat.json", "--feed", "5", *POST, *OUT], "no ball of radius 3 mm"),
     "another ball": (["plain.json", "--feed", "5", "--tool", "ball:8", *POST, *OUT], "the plan is for ball 6"),

@@ -32,6 +32,7 @@ files:
 PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 AXIS_TOLERANCE = 0.00175  # rad
+FEED = 500.0  # mm/min, slow: of a plan without another
 MOVING = re.compile(r"(?<![A-Z(])[XYZABC] ?[-+]?[.\d]|^GOTO ?/")
 
 
@@ -43,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--tolerance", metavar="MM", default="0.01", help="of the tip between blocks (default 0.01)")
     parser.add_argument("--axis-tolerance", metavar="DEG", help="of the tool's axis between blocks (default 0.1)")
-    parser.add_argument("--feed", metavar="F", help="mm/min at the tip; a plan has none of its own")
+    parser.add_argument("--feed", metavar="F", help="mm/min at the tip (default of a plan 500)")
     parser.add_argument("--spindle", metavar="S", help="rev/min, negative counter-clockwise")
     parser.add_argument("--tool", action="append", default=[], metavar="TOOL", help="see above; may be repeated")
     parser.add_argument("--safe-height", metavar="MM", help="z between cuts of a plan or a recording")
@@ -178,13 +179,11 @@ def changed(program: Program, arguments: argparse.Namespace) -> Program:
 def from_plan(
     planned: plan.Plan, name: str, arguments: argparse.Namespace, console: Console
 ) -> tuple[Program, list[str]]:
-    if arguments.feed is None:
-        raise ValueError("--feed: a plan has none of its own")
-    feed = length(arguments.feed, "--feed")
+    feed = FEED if arguments.feed is None else length(arguments.feed, "--feed")
     spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
     axis = vector(arguments.axis or "0,0,1", f"--axis {arguments.axis}")
     called, tool = tool_of(planned, arguments)
-    notes = []
+    notes = [f"feed {FEED:g} mm/min: a plan has none of its own, --feed names one"] if arguments.feed is None else []
     paths = [path if len(path.axes) else upright(path, axis) for path in planned.paths]
     turned = sum(len(path.axes) == 0 for path in planned.paths)
     if turned:
