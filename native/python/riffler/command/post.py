@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import re
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +31,8 @@ files:
 PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 AXIS_TOLERANCE = 0.00175  # rad
+LIFTED = 0.01  # mm that the tool may enter the part of a plan
 FEED = 500.0  # mm/min, slow: of a plan without another
-MOVING = re.compile(r"(?<![A-Z(])[XYZABC] ?[-+]?[.\d]|^GOTO ?/")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -75,11 +74,9 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     if not len(program):
         raise ValueError(f"{Path(arguments.file).name}: nothing moves in it")
     with console.step("write"), console.writing(out) as beside:
-        if saved:
-            program.save(beside)
-        else:
-            program.write(beside, post=arguments.post, **how)
-    data = summary(program, out, saved) | {"post": arguments.post, "notes": notes, "seconds": console.seconds}
+        report = program.save(beside) if saved else program.write(beside, post=arguments.post, **how)
+    data = summary(program, report) | {"post": arguments.post, "notes": notes}
+    data |= {"out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
     console.result(data, f"{out.name} written", rows(data))
     return 0
 
@@ -253,45 +250,45 @@ def lifted(
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
         collider, found = Collider(mesh), []
         for k, path in enumerate(paths):
-            rows, report = plan.cutter_locations(path, tool, collider)
+            rows, report = plan.cutter_locations(path, tool, collider, tolerance=LIFTED)
             if not report.ok:
                 bad = len(report.blocked) + len(report.unsafe)
                 raise ValueError(f"path {k}: {bad} places that no lift frees; give it other axes")
             found.append(rows)
             if progress:
                 progress((k + 1) / len(paths))
-    notes.append(f"free of {part.name} along all rows; approach and retract are not checked")
+    notes.append(f"free of {part.name} along all rows within {LIFTED:g} mm; approach and retract are not checked")
     return found
 
 
 # ---- what is said about it
 
 
-def summary(program: Program, out: Path, saved: bool) -> dict[str, Any]:
+def summary(program: Program, report: dict[str, Any] | None) -> dict[str, Any]:
+    """``report``: what writing NC code says."""
     way = np.linalg.norm(np.diff(program.poses[:, :3], axis=0), axis=1)
     rapid, feed = np.asarray(program.rapid)[1:], np.asarray(program.feed)[1:]
     cutting = ~rapid & (feed > 0)
-    blocks = None
-    if not saved:
-        with out.open(encoding="utf-8", errors="replace") as text:
-            blocks = sum(1 for line in text if MOVING.search(line.partition("(")[0]))
-    return {
-        "out": str(out),
+    data = {
         "rows": len(program),
-        "blocks": blocks,
-        "subdivisions": None if blocks is None else max(0, blocks - len(program)),
         "length": float(way[~rapid].sum()),
         "rapid_length": float(way[rapid].sum()),
         "minutes": float((way[cutting] / feed[cutting]).sum()),
         "tools": sorted({int(n) for n in program.tool}),
-        "bytes": out.stat().st_size,
     }
+    return data | ({} if report is None else report | {"subdivisions": report["blocks"] - len(program)})
 
 
 def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
     shown = [("rows", number(data["rows"]))]
-    if data["blocks"] is not None:
+    if "blocks" in data:
         shown.append(("blocks", f"{number(data['blocks'])}, {number(data['subdivisions'])} more than rows"))
+        if data["slowed_blocks"]:
+            shown.append(("slowed", f"{number(data['slowed_blocks'])} blocks, to what an axis can turn"))
+        if data["rewinds"]:
+            shown.append(("rewinds", f"{number(len(data['rewinds']))}: the tool leaves the part and turns axes back"))
+        if data["pole_passages"]:
+            shown.append(("passages", f"{number(len(data['pole_passages']))} near the singular direction"))
     return [
         *shown,
         ("length", f"{number(data['length'], 'mm')}, and {number(data['rapid_length'], 'mm')} in rapid"),
