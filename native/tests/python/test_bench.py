@@ -13,8 +13,22 @@ import pytest
 import riffler
 from riffler import cli
 from riffler._core import bench as core
-from riffler.bench import baselines, curves, errors, exact, measure, parts, remesh, report, scenes, swept, valleys
-from riffler.bench.jobs import JOBS, b5x, force, gouge
+from riffler.bench import (
+    baselines,
+    curves,
+    errors,
+    exact,
+    measure,
+    nc_judge,
+    nc_programs,
+    parts,
+    remesh,
+    report,
+    scenes,
+    swept,
+    valleys,
+)
+from riffler.bench.jobs import JOBS, b5x, force, gouge, nc
 from riffler.bench.jobs import pencil as pen
 from riffler.command import bench as command
 
@@ -22,7 +36,7 @@ PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", ""
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
 PLOTS = {
     *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh"),
-    *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge"),
+    *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge", "nc"),
 }
 
 
@@ -279,6 +293,39 @@ def test_a_tool_that_gouges_between_its_rows_is_seen():
     np.testing.assert_allclose(between[45, 3:], [0.5**0.5, 0, -(0.5**0.5)], atol=1e-12)
     within = np.array([[65.0, 0, 5 - 70, 0, 0, 1]])
     assert judge.holds_top(within).all() and not judge.holds_top(rows).any()
+
+
+def test_code_is_read_written_and_true_between_its_blocks(quick):
+    assert {row["kind"] for row in rows(quick, "nc", "reader")} == set(nc_programs.CODE)
+    for row in rows(quick, "nc", "reader") + rows(quick, "nc", "writer"):
+        assert row["rate"] > 0 and (row["note"].startswith("rs274: ") or row["rs274_s"] > 0)
+        assert row.get("off_mm", 0) < 1e-9
+    for row in rows(quick, "nc", "between"):
+        assert 0 < row["axis_rad"] <= row["axis_tolerance"] and 0 < row["tip_mm"] <= row["tolerance"] + 2e-5
+        assert row["blocks"] >= row["rows"] + 2
+    assert all(5 < row["row_bytes"] < 60 for row in rows(quick, "nc", "file"))
+
+
+@pytest.mark.parametrize("post", nc.KINEMATICS)
+def test_the_judge_of_code_sees_blocks_that_are_wrong(tmp_path, post):
+    poses, file = nc_programs.paths(60)["smooth"], tmp_path / "p.ngc"
+    program = riffler.Program.from_cl([poses], tools=[nc.TOOL], feed=800)
+    options = {} if post == "tcp" else nc.TABLE
+    program.write(file, post=post, tolerance=1e-3, axis_tolerance=1e-4, options=options)
+    joints = nc_judge.joints_of(file.read_text())
+    found = nc_judge.between(joints, poses, nc.KINEMATICS[post])
+    assert found["at_mm"] < 2e-5 and found["tip_mm"] <= 1.02e-3 and found["axis_rad"] <= 1.001e-4
+    # Blocks between the rows left out.
+    rows = nc_judge.ends(nc.KINEMATICS[post](joints), poses)
+    bare = nc_judge.between(joints[rows], poses, nc.KINEMATICS[post])
+    assert bare["axis_rad"] > 4e-4 and (bare["tip_mm"] > 4e-3 or post == "tcp")
+    # Signs and axes exchanged.
+    for change in ([1, 1, 1, -1, -1, 1], [1, 1, 1, 1, 1, -1]):
+        with pytest.raises(ValueError, match="no block ends at row"):
+            nc_judge.between(joints * change, poses, nc.KINEMATICS[post])
+    other = {"linuxcnc-xyzac": "linuxcnc-xyzbc", "linuxcnc-xyzbc": "tcp", "tcp": "linuxcnc-xyzac"}[post]
+    with pytest.raises(ValueError, match="no block ends at row"):
+        nc_judge.between(joints, poses, nc.KINEMATICS[other])
 
 
 def test_haptic_work_does_not_follow_the_grid(quick):

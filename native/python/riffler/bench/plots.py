@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from . import contact_plots, gouge_plots, pencil_plots
+from . import contact_plots, gouge_plots, nc_plots, pencil_plots
 from .plotting import (
     COLOURS,
     INK,
@@ -359,5 +359,6 @@ PLOTS: dict[str, dict[str, Callable[[Data], Figure | None]]] = {
     "mesh": {"mesh": mesh},
     "col": {"col": contact_plots.col, "col-budgets": contact_plots.budgets, "col-slide": contact_plots.slide},
     "gouge": {"gouge": gouge_plots.entries},
+    "nc": {"nc": nc_plots.between},
     "pencil": {"pencil": pencil_plots.valleys, "pencil-tolerance": pencil_plots.tolerance},
 }

@@ -11,6 +11,7 @@ from . import (
     gouge,
     haptic,
     mesh,
+    nc,
     pencil,
     pitch,
     random,
@@ -35,5 +36,6 @@ JOBS = {
     "pencil": pencil,
     "drop": drop,
     "gouge": gouge,
+    "nc": nc,
     "threads": threads,
 }
