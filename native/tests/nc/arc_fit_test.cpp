@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
+#include "nc/reader.hpp"
 #include "stress/random.hpp"
 
 namespace riffler {
@@ -350,6 +352,48 @@ TEST(ArcFit, RoundedToFiveDecimalsTheEndIsOnTheCircle) {
   }
   EXPECT_GT(worst, 0);
   EXPECT_LT(worst, 5e-5);  // LinuxCNC allows 0.001 mm
+}
+
+/// G17, G18, G19 and G2, G3 as the reader understands them.
+TEST(ArcFit, CodeMadeOfThePiecesFollowsTheRun) {
+  stress::Random random(75);
+  for (int round = 0; round < 60; ++round) {
+    const Points points = random_run(random);
+    const double tolerance = random.power_of_ten(-3, -1);
+    const auto pieces = fit_arcs(points, tolerance);
+    std::string code = "G21 G90 G94 G43 H1\nT1 M6\n";
+    const auto add = [&](const char* format, const Vec3& v) {
+      char text[96];
+      std::snprintf(text, sizeof text, format, v.x, v.y, v.z);
+      code += text;
+    };
+    add("G0 X%.5f Y%.5f Z%.5f\n", points[0]);
+    std::size_t at = 0;
+    for (const FittedPiece& piece : pieces) {
+      const char* planes[] = {"G19 ", "G18 ", "G17 "};
+      if (piece.arc) code += planes[static_cast<int>(piece.normal)];
+      code += !piece.arc ? "G1" : piece.clockwise ? "G2" : "G3";
+      add(" X%.5f Y%.5f Z%.5f", points[piece.last]);
+      if (piece.arc) {
+        const Vec3 c = piece.centre - points[at];
+        char text[96];
+        const int written = piece.normal == Axis::Z   ? std::snprintf(text, sizeof text, " I%.5f J%.5f", c.x, c.y)
+                            : piece.normal == Axis::Y ? std::snprintf(text, sizeof text, " I%.5f K%.5f", c.x, c.z)
+                                                      : std::snprintf(text, sizeof text, " J%.5f K%.5f", c.y, c.z);
+        ASSERT_GT(written, 0);
+        code += text;
+      }
+      code += " F100\n";
+      at = piece.last;
+    }
+    const Program program = parse_nc(code + "M30\n", "p", {"3-axis", {{"chord_tolerance", 1e-4}}});
+    Points read;
+    for (const Pose& pose : program.poses()) read.push_back(pose.tip);
+    double worst = 0;
+    for (const Vec3& p : points) worst = std::max(worst, to_polyline(p, read));
+    for (const Vec3& p : read) worst = std::max(worst, to_polyline(p, points));
+    EXPECT_LE(worst, tolerance + 1e-4 + 3e-5) << round;
+  }
 }
 
 /// The least number of pieces over all ways to cut the run, each piece tried by itself.
