@@ -59,16 +59,23 @@ class Fitter {
     const Vec3 way = points.back() - points.front();
     const double length = glm::length(way);
     const Vec3 along = length > 0 ? way / length : Vec3(0);
+    const double tolerance = length > kSamePoint ? tolerance_ : kSamePoint;
     double furthest = 0;
-    for (const Vec3& p : points) {
+    const auto beside = [&](const Vec3& p) {
       ++looked_at;
       const Vec3 off = p - points.front();
       const double ahead = glm::dot(off, along);
       if (!(ahead >= furthest - kSamePoint && ahead <= length + kSamePoint)) return false;
-      if (glm::length(off - ahead * along) > (length > kSamePoint ? tolerance_ : kSamePoint)) return false;
+      if (glm::length(off - ahead * along) > tolerance) return false;
       furthest = std::max(furthest, ahead);
+      return true;
+    };
+    for (std::size_t step = stride(points.size());; step = 1) {
+      furthest = 0;
+      for (std::size_t k = 0; k < points.size(); k += step)
+        if (!beside(points[k])) return false;
+      if (step == 1) return true;
     }
-    return true;
   }
 
   std::optional<PlaneArc> arc_over(std::size_t at, std::size_t count) {

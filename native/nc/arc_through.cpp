@@ -66,11 +66,12 @@ class Chord {
     along_ = half_ > 0 ? chord / (2 * half_) : Vec2(0);
   }
 
-  /// Takes the side on which the furthest point lies as that of the bulge.
-  void choose_side() {
+  /// Takes the side on which the furthest of some points lies as that of the bulge.
+  void choose_side(std::size_t& looked_at) {
     double most = 0;
-    for (const Vec3& p : points_) {
-      const double off = cross(along_, flat(to_local(normal_, p)) - middle_);
+    for (std::size_t k = stride(points_.size()); k + 1 < points_.size(); k += stride(points_.size())) {
+      ++looked_at;
+      const double off = cross(along_, flat(to_local(normal_, points_[k])) - middle_);
       if (std::abs(off) > std::abs(most)) most = off;
     }
     left_ = most > 0;
@@ -91,18 +92,21 @@ class Chord {
   /// radius (x² + 1) / 2 x above it, distance − radius ≤ t and ≥ −t are quadratic in x, squared and times x.
   Range near(double tolerance, Range range, std::size_t& looked_at) const {
     const double t = tolerance / half_;
-    for (std::size_t k = 1; k + 1 < points_.size() && !range.empty(); ++k) {
+    const auto keep = [&](std::size_t k) {
       ++looked_at;
       const Vec2 p = (flat(to_local(normal_, points_[k])) - middle_) / half_;
       const double a = glm::dot(p, along_), b = left_ ? cross(along_, p) : -cross(along_, p);
       // All the circles pass within t of what is within t of an end.
       const double end = 1 - std::abs(a);
-      if (end * end + b * b <= t * t) continue;
+      if (end * end + b * b <= t * t) return;
       const double square = (a - 1) * (a + 1) + (b - t) * (b + t);
       range.keep(b + t, -square, t - b);
       range.keep(t - b, square, b + t);
+    };
+    for (std::size_t step = stride(points_.size());; step = 1) {
+      for (std::size_t k = step; k + 1 < points_.size() && !range.empty(); k += step) keep(k);
+      if (step == 1 || range.empty()) return range;
     }
-    return range;
   }
 
   PlaneArc arc(double x) const {
@@ -185,8 +189,7 @@ std::optional<PlaneArc> arc_within(std::span<const Vec3> points, Axis normal, do
   Chord chord(points, normal);
   Range range = chord.limits();
   if (range.empty()) return std::nullopt;
-  chord.choose_side();
-  looked_at += points.size();
+  chord.choose_side(looked_at);
   range = chord.near(tolerance, range, looked_at);
   if (range.empty()) return std::nullopt;
   // Chords lie inside their arc: the flattest arc that the points allow is the one that the chords allow first.

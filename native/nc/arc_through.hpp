@@ -15,6 +15,11 @@ inline constexpr double kLeastArcRadius = 0.01, kMostArcRadius = 1e4, kMostArcSw
 /// Points nearer to each other than this (mm) are one: nobody has gone back who went back by less.
 inline constexpr double kSamePoint = 1e-9;
 
+/// Every so-many-th of `count` points is looked at first: a run that is far too long shows there.
+inline std::size_t stride(std::size_t count) {
+  return count / 16 + 1;
+}
+
 /// A circular arc in a coordinate plane; along the normal it rises evenly with the angle.
 struct PlaneArc {
   Axis normal = Axis::Z;
