@@ -9,6 +9,7 @@ import pytest
 import riffler
 from commands import result, riffle
 from riffler import cli, plan
+from riffler.bench import nc_judge
 
 import linuxcnc
 
@@ -184,9 +185,25 @@ def test_what_it_writes_is_read_by_linuxcnc(folder):
         "post", "leaning.json", "--feed", 700, "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder
     )
     moves = linuxcnc.interpreted(folder / "p.ngc")
-    at = linuxcnc.table_table(moves.joints, "A", TABLE["rot_point"], TABLE["offset"])
+    at = nc_judge.table_table(moves.joints, "A", TABLE["rot_point"], TABLE["offset"])
     wanted = np.array([[3 - 3 * 0.6, y, 3 - 3 * 0.8, 0.6, 0, 0.8] for y in (0, 4, 9)])
     assert nearest(at, wanted) < 1e-3
+
+
+def test_a_machine_of_ones_own_is_a_file(folder):
+    shipped = Path(__file__).parents[2] / "nc" / "machines" / "linuxcnc-xyzac.toml"
+    (folder / "mine.toml").write_text(shipped.read_text())
+    result("post", "p.rprog", "--post", "mine.toml", *TABLE_WORDS, "--out", "a.ngc", cwd=folder)
+    result("post", "p.rprog", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "b.ngc", cwd=folder)
+    mine, theirs = ((folder / name).read_text().splitlines() for name in ("a.ngc", "b.ngc"))
+    assert "mine" in mine[0] and mine[1:] == theirs[1:]
+
+
+def test_a_saved_program_is_carved(folder):
+    words = ("--stock", "60x20x5", "--origin", "0,-10,-5", "--pitch", 0.5, "--directions", "z", "--tool", "ball:6")
+    saved = result("carve", *words, "--program", "p.rprog", "--out", "a.rvol", cwd=folder)
+    code = result("carve", *words, "--program", "p.ngc", "--out", "b.rvol", cwd=folder)
+    assert saved["removed"] == pytest.approx(code["removed"], rel=1e-3) and saved["removed"] > 100
 
 
 def test_machines_are_listed(folder):

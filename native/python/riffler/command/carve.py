@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
     )
     parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
-    parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274")
+    parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274, or .rprog")
     parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
     parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply, .3mf or .rvol")
@@ -44,7 +44,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     out = output_file(arguments.out, MESHES + VOLUMES)
     wanted = [tools.parse(text) for text in arguments.tool]
     with console.step("program"):
-        program = Program.read(arguments.program, machine=arguments.machine)
+        saved = arguments.program.lower().endswith(".rprog")
+        program = Program.load(arguments.program) if saved else Program.read(arguments.program, arguments.machine)
         poses = np.asarray(program.poses)
         called = np.asarray(program.tool)
         rapid = np.asarray(program.rapid)[1:]
