@@ -130,7 +130,7 @@ def write(out: Report, count: int, settings: Settings, folder: Path, progress: P
     upright, tilted = nc_programs.sheet(count, False), nc_programs.sheet(count, True)
     cases: list[tuple[str, np.ndarray, dict]] = [
         ("3-axis", upright, {}),
-        ("tcp", tilted, {}),
+        ("tcp", tilted, {"tool_length": "G43"}),  # LinuxCNC has no G43.4
         ("linuxcnc-xyzac", tilted, TABLE),
         ("linuxcnc-xyzbc", tilted, TABLE),
     ]
@@ -141,11 +141,7 @@ def write(out: Report, count: int, settings: Settings, folder: Path, progress: P
         def work(program=program, file=file, post=post, options=options) -> dict:
             return program.write(file, post=post, options=options)
 
-        if post == "tcp":  # LinuxCNC has no G43.4
-            seconds, wrote = median(work, settings)
-            figures: dict[str, Any] = {"seconds": seconds, "note": "rs274: knows no G43.4"}
-        else:
-            figures, wrote = beside_interpreter(file, work, settings)
+        figures, wrote = beside_interpreter(file, work, settings)
         figures.pop("ratio", None)
         table.row(
             post=post, rows=len(program), blocks=wrote["blocks"], bytes=file.stat().st_size,
