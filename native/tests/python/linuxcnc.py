@@ -1,11 +1,11 @@
-"""NC code as LinuxCNC's interpreter understands it, and tool poses by forward kinematics of the tests' own."""
+"""NC code as LinuxCNC's interpreter understands it."""
 
 from __future__ import annotations
 
 import os
 import re
 import subprocess
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -63,42 +63,6 @@ def interpreted(path: Path) -> Moves:
             rapid.append(call == "STRAIGHT_TRAVERSE")
             minutes.append(np.nan if rapid[-1] else length / feed if feed > 0 else np.inf)
     return Moves(np.array(joints), np.array(rapid), np.array(minutes))
-
-
-@dataclass
-class Axes:
-    """A machine by its rotary axes: (letter, direction, point), tables from the part to the bed, heads from the bed to
-    the tool; directions about which a positive angle turns what the axis carries, right-handed; points of tables in
-    part coordinates, of heads from the tip, all at 0. tip: X Y Z are the tip's place in part coordinates."""
-
-    tables: list = field(default_factory=list)
-    heads: list = field(default_factory=list)
-    tip: bool = False
-
-
-def about(direction, point, degrees: np.ndarray) -> np.ndarray:
-    """(n, 4, 4): turns about a line, by the matrix exponential of the cross product."""
-    k = np.asarray(direction, float) / np.linalg.norm(direction)
-    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
-    angle = np.radians(degrees)[:, None, None]
-    out = np.tile(np.eye(4), (len(degrees), 1, 1))
-    out[:, :3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
-    out[:, :3, 3] = np.asarray(point, float) - out[:, :3, :3] @ np.asarray(point, float)
-    return out
-
-
-def poses(joints: np.ndarray, axes: Axes) -> np.ndarray:
-    """(n, 6) tool poses in part coordinates of joints (n, 6), X Y Z A B C: with matrices from the part over the bed to
-    the tool, not by LinuxCNC's formulas nor ours."""
-    part = tool = np.tile(np.eye(4), (len(joints), 1, 1))
-    for letter, direction, point in axes.tables:
-        part = about(direction, point, joints[:, 3 + "ABC".index(letter)]) @ part
-    for letter, direction, point in axes.heads:
-        tool = tool @ about(direction, point, joints[:, 3 + "ABC".index(letter)])
-    linear = np.tile(np.eye(4), (len(joints), 1, 1))
-    linear[:, :3, 3] = joints[:, :3]
-    stands = np.linalg.inv(part) @ linear @ tool
-    return np.hstack([joints[:, :3] if axes.tip else stands[:, :3, 3], stands[:, :3, 2]])
 
 
 def between(joints: np.ndarray, parts: int) -> np.ndarray:

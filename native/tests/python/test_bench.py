@@ -316,7 +316,7 @@ def test_the_judge_of_code_sees_blocks_that_are_wrong(tmp_path, post):
     found = nc_judge.between(joints, poses, nc.KINEMATICS[post])
     assert found["at_mm"] < 2e-5 and found["tip_mm"] <= 1.02e-3 and found["axis_rad"] <= 1.001e-4
     # Blocks between the rows left out.
-    rows = nc_judge.ends(nc.KINEMATICS[post](joints), poses)
+    rows = nc_judge.ends(nc_judge.poses(joints, nc.KINEMATICS[post]), poses)
     bare = nc_judge.between(joints[rows], poses, nc.KINEMATICS[post])
     assert bare["axis_rad"] > 4e-4 and (bare["tip_mm"] > 4e-3 or post == "tcp")
     # Signs and axes exchanged.

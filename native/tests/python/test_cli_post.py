@@ -185,7 +185,7 @@ def test_what_it_writes_is_read_by_linuxcnc(folder):
         "post", "leaning.json", "--feed", 700, "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder
     )
     moves = linuxcnc.interpreted(folder / "p.ngc")
-    at = nc_judge.table_table(moves.joints, "A", TABLE["rot_point"], TABLE["offset"])
+    at = nc_judge.poses(moves.joints, nc_judge.tilting_table("A", TABLE["rot_point"], TABLE["offset"]))
     wanted = np.array([[3 - 3 * 0.6, y, 3 - 3 * 0.8, 0.6, 0, 0.8] for y in (0, 4, 9)])
     assert nearest(at, wanted) < 1e-3
 

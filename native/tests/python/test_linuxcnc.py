@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 import riffler
+from riffler.bench.nc_judge import Axes, tilting_table
+from riffler.bench.nc_judge import poses as forward
 
 import linuxcnc
 
@@ -14,23 +16,21 @@ X, Y, Z = np.eye(3)
 TABLE = {"rot_point": ROT_POINT, "offset": OFFSET}
 
 
-def tilting(letter, axis, offset=OFFSET):
-    """A tilting table under a rotary table C; the offset counts across the tilting axis."""
-    apart = np.array(ROT_POINT) + np.where(axis, 0, offset)
-    return linuxcnc.Axes(tables=[("C", Z, ROT_POINT), (letter, axis, apart)])
+def tilting(letter, offset=OFFSET):
+    return tilting_table(letter, ROT_POINT, offset)
 
 
 def tips(axes):
-    return linuxcnc.Axes(axes.tables, axes.heads, tip=True)
+    return Axes(axes.tables, axes.heads, tip=True)
 
 
-HEADS = linuxcnc.Axes(heads=[("C", Z, [0, 0, PIVOT]), ("B", Y, [0, 0, PIVOT])])
-HEAD_TABLE = linuxcnc.Axes(tables=[("C", -Z, ROT_POINT)], heads=[("B", Y, [0, 0, PIVOT])])
+HEADS = Axes(heads=[("C", Z, [0, 0, PIVOT]), ("B", Y, [0, 0, PIVOT])])
+HEAD_TABLE = Axes(tables=[("C", -Z, ROT_POINT)], heads=[("B", Y, [0, 0, PIVOT])])
 # What is written, with which options, and the machine by which it is judged.
 POSTS = {
-    "linuxcnc-xyzac": ("linuxcnc-xyzac", TABLE, tilting("A", X)),
-    "linuxcnc-xyzbc": ("linuxcnc-xyzbc", TABLE, tilting("B", Y)),
-    "linuxcnc-xyzac, kinematics on": ("linuxcnc-xyzac", TABLE | {"tcp": True}, tips(tilting("A", X))),
+    "linuxcnc-xyzac": ("linuxcnc-xyzac", TABLE, tilting("A")),
+    "linuxcnc-xyzbc": ("linuxcnc-xyzbc", TABLE, tilting("B")),
+    "linuxcnc-xyzac, kinematics on": ("linuxcnc-xyzac", TABLE | {"tcp": True}, tips(tilting("A"))),
     "head-head": ("head-head", {}, tips(HEADS)),
     "head-head, its axes": ("head-head", {"tcp": False, "pivot_length": PIVOT}, HEADS),
     "head-table": ("head-table", {"rot_point": ROT_POINT}, tips(HEAD_TABLE)),
@@ -38,7 +38,7 @@ POSTS = {
         "head-table", {"tcp": False, "pivot_length": PIVOT, "rot_point": ROT_POINT}, HEAD_TABLE
     ),
     # LinuxCNC has no G43.4; the words are the same under G43.
-    "tcp": ("tcp", {"tool_length": "G43"}, linuxcnc.Axes(heads=[("C", Z, [0, 0, 0]), ("A", X, [0, 0, 0])], tip=True)),
+    "tcp": ("tcp", {"tool_length": "G43"}, Axes(heads=[("C", Z, [0, 0, 0]), ("A", X, [0, 0, 0])], tip=True)),
 }  # fmt: skip
 JOINTS = ["linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head, its axes", "head-table, its axes"]
 PRINTED = 2e-4  # rs274 prints 4 decimals
@@ -95,7 +95,7 @@ def judged(file, axes, poses):
     """How far the program is off the poses at their blocks, and off the moves between them, mm and rad."""
     moves = linuxcnc.interpreted(file)
     joints = moves.joints[1:]
-    at = linuxcnc.poses(joints, axes)
+    at = forward(joints, axes)
     # Every pose is the end of a block, in their order.
     ends, start, worst = [], 0, np.zeros(2)
     for pose in poses:
@@ -106,7 +106,7 @@ def judged(file, axes, poses):
         start = k + (len(ends) < len(poses) and not np.array_equal(pose, poses[len(ends)]))
     inner = np.zeros(2)
     for first, last, a, b in zip(ends, ends[1:], poses, poses[1:], strict=False):
-        dense = linuxcnc.poses(linuxcnc.between(joints[first : last + 1], 16).reshape(-1, 6), axes)
+        dense = forward(linuxcnc.between(joints[first : last + 1], 16).reshape(-1, 6), axes)
         way = b[:3] - a[:3]
         share = np.clip((dense[:, :3] - a[:3]) @ way / max(way @ way, 1e-300), 0, 1)[:, None]
         aside = np.linalg.norm(dense[:, :3] - a[:3] - share * way, axis=1).max(initial=0)
@@ -134,7 +134,7 @@ def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, pos
     file = written(tmp_path, poses, post, max_rotary=2000.0, feed=feed)
     assert ("G93" in file.read_text()) == (feed == "inverse-time")
     moves = linuxcnc.interpreted(file)
-    at = linuxcnc.poses(moves.joints, POSTS[post][2])
+    at = forward(moves.joints, POSTS[post][2])
     way = np.linalg.norm(np.diff(at[:, :3], axis=0), axis=1)
     turn = abs(np.diff(moves.joints[:, 3:], axis=0)).max(1)
     wanted = np.maximum(way / 600, turn / 2000)
@@ -155,7 +155,7 @@ def test_mutations_do_not_pass(tmp_path):
             worst, inner, moves = judged(file, axes, poses)
         except linuxcnc.RefusedError:
             return np.inf
-        at = linuxcnc.poses(moves.joints, axes)
+        at = forward(moves.joints, axes)
         minutes = np.linalg.norm(np.diff(at[:, :3], axis=0), axis=1) / 600
         fed = ~moves.rapid[1:]
         late = abs(moves.minutes[1:] - minutes)[fed].max()
@@ -169,7 +169,7 @@ def test_mutations_do_not_pass(tmp_path):
     dropped = next(k for k, line in enumerate(lines) if "F" in line and "G" not in line and "(" not in line)
     lines[dropped] = lines[dropped].split(" F")[0]
     assert error("\n".join(lines)) > 1, "an F that is missing under G93"
-    worst, _, _ = judged(written(tmp_path, poses, post), tilting("A", X, [0, 0, 0]), poses)
+    worst, _, _ = judged(written(tmp_path, poses, post), tilting("A", [0, 0, 0]), poses)
     assert worst[0] > 1, "another machine"
 
 
@@ -204,7 +204,7 @@ def test_where_a_limit_is_met_the_tool_turns_back_above_the_part(tmp_path):
         assert abs(moves.joints[:, 5]).max() <= 200
         ways = np.diff(moves.joints, axis=0)
         back = abs(ways[:, 5]) > 1e-9
-        at = linuxcnc.poses(moves.joints, axes)
+        at = forward(moves.joints, axes)
         # Turns against the path's sense happen in rapids, as high as the program goes.
         against = back & (np.sign(ways[:, 5]) != np.sign(np.sum(ways[~moves.rapid[1:], 5])))
         assert against.any() and moves.rapid[1:][against].all(), post

@@ -8,6 +8,7 @@ import re
 import resource
 import shutil
 import subprocess
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -31,41 +32,59 @@ def joints_of(text: str) -> np.ndarray:
     return np.array(out).reshape(-1, 6)
 
 
-def turned(axis: int, degrees: np.ndarray) -> np.ndarray:
-    """(n, 3, 3): right-handed about a coordinate axis."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    out = np.zeros((*degrees.shape, 3, 3))
-    u, v = (axis + 1) % 3, (axis + 2) % 3
-    out[..., axis, axis] = 1
-    out[..., u, u] = out[..., v, v] = c
-    out[..., u, v], out[..., v, u] = -s, s
+@dataclass
+class Axes:
+    """A machine by its rotary axes: (letter, direction, point), tables from the part to the bed, heads from the bed to
+    the tool; directions about which a positive angle turns what the axis carries, right-handed; points of tables in
+    part coordinates, of heads from the tip, all at 0. tip: X Y Z are the tip's place in part coordinates."""
+
+    tables: list = field(default_factory=list)
+    heads: list = field(default_factory=list)
+    tip: bool = False
+
+
+def about(direction, point, degrees: np.ndarray) -> np.ndarray:
+    """(n, 4, 4): turns about a line, by the matrix exponential of the cross product."""
+    k = np.asarray(direction, float) / np.linalg.norm(direction)
+    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    angle = np.radians(degrees)[:, None, None]
+    out = np.tile(np.eye(4), (len(degrees), 1, 1))
+    out[:, :3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    out[:, :3, 3] = np.asarray(point, float) - out[:, :3, :3] @ np.asarray(point, float)
     return out
 
 
-def table_table(joints: np.ndarray, tilt: str, rot_point: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """(n, 6) tip and axis in part coordinates: a table C stands on a table A or B whose axis passes ``offset`` from
-    ``rot_point``; both turn the part right-handed."""
-    axis = "AB".index(tilt)
-    apart = np.array(offset, float)
-    apart[axis] = 0
-    part = turned(axis, joints[:, 3 + axis]) @ turned(2, joints[:, 5])
-    # A point q of the part is at  p + apart + tilt (turn (q - p) - apart);  the tip is the q that is at X Y Z.
-    held = turned(axis, joints[:, 3 + axis])
-    behind = np.einsum("nji,nj->ni", held, joints[:, :3] - rot_point - apart) + apart
-    tips = np.einsum("nji,nj->ni", turned(2, joints[:, 5]), behind) + rot_point
-    return np.hstack([tips, part[:, 2, :]])
+def poses(joints: np.ndarray, axes: Axes) -> np.ndarray:
+    """(n, 6) tool poses in part coordinates of joints (n, 6), X Y Z A B C: with matrices from the part over the bed to
+    the tool, not by LinuxCNC's formulas nor ours."""
+    part = tool = np.tile(np.eye(4), (len(joints), 1, 1))
+    for letter, direction, point in axes.tables:
+        part = about(direction, point, joints[:, 3 + "ABC".index(letter)]) @ part
+    for letter, direction, point in axes.heads:
+        tool = tool @ about(direction, point, joints[:, 3 + "ABC".index(letter)])
+    linear = np.tile(np.eye(4), (len(joints), 1, 1))
+    linear[:, :3, 3] = joints[:, :3]
+    stands = np.linalg.inv(part) @ linear @ tool
+    return np.hstack([joints[:, :3] if axes.tip else stands[:, :3, 3], stands[:, :3, 2]])
 
 
-def tip_words(joints: np.ndarray) -> np.ndarray:
-    """(n, 6): X Y Z are the tip, the axis is Rz(C) Rx(A) ez."""
-    axes = (turned(2, joints[:, 5]) @ turned(0, joints[:, 3]))[:, :, 2]
-    return np.hstack([joints[:, :3], axes])
+def tilting_table(letter: str, rot_point, offset) -> Axes:
+    """LinuxCNC's xyzac-trt and xyzbc-trt: a rotary table C on a table A or B whose axis passes ``offset`` from
+    ``rot_point``, across its own direction; both turn the part right-handed."""
+    axis = np.eye(3)["AB".index(letter)]
+    point = np.asarray(rot_point, float)
+    apart = np.where(axis, 0.0, np.asarray(offset, float))
+    return Axes(tables=[("C", [0, 0, 1], point), (letter, axis, point + apart)])
 
 
-def ends(at: np.ndarray, poses: np.ndarray) -> list[int]:
+#: X Y Z are the tip, the axis is Rz(C) Rx(A) ez.
+TIP_A_C = Axes(heads=[("C", [0, 0, 1], [0, 0, 0]), ("A", [1, 0, 0], [0, 0, 0])], tip=True)
+
+
+def ends(at: np.ndarray, wanted: np.ndarray) -> list[int]:
     """The block that ends at each pose, in order; ValueError where there is none."""
     found, start = [], 0
-    for row, pose in enumerate(poses):
+    for row, pose in enumerate(wanted):
         near = (np.abs(at[start:, :3] - pose[:3]).max(1) < 1e-3) & (np.abs(at[start:, 3:] - pose[3:]).max(1) < 1e-5)
         if not near.any():
             raise ValueError(f"no block ends at row {row}")
@@ -74,17 +93,17 @@ def ends(at: np.ndarray, poses: np.ndarray) -> list[int]:
     return found
 
 
-def between(joints: np.ndarray, poses: np.ndarray, kinematics) -> dict[str, float]:
-    """How far blocks are off the poses at which they end (``at_mm``, ``at_rad``) and, with all axes moving evenly from
-    block to block, off the lines and great circles between the poses (``tip_mm``, ``axis_rad``)."""
-    at = kinematics(joints)
-    found = ends(at, poses)
-    off = at[found] - poses
+def between(joints: np.ndarray, wanted: np.ndarray, axes: Axes) -> dict[str, float]:
+    """How far blocks are off the poses ``wanted`` at which they end (``at_mm``, ``at_rad``) and, with all axes moving
+    evenly from block to block, off the lines and great circles between them (``tip_mm``, ``axis_rad``)."""
+    at = poses(joints, axes)
+    found = ends(at, wanted)
+    off = at[found] - wanted
     tip = axis = 0.0
     share = np.linspace(0, 1, BETWEEN, endpoint=False)[None, :, None]
-    for first, last, a, b in zip(found, found[1:], poses, poses[1:], strict=False):
+    for first, last, a, b in zip(found, found[1:], wanted, wanted[1:], strict=False):
         begin, end = joints[first:last, None], joints[first + 1 : last + 1, None]
-        dense = kinematics((begin + share * (end - begin)).reshape(-1, 6))
+        dense = poses((begin + share * (end - begin)).reshape(-1, 6), axes)
         way = b[:3] - a[:3]
         along = np.clip((dense[:, :3] - a[:3]) @ way / max(way @ way, 1e-300), 0, 1)[:, None]
         tip = max(tip, np.linalg.norm(dense[:, :3] - a[:3] - along * way, axis=1).max())
@@ -115,9 +134,9 @@ def child_seconds() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def interpreted(program: Path) -> float:
-    """Processor seconds of rs274 from its start until all canonical moves are in a file; RuntimeError with what it
-    says."""
+def interpreted(program: Path) -> tuple[float, np.ndarray]:
+    """Processor seconds of rs274 from its start until all canonical moves are in a file, and the joints (n, 6) at their
+    ends, mm and degrees with the 4 decimals that it prints; RuntimeError with what it says."""
     rs274 = interpreter()
     assert rs274 is not None
     table, out = program.with_suffix(".tbl"), program.with_suffix(".canon")
@@ -132,5 +151,7 @@ def interpreted(program: Path) -> float:
     seconds = child_seconds() - start
     if done.returncode != 0 or not out.exists() or "PROGRAM_END" not in out.read_text():
         raise RuntimeError((done.stderr.strip() or done.stdout.strip() or "no end of the program").splitlines()[-1])
+    text = out.read_text()
     out.unlink()
-    return seconds
+    moves = re.findall(r"STRAIGHT_(?:FEED|TRAVERSE)\((.*)\)$", text, re.M)
+    return seconds, np.array([[float(word) for word in move.split(",")] for move in moves]).reshape(-1, 6)

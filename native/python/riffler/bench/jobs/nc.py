@@ -6,7 +6,6 @@ from __future__ import annotations
 import statistics
 import tempfile
 import time
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +21,9 @@ AXIS_SHARE = 0.1  # rad of the axis for every mm of the tip, where both are aske
 PRINTED = 2e-5  # mm: what lengths of 5 decimals and angles of 6 leave of a tip 200 mm off the axes
 TABLE = {"rot_point": nc_programs.ROT_POINT.tolist(), "offset": nc_programs.OFFSET.tolist()}
 KINEMATICS = {
-    "linuxcnc-xyzac": partial(nc_judge.table_table, tilt="A", **{k: np.array(v) for k, v in TABLE.items()}),
-    "linuxcnc-xyzbc": partial(nc_judge.table_table, tilt="B", **{k: np.array(v) for k, v in TABLE.items()}),
-    "tcp": nc_judge.tip_words,
+    "linuxcnc-xyzac": nc_judge.tilting_table("A", **TABLE),
+    "linuxcnc-xyzbc": nc_judge.tilting_table("B", **TABLE),
+    "tcp": nc_judge.TIP_A_C,
 }
 
 
@@ -67,7 +66,7 @@ def beside_interpreter(file: Path, work, settings: Settings) -> tuple[dict[str, 
             note = "rs274: left out, no LinuxCNC here (make envs)"
             continue
         try:
-            theirs.append(nc_judge.interpreted(file))
+            theirs.append(nc_judge.interpreted(file)[0])
         except RuntimeError as error:
             note = f"rs274: {error}"
     figures: dict[str, Any] = {"seconds": statistics.median(mine), "note": note}
@@ -101,7 +100,7 @@ def read(out: Report, count: int, settings: Settings, folder: Path, progress: Pr
         figures, program = beside_interpreter(file, lambda file=file: Program.read(file), settings)
         lines = np.asarray(program.line)
         last = np.flatnonzero(np.append(np.diff(lines) != 0, True))[-count:]  # the last row of every block
-        off = float(abs(program.poses[last] - nc_judge.tip_words(joints)).max())
+        off = float(abs(program.poses[last] - nc_judge.poses(joints, nc_judge.TIP_A_C)).max())
         out.check(len(last) == count and off < 1e-9, f"reader, {kind}: {off} mm off")
         table.row(
             kind=kind, blocks=count, bytes=len(text), rate=count / figures["seconds"], off_mm=off, rows=len(program),
