@@ -3,8 +3,9 @@
     python demo/run.py --out out/demo --blender-python .envs/bpy-4.5/bin/python
 
 Suzanne becomes a tri-dexel stock, the strokes in demo/strokes.rjournal engrave her and the force along them is plotted.
-The strokes are written as NC code; that code is read back and replayed on another stock with another tool. Exits with 1
-if a mesh that was read back from its STL is not sound.
+The strokes are written as NC code for a tilting rotary table, LinuxCNC's interpreter and the benchmark's own forward
+kinematics say where that takes the tool, and the code is read back and replayed on another stock with another tool.
+Exits with 1 if a mesh that was read back from its STL is not sound, or the code takes the tool elsewhere.
 """
 
 from __future__ import annotations
@@ -23,10 +24,14 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # run as a script, not only as `python -m demo.run`
 
 import riffler  # noqa: E402
+from riffler.bench import nc_judge  # noqa: E402
 
 from demo import egg, forces, report  # noqa: E402
 
 REPLAY_TOOL = riffler.Tool.ball(diameter=3.0, length=10.0)
+POST = "linuxcnc-xyzac"
+TABLE = {"rot_point": [0.0, 0.0, -90.0], "offset": [0.0, 0.0, 40.0]}  # the figure stands 24 mm over the rotary table
+TOLERANCE = 0.01  # mm between blocks
 AWAY = 6.0  # mm from every stroke: the surface there is the figure's own
 
 
@@ -110,6 +115,19 @@ def carve_strokes(volume, journal, piece) -> list[forces.Felt]:
     return felt
 
 
+def judge(program: riffler.Program, code: Path, piece) -> None:
+    """Where LinuxCNC takes the tool: at the rows, and between any two blocks with all axes moving evenly."""
+    if nc_judge.interpreter() is None:
+        piece.note("NC code judged", "left out: no LinuxCNC here")
+        return
+    _, joints = nc_judge.interpreted(code)
+    off = nc_judge.between(joints, program.poses, nc_judge.tilting_table("A", **TABLE), ~program.rapid)
+    piece.note("by LinuxCNC: tip off at rows", f"{off['at_mm']:.2g} mm")
+    piece.note("between blocks", f"{off['tip_mm']:.2g} mm, {np.degrees(off['axis_rad']):.2g}°")
+    # The interpreter prints four decimals, of degrees too.
+    piece.sound &= off["at_mm"] < 2e-3 and off["tip_mm"] < TOLERANCE + 2e-3 and off["axis_rad"] < 1.8e-3
+
+
 def replay(volume, program, tool, piece) -> None:
     """Every row of the program with one tool; rapids are swept as well and must not touch the stock."""
     cut = volume.carve(tool, program.poses, tolerance=0.01)
@@ -131,7 +149,7 @@ def mesh_and_check(volume, path: Path, piece, stages) -> riffler.Mesh:
     piece.note("triangles", f"{len(mesh.triangles):,}")
     piece.note("audit after reading", report.describe_audit(audit))
     piece.note("pieces", f"{audit['components']}")
-    piece.sound = not any(report.defects(audit).values())
+    piece.sound &= not any(report.defects(audit).values())
     with stages(f"{piece.name}: error of the mesh"):
         ends, rays = ray_ends(volume)
         error = distances(ends, mesh)
@@ -174,8 +192,12 @@ def main() -> int:
 
     with stages("strokes to NC code and back"):
         journal.write(out / "strokes.rjournal")
-        journal.program(spindle=12000.0).write(out / "strokes.ngc", post="tcp")
-        program = riffler.Program.read(out / "strokes.ngc", machine="tcp")
+        recorded = journal.program(spindle=12000.0)
+        written = recorded.write(out / "strokes.ngc", post=POST, tolerance=TOLERANCE, options=TABLE)
+        program = riffler.Program.read(out / "strokes.ngc", machine=POST, options=TABLE)
+    other.note("NC blocks", f"{written['blocks']:,} for {len(recorded):,} rows")
+    with stages("NC code judged by LinuxCNC's interpreter"):
+        judge(recorded, out / "strokes.ngc", other)
     with stages("Egg: mesh to volume"):
         stock = riffler.Volume.from_mesh(riffler.Mesh(*egg.build()), options.pitch, "xyz")
     with stages("Egg: NC code replayed"):

@@ -1,7 +1,7 @@
 """Makes this checkout ready to work in: system libraries, ./.venv with pinned packages, riffler built and installed.
 
     python3 tools/setup.py             what `make setup` does
-    python3 tools/setup.py demo        and one Blender as a Python module in ./.envs
+    python3 tools/setup.py demo        and one Blender as a Python module, and LinuxCNC's interpreter, in ./.envs
     python3 tools/setup.py test        and every Blender, and what the tests need from the system
     python3 tools/setup.py bench       and what the benchmarks need from the system, and the rivals' libraries
 
@@ -22,7 +22,7 @@ from wheel import build_wheel
 DEMO_BLENDER = "4.5"
 EXTRA_NEEDS = {
     "build": [],
-    "demo": system.BLENDER_MODULE,
+    "demo": system.BLENDER_MODULE + system.LINUXCNC,
     "test": system.CPP_TESTS + system.BLENDER_MODULE + system.BLENDER_WINDOW + system.LINUXCNC,
     "cpp-tests": system.CPP_TESTS,
     "bench": system.BENCH,
@@ -38,7 +38,7 @@ def setup(purpose: str) -> None:
     install_wheel(VENV, wheel, key)
     for version in {"demo": [DEMO_BLENDER], "test": blender_versions()}.get(purpose, []):
         install_wheel(blender_environment(version), wheel, key)
-    if purpose == "test":
+    if purpose in ("test", "demo"):
         linuxcnc()
     if purpose == "bench":
         rivals_environment()

@@ -93,15 +93,17 @@ def ends(at: np.ndarray, wanted: np.ndarray) -> list[int]:
     return found
 
 
-def between(joints: np.ndarray, wanted: np.ndarray, axes: Axes) -> dict[str, float]:
+def between(joints: np.ndarray, wanted: np.ndarray, axes: Axes, tied: np.ndarray | None = None) -> dict[str, float]:
     """How far blocks are off the poses ``wanted`` at which they end (``at_mm``, ``at_rad``) and, with all axes moving
-    evenly from block to block, off the lines and great circles between them (``tip_mm``, ``axis_rad``)."""
+    evenly from block to block, off the lines and great circles between them (``tip_mm``, ``axis_rad``). ``tied`` (n,):
+    on the way to which of them the tool must keep to the great circle; None: all."""
     at = poses(joints, axes)
     found = ends(at, wanted)
     off = at[found] - wanted
     tip = axis = 0.0
     share = np.linspace(0, 1, BETWEEN, endpoint=False)[None, :, None]
-    for first, last, a, b in zip(found, found[1:], wanted, wanted[1:], strict=False):
+    must = np.ones(len(wanted), bool) if tied is None else tied
+    for first, last, a, b, held in zip(found, found[1:], wanted, wanted[1:], must[1:], strict=False):
         begin, end = joints[first:last, None], joints[first + 1 : last + 1, None]
         dense = poses((begin + share * (end - begin)).reshape(-1, 6), axes)
         way = b[:3] - a[:3]
@@ -109,7 +111,7 @@ def between(joints: np.ndarray, wanted: np.ndarray, axes: Axes) -> dict[str, flo
         tip = max(tip, np.linalg.norm(dense[:, :3] - a[:3] - along * way, axis=1).max())
         pole = np.cross(a[3:], b[3:])
         length = np.linalg.norm(pole)
-        if length > 1e-9:
+        if held and length > 1e-9:
             axis = max(axis, np.arcsin(np.clip(abs(dense[:, 3:] @ pole) / length, 0, 1)).max())
     return {
         "tip_mm": float(tip),
@@ -140,13 +142,14 @@ def interpreted(program: Path) -> tuple[float, np.ndarray]:
     rs274 = interpreter()
     assert rs274 is not None
     table, out = program.with_suffix(".tbl"), program.with_suffix(".canon")
-    table.write_text("T1 P1 Z0 D6\n")
+    table.write_text("".join(f"T{n} P{n} Z0 D6\n" for n in range(1, 100)))
     usr = rs274.parents[1]
     libraries = os.pathsep.join([f"{usr}/lib", f"{usr}/lib/x86_64-linux-gnu", os.environ.get("LD_LIBRARY_PATH", "")])
     start = child_seconds()
     done = subprocess.run(
         [rs274, "-t", table, "-g", program, out],
-        env=os.environ | {"LD_LIBRARY_PATH": libraries}, capture_output=True, text=True, check=False,
+        # It keeps its tools in a file of the home directory: runs beside each other must not share one.
+        env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": str(program.parent)}, capture_output=True, text=True, check=False,
     )  # fmt: skip
     seconds = child_seconds() - start
     if done.returncode != 0 or not out.exists() or "PROGRAM_END" not in out.read_text():
