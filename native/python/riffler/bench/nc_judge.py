@@ -137,8 +137,8 @@ def child_seconds() -> float:
 
 
 def interpreted(program: Path) -> tuple[float, np.ndarray]:
-    """Processor seconds of rs274 from its start until all canonical moves are in a file, and the joints (n, 6) at their
-    ends, mm and degrees with the 4 decimals that it prints; RuntimeError with what it says."""
+    """Processor seconds of rs274 from its start until all canonical moves are in a file, and the joints (n, 6) at
+    their ends, mm and degrees with the 4 decimals that it prints; RuntimeError with what it says."""
     rs274 = interpreter()
     assert rs274 is not None
     table, out = program.with_suffix(".tbl"), program.with_suffix(".canon")
@@ -149,7 +149,8 @@ def interpreted(program: Path) -> tuple[float, np.ndarray]:
     done = subprocess.run(
         [rs274, "-t", table, "-g", program, out],
         # It keeps its tools in a file of the home directory: runs beside each other must not share one.
-        env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": str(program.parent)}, capture_output=True, text=True, check=False,
+        env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": str(program.parent)},
+        capture_output=True, text=True, check=False,
     )  # fmt: skip
     seconds = child_seconds() - start
     if done.returncode != 0 or not out.exists() or "PROGRAM_END" not in out.read_text():
