@@ -6,6 +6,9 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "geom/directions.hpp"
+#include "nc/number_text.hpp"
+
 namespace riffler {
 
 namespace {
@@ -57,7 +60,10 @@ Machine::Machine(MachineDescription description) : description_(std::move(descri
     two_ = {seen_[0], seen_[1]};
   }
   for (std::size_t k = 0; k < description_.ranges.size(); ++k) {
-    const AxisRange& range = description_.ranges[k];
+    AxisRange& range = description_.ranges[k];
+    // What is within a limit must also be within it when it is printed.
+    const double scale = std::pow(10.0, k >= 3 ? kAngleDecimals : kLengthDecimals);
+    range.low = std::ceil(range.low * scale - 1e-3) / scale, range.high = std::floor(range.high * scale + 1e-3) / scale;
     if (!(range.low < range.high)) refuse(std::string("the limits of ") + kJointLetters[k] + " must grow");
     if (!(range.rate > 0)) refuse(std::string("the rate of ") + kJointLetters[k] + " must be positive");
     const bool there = letters_.find(kJointLetters[k]) != letters_.npos;
@@ -127,9 +133,13 @@ Machine::Turns Machine::angles(const Vec3& axis, int branch, const Turns& near, 
     if (std::abs(glm::dot(k, axis) - glm::dot(k, kSpindle)) > kSingle) cannot_reach();
     return {pole() != Vec3(0) ? near[0] : angle_about(k, kSpindle, axis), 0};
   }
-  if (std::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free)
+  if (std::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free) {
     // The free axis stays; the other one takes what the axis has in the plane that this gives it.
-    return {near[0], angle_about(two_.second, kSpindle, turned(axis, two_.first, -near[0]))};
+    const Turns out{near[0], angle_about(two_.second, kSpindle, turned(axis, two_.first, -near[0]))};
+    // A pole can lie where no angle of the other one brings the axis.
+    if (angle_between(axis_at(out), axis) > 2 * free + kSingle) cannot_reach();
+    return out;
+  }
   const auto found = two_.angles(kSpindle, axis, branch);
   if (!found) cannot_reach();
   return {found->alpha, found->beta};

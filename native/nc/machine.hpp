@@ -29,7 +29,7 @@ inline double nearest_turn(double angle, double near) {
   return angle + 360 * std::round((near - angle) / 360);
 }
 
-/// What an axis can do. `rate`: mm/min or deg/min.
+/// What an axis can do. `rate`: mm/min or deg/min. A machine takes limits inwards to numbers that can be printed.
 struct AxisRange {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   double rate = std::numeric_limits<double>::infinity();
@@ -84,12 +84,14 @@ class Machine {
   int branches() const { return description_.rotary.size() == 2 ? 2 : 1; }
   /// Joints that hold `pose` on `branch`, each rotary axis by whole turns as near to `near` as it can be; limits do not
   /// count here. Where the axis is within `free` (rad) of a pole, the free rotary axis stays at `near` and the axis is
-  /// held within `free`. Throws std::invalid_argument saying why where the rotary axes cannot hold it at any angle.
+  /// held within 2 `free`. Throws std::invalid_argument saying why where the rotary axes cannot hold it at any angle.
   Joints joints(const Pose& pose, int branch, const Joints& near, double free) const;
   /// The rotary axes as they are, the linear ones where they put the tip at `tip` (part coordinates).
   Joints with_tip(const Joints& joints, const Vec3& tip) const;
   /// A tool axis (unit vector; its opposite is another) at which a rotary axis is free: the singularity. Zero: none.
   Vec3 pole() const;
+  /// Of the rotary axis that is free there; only where there is a pole.
+  std::size_t free_joint() const { return index_.front(); }
 
   /// Whether the words X Y Z are where linear axes stand, so that the tip's way follows from all axes together: then a
   /// feed along the words means nothing where a rotary axis moves, and such blocks say how long they take (G93).

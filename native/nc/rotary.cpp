@@ -65,7 +65,7 @@ struct Trace {
 class Chooser {
  public:
   Chooser(const Program& program, const Machine& machine, double axis_tolerance)
-      : program_(program), machine_(machine), axis_tolerance_(axis_tolerance), free_(free_rapids(program)) {
+      : program_(program), machine_(machine), axis_tolerance_(axis_tolerance), free_(free_moves(program)) {
     for (const char letter : machine.axes().substr(3)) rotary_.push_back(joint_index(letter));
   }
 
@@ -93,7 +93,7 @@ class Chooser {
 
   Joints joints_of(std::size_t row, const Pose& pose, int branch, const Joints& near) const {
     try {
-      return machine_.joints(pose, branch, near, kFreeAngle);
+      return machine_.joints(pose, branch, near, free_angle(axis_tolerance_));
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + e.what());
     }
@@ -139,24 +139,29 @@ class Chooser {
     }
   }
 
+  /// The turns of `angle` within the range: the nearest, the outermost, and those about the nearest.
   static std::vector<double> turns_within(const AxisRange& range, double angle) {
+    constexpr int kAround = 8;  // either way: what is further off costs more than it can spare
     std::vector<double> out;
     const auto put = [&](double a) {
       if (a < range.low - kSlack || a > range.high + kSlack) return;
       a = std::clamp(a, range.low, range.high);
       if (std::find(out.begin(), out.end(), a) == out.end()) out.push_back(a);
     };
-    put(angle);
-    if (std::isfinite(range.low)) put(angle + 360 * std::ceil((range.low - kSlack - angle) / 360));
-    if (std::isfinite(range.high)) put(angle + 360 * std::floor((range.high + kSlack - angle) / 360));
+    const double low = angle + 360 * std::ceil((range.low - kSlack - angle) / 360);
+    const double high = angle + 360 * std::floor((range.high + kSlack - angle) / 360);
+    const double nearest = std::clamp(angle, low, std::max(low, high));
+    put(nearest), put(low), put(high);
+    for (int k = 1; k <= kAround; ++k) put(nearest - 360.0 * k), put(nearest + 360.0 * k);
     return out;
   }
 
   /// Where the axes stand before the first row: a free axis as the first row that needs it will have it. A tie goes to
   /// branch 0 and to the turn nearest to 0 whatever the rounding: their head start is the least step that is printed.
   Stands start() const {
-    const auto away = std::find_if(program_.poses().begin(), program_.poses().end(),
-                                   [&](const Pose& p) { return pole_angle(p.axis, machine_.pole()) > kFreeAngle; });
+    const auto away = std::find_if(program_.poses().begin(), program_.poses().end(), [&](const Pose& p) {
+      return pole_angle(p.axis, machine_.pole()) > free_angle(axis_tolerance_);
+    });
     Stands stands;
     for (int b = 0; b < machine_.branches(); ++b) {
       Stand before;
@@ -191,17 +196,18 @@ class Chooser {
     if (opposite(a, b))
       throw std::invalid_argument("poses, row " + std::to_string(row) +
                                   ": the axis is opposite to that of the row before");
-    const bool may_change =
-        machine_.branches() > 1 && arc_pole_angle(a.axis, b.axis, machine_.pole()) <= axis_tolerance_ / 4;
+    const auto passes_pole = [&](const Vec3& from) {
+      return machine_.branches() > 1 && arc_pole_angle(from, b.axis, machine_.pole()) <= axis_tolerance_ / 4;
+    };
     bool dead = false;
-    Stands next = tied(row, b, stands_, may_change, &dead);
+    Stands next = tied(row, b, stands_, passes_pole(a.axis), &dead);
     if (!dead) return keep({row, 1, false}, std::move(next));
     // Somebody meets a limit: what could be gained by turning back first?
     const Motion motion(a, b);
     double share = 0;
     for (int round = 0;; ++round) {
       Stands turned = rewound(row, motion.at(share));
-      Stands after = tied(row, b, turned, may_change, nullptr);
+      Stands after = tied(row, b, turned, passes_pole(motion.axis(share)), nullptr);
       if (!next.empty() || !after.empty()) {
         if (after.empty() || (!next.empty() && !gains(after, next))) return keep({row, 1, false}, std::move(next));
         keep({share > 0 ? row : row - 1, share > 0 ? share : 1, true}, std::move(turned));
@@ -213,7 +219,7 @@ class Chooser {
       Stands stop = tied(row, motion.at(reached), stands_, false, nullptr);
       share = reached;
       keep({row, share, false}, std::move(stop));
-      next = tied(row, b, stands_, may_change, nullptr);
+      next = tied(row, b, stands_, passes_pole(motion.axis(share)), nullptr);
     }
   }
 
@@ -227,19 +233,30 @@ class Chooser {
     });
   }
 
-  /// From `before` along the great circle to `to`. `dead`: whether one of them cannot go on.
-  Stands tied(std::size_t row, const Pose& to, const Stands& before, bool may_change, bool* dead) const {
+  /// From `before` along the great circle to `to`. `passes_pole`: where the branch may change, and the free axis may
+  /// turn either way. `dead`: whether one of them cannot go on.
+  Stands tied(std::size_t row, const Pose& to, const Stands& before, bool passes_pole, bool* dead) const {
+    constexpr double kMost = 270;  // deg of the free axis at the pole
     Stands next;
     for (std::uint32_t k = 0; k < before.size(); ++k) {
       bool goes = false;
       for (int b = 0; b < machine_.branches(); ++b) {
-        if (b != before[k].branch && !may_change) continue;
-        Stand stand = before[k];
-        stand.from = k, stand.branch = static_cast<std::uint8_t>(b);
-        stand.joints = joints_of(row, to, b, before[k].joints);
-        if (!within(stand.joints)) continue;
-        stand.way += rotary_way(before[k].joints, stand.joints);
-        add(next, stand), goes = true;
+        if (b != before[k].branch && !passes_pole) continue;
+        const Joints nearest = joints_of(row, to, b, before[k].joints);
+        for (const double turn : {0, -360, 360}) {
+          Stand stand = before[k];
+          stand.from = k, stand.branch = static_cast<std::uint8_t>(b), stand.joints = nearest;
+          if (turn != 0) {
+            if (!passes_pole || !machine_.range(machine_.free_joint()).limited()) break;
+            const std::size_t j = machine_.free_joint();
+            stand.joints[j] += turn;
+            if (std::abs(stand.joints[j] - before[k].joints[j]) > kMost) continue;
+            stand.joints = machine_.with_tip(stand.joints, to.tip);
+          }
+          if (!within(stand.joints)) continue;
+          stand.way += rotary_way(before[k].joints, stand.joints);
+          add(next, stand), goes = true;
+        }
       }
       if (!goes && dead) *dead = true;
     }
@@ -342,14 +359,15 @@ class Chooser {
 
 }  // namespace
 
-std::vector<bool> free_rapids(const Program& program) {
+std::vector<bool> free_moves(const Program& program) {
   double highest = -std::numeric_limits<double>::infinity();
   for (std::size_t row = 0; row < program.size(); ++row)
     if (!program.rapid()[row]) highest = std::max(highest, program.poses()[row].tip.z);
   std::vector<bool> out(program.size());
   for (std::size_t row = 1; row < program.size(); ++row) {
     const Pose &a = program.poses()[row - 1], &b = program.poses()[row];
-    out[row] = program.rapid()[row] && ((a.tip.z > highest && b.tip.z > highest) || opposite(a, b));
+    out[row] = program.tool()[row] != program.tool()[row - 1] ||
+               (program.rapid()[row] && ((a.tip.z > highest && b.tip.z > highest) || opposite(a, b)));
   }
   return out;
 }

@@ -9,10 +9,6 @@
 
 namespace riffler {
 
-/// Within this angle (rad) of a pole the free rotary axis stays where it is: the noise of axes that went through single
-/// precision must not turn the table.
-inline constexpr double kFreeAngle = 1e-6;
-
 /// Where the axes stand at the end of a row, or on its way.
 struct Waypoint {
   std::size_t row;
@@ -23,10 +19,10 @@ struct Waypoint {
   bool rewound = false;
 };
 
-/// Which rapids may turn the rotary axes in whatever way: those whose both ends lie above the tip of every feed move,
-/// and those between opposite axes, which have no great circle between them. Everywhere else the axes follow the great
-/// circle between two rows.
-std::vector<bool> free_rapids(const Program& program);
+/// Which rows may turn the rotary axes in whatever way: rapids whose both ends lie above the tip of every feed move or
+/// whose axes are opposite, with no great circle between them, and rows with another tool than the row before: nobody
+/// knows from where that one comes. Everywhere else the axes follow the great circle between two rows.
+std::vector<bool> free_moves(const Program& program);
 
 /// One waypoint per row of the program, and more where the tool must leave. Of all choices of branches and turns within
 /// the machine's limits those that leave the material least often, and of these the one with the shortest rotary path

@@ -1,7 +1,9 @@
 #include "nc/subdivider.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
+#include <stdexcept>
 
 #include "geom/directions.hpp"
 
@@ -27,6 +29,9 @@ bool Subdivider::fits(const Motion& motion, const Part& part, bool free) const {
   // Both errors vanish at the ends and are smooth between them: where the largest of nine samples is within 0.8 of the
   // tolerance, so is what lies between the samples within the whole of it.
   constexpr int kSamples = 9;
+  // Whole turns look like rest from one sample to the next.
+  constexpr double kMostTurned = 120;  // deg
+  if (machine_.joint_words() && rotary_way(part.j0, part.j1) > kMostTurned) return false;
   for (int i = 1; i <= kSamples; ++i) {
     const double s = i / (kSamples + 1.0), t = part.t0 + s * (part.t1 - part.t0);
     const Pose is = machine_.pose(mix(part.j0, part.j1, s));
@@ -36,41 +41,75 @@ bool Subdivider::fits(const Motion& motion, const Part& part, bool free) const {
   return true;
 }
 
-/// Joints at the middle of the part, on the branch that is nearer to the joints' own middle. Close to the pole, closer
-/// than the axis need be held, the free axis moves on evenly: this is how a move that passes the pole changes branches.
-Joints Subdivider::between(const Motion& motion, const Part& part, bool free) const {
-  const Joints near = mix(part.j0, part.j1, 0.5);
+/// The branches of a move: `first` up to the share `change`, from there `last`.
+struct Subdivider::Route {
+  int first = 0, last = 0;
+  double change = 1;
+};
+
+/// The branch on which `joints` hold the pose; −1 where both are one.
+int Subdivider::branch_of(const Pose& pose, const Joints& joints) const {
+  if (machine_.branches() == 1) return 0;
+  constexpr double kOne = 1e-4;  // deg
+  const double free = free_angle(axis_tolerance_);
+  const Joints zero = machine_.joints(pose, 0, joints, free), one = machine_.joints(pose, 1, joints, free);
+  if (rotary_way(zero, one) < kOne) return -1;
+  return rotary_way(joints, zero) <= rotary_way(joints, one) ? 0 : 1;
+}
+
+/// A move that changes the branch does so where it is nearest to the pole.
+Subdivider::Route Subdivider::route(const Motion& motion, const Joints& from, const Joints& to) const {
+  const int a = branch_of(motion.from(), from), b = branch_of(motion.to(), to);
+  if (a == b || a < 0 || b < 0) return {std::max({a, b, 0}), std::max({a, b, 0}), 1};
+  const Vec3 pole = machine_.pole();
+  // The cosine to the pole goes as cos(angle t − phase); what passes the pole's opposite is half a turn on.
+  const Vec3 start = motion.from().axis;
+  const Vec3 ahead = motion.angle() > 0 ? glm::cross(motion.rotation() / motion.angle(), start) : Vec3(0);
+  const double sign = glm::dot(motion.axis(0.5), pole) < 0 ? -1 : 1;
+  const double phase = std::atan2(sign * glm::dot(ahead, pole), sign * glm::dot(start, pole));
+  return {a, b, motion.angle() > 0 ? std::clamp(phase / motion.angle(), 0.0, 1.0) : 1};
+}
+
+/// Joints at the middle of the part. Close to the pole, closer than the axis need be held, the free axis moves on
+/// evenly: this is how a move that passes the pole changes branches.
+Joints Subdivider::between(const Motion& motion, const Part& part, const Route& route) const {
   const double t = (part.t0 + part.t1) / 2;
-  if (free) return machine_.with_tip(near, motion.tip(t));
-  Joints best{};
-  double least = std::numeric_limits<double>::infinity();
-  for (int b = 0; b < machine_.branches(); ++b) {
-    const Joints joints = machine_.joints(motion.at(t), b, near, axis_tolerance_ / 2);
-    const double way = rotary_way(near, joints);
-    if (way < least) least = way, best = joints;
-  }
-  return best;
+  const bool before = t < route.change;
+  // Whole turns are counted from the end that is on the same branch.
+  const Joints middle = mix(part.j0, part.j1, 0.5);
+  const bool spans = route.first != route.last && part.t0 < route.change && part.t1 > route.change;
+  const Pose pose = motion.at(t);
+  const Joints held = machine_.joints(pose, before ? route.first : route.last, middle, axis_tolerance_ / 2);
+  const std::size_t k = machine_.branches() == 2 ? machine_.free_joint() : 0;
+  if (!spans || held[k] == middle[k]) return held;
+  return machine_.joints(pose, before ? route.first : route.last, before ? part.j0 : part.j1, 0);
 }
 
 const std::vector<Joints>& Subdivider::split(const Pose& a, const Joints& ja, const Pose& b, const Joints& jb,
                                              bool free) {
   // 2^40 parts of one move cannot be told apart in doubles; where the rotary axes are continuous it never comes to
-  // that.
+  // that. What they cannot do continuously must not become one long block.
   constexpr double kLeast = 0x1p-40;
   out_.clear();
   // What may go any way has no great circle to keep to, and may have opposite ends.
   const Motion motion(a, free ? Pose{b.tip, a.axis} : b);
   // A stack of parts that are still to be done, the earliest on top.
   std::vector<Part> todo{{0, 1, ja, jb}};
+  std::optional<Route> route;
   while (!todo.empty()) {
     const Part part = todo.back();
     todo.pop_back();
-    if (part.t1 - part.t0 <= kLeast || fits(motion, part, free)) {
+    if (fits(motion, part, free)) {
       out_.push_back(part.j1);
       continue;
     }
+    if (part.t1 - part.t0 <= kLeast)
+      throw std::invalid_argument("the rotary axes of machine " + machine_.name() +
+                                  " cannot follow the axis within axis_tolerance");
     const double middle = (part.t0 + part.t1) / 2;
-    const Joints joints = between(motion, part, free);
+    if (!free && !route) route = this->route(motion, ja, jb);
+    const Joints joints =
+        free ? machine_.with_tip(mix(part.j0, part.j1, 0.5), motion.tip(middle)) : between(motion, part, *route);
     todo.push_back({middle, part.t1, joints, part.j1});
     todo.push_back({part.t0, middle, part.j0, joints});
   }

@@ -23,6 +23,11 @@ Reach::Reach(const Tool* tool) {
     }
 }
 
+double Reach::below_tip(double axis_z) const {
+  if (axis_z >= kSteepEnough) return 0;
+  return radius * std::sqrt(std::max(0.0, 1 - axis_z * axis_z)) + length * std::max(0.0, -axis_z);
+}
+
 std::vector<Pose> way_out(const Pose& pose, const Reach& reach, const Space& space) {
   const Vec3& o = pose.axis;
   const double top = space.top;
@@ -39,14 +44,17 @@ std::vector<Pose> way_out(const Pose& pose, const Reach& reach, const Space& spa
   const double down = o.z < 0 ? (box.lower.z - pose.tip.z) / o.z : std::numeric_limits<double>::infinity();
   way.push_back({pose.tip + std::min(side, down) * o, o});
   if (down < side) {
-    // Out at the bottom: on below everything to the nearest side.
+    // Out at the bottom: on below everything to the nearest side, and past it as far as the tool leans back.
     Vec3 p = way.back().tip;
     double best = std::numeric_limits<double>::infinity();
     int axis = 0;
     double to = 0;
     for (int k = 0; k < 2; ++k)
-      for (const double face : {box.lower[k], box.upper[k]})
+      for (const double out : {-1.0, 1.0}) {
+        const double past = reach.length * std::max(0.0, -out * o[k]);
+        const double face = (out < 0 ? box.lower[k] : box.upper[k]) + out * past;
         if (std::abs(face - p[k]) < best) best = std::abs(face - p[k]), axis = k, to = face;
+      }
     p[axis] = to;
     way.push_back({p, o});
   }

@@ -13,6 +13,9 @@ struct Reach {
   double length = 0, radius = 0;  ///< mm
 
   explicit Reach(const Tool* tool);
+
+  /// How far the tool hangs below its tip where its axis is that high, mm; of steep ones nothing.
+  double below_tip(double axis_z) const;
 };
 
 struct Space {

@@ -60,7 +60,6 @@ class Writer {
     for (std::size_t row = 0; row < program_.size(); ++row) {
       set_up(row);
       const Pose& pose = program_.poses()[row];
-      check(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
       post_->block({pose, {}, program_.rapid()[row] != 0, false, feed_of(row), 0, true});
     }
     post_->end();
@@ -68,7 +67,7 @@ class Writer {
 
   void by_joints() {
     const std::vector<Waypoint> way = choose_joints(program_, *machine_, options_.axis_tolerance);
-    const std::vector<bool> free = free_rapids(program_);
+    const std::vector<bool> free = free_moves(program_);
     Subdivider splitter(*machine_, options_.tolerance, options_.axis_tolerance);
     begin();
     before_ = {};
@@ -86,20 +85,30 @@ class Writer {
   void move(const Waypoint& w, bool free, Subdivider& splitter) {
     const std::size_t row = w.row;
     if (w.rewound) return rewind(row, w.joints, splitter);
-    set_up(row);
+    // From where a new tool comes is not known: neither is how far the way is nor how long it takes.
+    if (set_up(row)) stands_.reset();
     const Pose& end = program_.poses()[row];
-    if (row == 0) {
+    if (!stands_) {
       block(row, w.joints, end, true);
       before_ = end;
       return;
     }
     const Pose to = w.share < 1 ? Motion(program_.poses()[row - 1], end).at(w.share) : end;
     const Joints start = *stands_;
-    const auto& parts = splitter.split(before_, start, to, w.joints, free);
+    const auto& parts = split(row, splitter, to, w.joints, free);
     slowest_ = 1;
     for (std::size_t k = 0; k < parts.size(); ++k) block(row, parts[k], to, k + 1 == parts.size());
     if (!free) note_passage(row, angle_between(before_.axis, to.axis) * kDegrees, rotary_way(start, w.joints));
     before_ = to;
+  }
+
+  const std::vector<Joints>& split(std::size_t row, Subdivider& splitter, const Pose& to, const Joints& joints,
+                                   bool free) const {
+    try {
+      return splitter.split(before_, *stands_, to, joints, free);
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument("poses, row " + std::to_string(row) + ": on the way there " + e.what());
+    }
   }
 
   /// The last waypoint of a run from `first` that has one feed, tool, spindle and place of the rotary axes: what arcs
@@ -157,8 +166,8 @@ class Writer {
     post_->begin(comments);
   }
 
-  /// Tool and spindle as the row wants them, before its first block.
-  void set_up(std::size_t row) {
+  /// Tool and spindle as the row wants them, before its first block. Whether the tool is another.
+  bool set_up(std::size_t row) {
     const int tool = program_.tool()[row];
     const double spindle = program_.spindle()[row];
     const bool change = !tool_ || tool != *tool_;
@@ -170,6 +179,7 @@ class Writer {
     if (spindle != spindle_) post_->spindle(spindle);
     spindle_ = spindle;
     if (change) post_->ready(tool);
+    return change;
   }
 
   /// Out along the axis, the rotary axes to `to` with the tip held, and back; the last stretch in feed.
@@ -178,22 +188,34 @@ class Writer {
     constexpr double kGap = 1;  // mm that the tool comes back in feed
     if (!space_) space_ = space();
     const auto shape = program_.tools.find(program_.tool()[row]);
-    std::vector<Pose> out = way_out(pose, Reach(shape == program_.tools.end() ? nullptr : &shape->second), *space_);
+    const Reach reach(shape == program_.tools.end() ? nullptr : &shape->second);
+    Space space = *space_;
+    space.top += reach.below_tip(lowest_axis(*stands_, to));
+    std::vector<Pose> out = way_out(pose, reach, space);
     report_.rewinds.push_back(row);
-    Pose at = pose;
-    const auto straight = [&](const Pose& end, bool rapid) {
-      const std::vector<Joints> parts = splitter.split(at, *stands_, end, machine_->with_tip(*stands_, end.tip), false);
-      for (const Joints& part : parts) block(row, part, end, true, rapid);
-      at = end;
+    const auto go = [&](const Pose& end, const Joints& joints, bool rapid) {
+      for (const Joints& part : split(row, splitter, end, joints, true)) block(row, part, end, true, rapid);
+      before_ = end;
     };
+    // The rotary axes rest, and a table that rests keeps straight what is straight.
+    const auto straight = [&](const Pose& end, bool rapid) { go(end, machine_->with_tip(*stands_, end.tip), rapid); };
     for (const Pose& p : out) straight(p, true);
-    const std::vector<Joints> turn = splitter.split(at, *stands_, at, machine_->with_tip(to, at.tip), true);
-    for (const Joints& part : turn) block(row, part, at, true, true);
+    go(before_, machine_->with_tip(to, before_.tip), true);
     out.pop_back();
     for (std::size_t k = out.size(); k-- > 0;) straight(out[k], true);
-    const double apart = glm::length(at.tip - pose.tip);
-    if (apart > kGap) straight({pose.tip + kGap / apart * (at.tip - pose.tip), pose.axis}, true);
+    const double apart = glm::length(before_.tip - pose.tip);
+    if (apart > kGap) straight({pose.tip + kGap / apart * (before_.tip - pose.tip), pose.axis}, true);
     straight(pose, program_.rapid()[row] != 0);
+  }
+
+  /// The least z of the tool's axis while the rotary axes turn from one place to another.
+  double lowest_axis(const Joints& from, const Joints& to) const {
+    constexpr double kStep = 2;  // deg
+    const int steps = 1 + static_cast<int>(std::min(1e5, rotary_way(from, to) / kStep));
+    double lowest = 1;
+    for (int k = 0; k <= steps; ++k)
+      lowest = std::min(lowest, machine_->pose(mix(from, to, static_cast<double>(k) / steps)).axis.z);
+    return lowest;
   }
 
   Space space() const {
@@ -237,21 +259,24 @@ class Writer {
     b.minutes = std::max({own, least, 1 / kMaxFeed});
     const bool slowed = least > own * (1 + 1e-9);
     if (slowed && own > 0) ++report_.slowed, slowest_ = std::max(slowest_, least / own);
-    if (b.inverse) return;
-    if (machine_->joint_words() && turns)
-      b.feed = way_of_words(b.joints) / b.minutes;
-    else if (slowed && way > 0)
-      b.feed = way / b.minutes;
+    if (b.inverse || !(slowed || (machine_->joint_words() && turns))) return;
+    // What F counts along under G94, by LinuxCNC's rule, as it is printed: X Y Z where one of them moves, otherwise the
+    // rotary axes.
+    const double linear = printed_way(b.joints, 0, kLengthDecimals), rotary = printed_way(b.joints, 3, kAngleDecimals);
+    if (linear > 0)
+      b.feed = linear / b.minutes;
+    else if (rotary > 0)
+      b.feed = machine_->joint_words() ? rotary / b.minutes : std::min(b.feed, rotary / b.minutes);
   }
 
-  /// What F counts along under G94, by LinuxCNC's rule: X Y Z where one of them moves, otherwise the rotary axes.
-  double way_of_words(const Joints& to) const {
-    double linear = 0, rotary = 0;
-    for (std::size_t k = 0; k < to.size(); ++k) {
-      const double apart = to[k] - (*stands_)[k];
-      (k < 3 ? linear : rotary) += apart * apart;
+  /// From where the axes stand, by three of them.
+  double printed_way(const Joints& to, std::size_t first, int decimals) const {
+    double sum = 0;
+    for (std::size_t k = first; k < first + 3; ++k) {
+      const auto apart = static_cast<double>(ticks(to[k], decimals) - ticks((*stands_)[k], decimals));
+      sum += apart * apart;
     }
-    return std::sqrt(linear > 1e-12 ? linear : rotary);
+    return std::sqrt(sum) * std::pow(10.0, -decimals);
   }
 
   /// Where the rotary axes turn much more than the tool.
@@ -272,12 +297,14 @@ class Writer {
       if (!(std::abs(joints[k]) <= (k >= 3 ? kMaxAngle : kMaxLength)))
         throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + letter + " is out of range");
     }
-    const std::size_t k = machine_->beyond(joints, 1e-6);
+    // Limits are printable numbers: what is beyond by less than half a step is printed as the limit.
+    const std::size_t k = machine_->beyond(joints, 4e-7);
     if (k == joints.size()) return;
     const AxisRange& range = machine_->range(k);
     throw std::invalid_argument("poses, row " + std::to_string(row) + ": on the way there machine " + machine_->name() +
                                 " would leave the limits of " + kJointLetters[k] + ", " + number_text(range.low) +
-                                " to " + number_text(range.high) + ": " + number_text(joints[k]));
+                                " to " + number_text(range.high) + ": " + number_text(joints[k]) +
+                                "; place the part otherwise or put rows closer together");
   }
 
   /// A row in which the tip stands still has no feed of its own: the one before goes on, or the next to come.

@@ -112,7 +112,7 @@ TEST(ChooseJoints, KeepsCWhereItIsFree) {
 
 /// All 2^n choices of branches, with the rule that only rapids above everything may change them.
 double shortest_way(const Program& p, const Machine& machine) {
-  const std::vector<bool> free = free_rapids(p);
+  const std::vector<bool> free = free_moves(p);
   double best = std::numeric_limits<double>::infinity();
   for (unsigned mask = 0; mask < 1U << p.size(); ++mask) {
     double sum = 0;
