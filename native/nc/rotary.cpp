@@ -1,9 +1,11 @@
 #include "nc/rotary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -141,7 +143,7 @@ class Chooser {
 
   /// The turns of `angle` within the range: the nearest, the outermost, and those about the nearest.
   static std::vector<double> turns_within(const AxisRange& range, double angle) {
-    constexpr int kAround = 8;  // either way: what is further off costs more than it can spare
+    constexpr int kAround = 8;  // either way: all of them in a range of up to 3240°
     std::vector<double> out;
     const auto put = [&](double a) {
       if (a < range.low - kSlack || a > range.high + kSlack) return;
@@ -200,14 +202,14 @@ class Chooser {
       return machine_.branches() > 1 && arc_pole_angle(from, b.axis, machine_.pole()) <= axis_tolerance_ / 4;
     };
     bool dead = false;
-    Stands next = tied(row, b, stands_, passes_pole(a.axis), &dead);
+    Stands next = tied(row, a, b, stands_, passes_pole(a.axis), &dead);
     if (!dead) return keep({row, 1, false}, std::move(next));
     // Somebody meets a limit: what could be gained by turning back first?
     const Motion motion(a, b);
     double share = 0;
     for (int round = 0;; ++round) {
       Stands turned = rewound(row, motion.at(share));
-      Stands after = tied(row, b, turned, passes_pole(motion.axis(share)), nullptr);
+      Stands after = tied(row, motion.at(share), b, turned, passes_pole(motion.axis(share)), nullptr);
       if (!next.empty() || !after.empty()) {
         if (after.empty() || (!next.empty() && !gains(after, next))) return keep({row, 1, false}, std::move(next));
         keep({share > 0 ? row : row - 1, share > 0 ? share : 1, true}, std::move(turned));
@@ -216,10 +218,10 @@ class Chooser {
       const double reached = reach(row, motion, share, turned);
       if (!(reached > share + 1e-9) || round > 64) refuse(row, motion.at(std::min(1.0, share + 1e-6)));
       keep({share > 0 ? row : row - 1, share > 0 ? share : 1, true}, std::move(turned));
-      Stands stop = tied(row, motion.at(reached), stands_, false, nullptr);
+      Stands stop = tied(row, motion.at(share), motion.at(reached), stands_, false, nullptr);
       share = reached;
       keep({row, share, false}, std::move(stop));
-      next = tied(row, b, stands_, passes_pole(motion.axis(share)), nullptr);
+      next = tied(row, motion.at(share), b, stands_, passes_pole(motion.axis(share)), nullptr);
     }
   }
 
@@ -233,16 +235,51 @@ class Chooser {
     });
   }
 
+  /// Joints at `to` on `branch`, by the turn to which `before` comes along the great circle.
+  Joints followed(std::size_t row, const Pose& from, const Pose& to, const Stand& before, int branch) const {
+    const Joints nearest = joints_of(row, to, branch, before.joints);
+    if (machine_.branches() == 1) return nearest;
+    // Beside the pole the free axis turns by less than half a turn to where the pole is nearest, and so from there, but
+    // both can be more than half a turn: as the tool turns, and a quarter where the other axis leans.
+    const std::size_t k = machine_.free_joint();
+    if (std::abs(nearest[k] - before.joints[k]) <= 90) return nearest;
+    const Motion motion(from, to);
+    const double share = nearest_to_pole(motion, machine_.pole());
+    if (share == 0 || share == 1) return nearest;
+    return joints_of(row, to, branch, joints_of(row, motion.at(share), before.branch, before.joints));
+  }
+
+  struct Step {
+    Joints from, to;
+  };
+
+  /// Where the same step leads that begins at `from`, if that is whole turns from its beginning.
+  std::optional<Joints> by_whole_turns(const Step& step, const Joints& from) const {
+    Joints out = step.to;
+    for (const std::size_t k : rotary_) {
+      const double turns = std::round((from[k] - step.from[k]) / 360);
+      if (std::abs(from[k] - step.from[k] - 360 * turns) > kSlack) return {};
+      out[k] = step.to[k] == step.from[k] ? from[k] : step.to[k] + 360 * turns;
+    }
+    return out;
+  }
+
   /// From `before` along the great circle to `to`. `passes_pole`: where the branch may change, and the free axis may
   /// turn either way. `dead`: whether one of them cannot go on.
-  Stands tied(std::size_t row, const Pose& to, const Stands& before, bool passes_pole, bool* dead) const {
+  Stands tied(std::size_t row, const Pose& from, const Pose& to, const Stands& before, bool passes_pole,
+              bool* dead) const {
     constexpr double kMost = 270;  // deg of the free axis at the pole
     Stands next;
+    std::array<std::optional<Step>, 2> steps;  // of the stands before by branch, where it stays
     for (std::uint32_t k = 0; k < before.size(); ++k) {
       bool goes = false;
       for (int b = 0; b < machine_.branches(); ++b) {
         if (b != before[k].branch && !passes_pole) continue;
-        const Joints nearest = joints_of(row, to, b, before[k].joints);
+        auto& step = steps[static_cast<std::size_t>(b)];
+        const bool stays = b == before[k].branch;
+        const auto shifted = stays && step ? by_whole_turns(*step, before[k].joints) : std::nullopt;
+        const Joints nearest = shifted ? *shifted : followed(row, from, to, before[k], b);
+        if (stays && !shifted) step = Step{before[k].joints, nearest};
         for (const double turn : {0, -360, 360}) {
           Stand stand = before[k];
           stand.from = k, stand.branch = static_cast<std::uint8_t>(b), stand.joints = nearest;
@@ -344,6 +381,7 @@ class Chooser {
         text += part;
       }
     }
+    if (text.back() == ':') text += " along the great circle from the row before";
     throw std::invalid_argument(text + "; place the part otherwise or tilt the tool less");
   }
 

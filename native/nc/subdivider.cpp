@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 
@@ -17,6 +18,18 @@ Joints mix(const Joints& a, const Joints& b, double t) {
 
 double rotary_way(const Joints& a, const Joints& b) {
   return std::abs(b[3] - a[3]) + std::abs(b[4] - a[4]) + std::abs(b[5] - a[5]);
+}
+
+double nearest_to_pole(const Motion& motion, const Vec3& pole) {
+  const auto height = [&](double t) { return std::abs(glm::dot(motion.axis(t), pole)); };
+  if (motion.angle() > 0) {
+    // The cosine to the pole goes as cos(angle t - phase), that to its opposite half a turn later.
+    const Vec3 &start = motion.from().axis, ahead = glm::cross(motion.rotation() / motion.angle(), start);
+    double phase = std::atan2(glm::dot(ahead, pole), glm::dot(start, pole));
+    if (phase < 0) phase += std::numbers::pi;
+    if (phase < motion.angle()) return phase / motion.angle();
+  }
+  return height(0) >= height(1) ? 0 : 1;
 }
 
 /// A stretch of a move: shares t0 to t1 of it and the joints there.
@@ -60,29 +73,24 @@ int Subdivider::branch_of(const Pose& pose, const Joints& joints) const {
 /// A move that changes the branch does so where it is nearest to the pole.
 Subdivider::Route Subdivider::route(const Motion& motion, const Joints& from, const Joints& to) const {
   const int a = branch_of(motion.from(), from), b = branch_of(motion.to(), to);
-  if (a == b || a < 0 || b < 0) return {std::max({a, b, 0}), std::max({a, b, 0}), 1};
-  const Vec3 pole = machine_.pole();
-  // The cosine to the pole goes as cos(angle t − phase); what passes the pole's opposite is half a turn on.
-  const Vec3 start = motion.from().axis;
-  const Vec3 ahead = motion.angle() > 0 ? glm::cross(motion.rotation() / motion.angle(), start) : Vec3(0);
-  const double sign = glm::dot(motion.axis(0.5), pole) < 0 ? -1 : 1;
-  const double phase = std::atan2(sign * glm::dot(ahead, pole), sign * glm::dot(start, pole));
-  return {a, b, motion.angle() > 0 ? std::clamp(phase / motion.angle(), 0.0, 1.0) : 1};
+  const double change = nearest_to_pole(motion, machine_.pole());
+  if (a < 0 || b < 0) return {std::max({a, b, 0}), std::max({a, b, 0}), change};
+  return {a, b, change};
 }
 
 /// Joints at the middle of the part. Close to the pole, closer than the axis need be held, the free axis moves on
 /// evenly: this is how a move that passes the pole changes branches.
 Joints Subdivider::between(const Motion& motion, const Part& part, const Route& route) const {
-  const double t = (part.t0 + part.t1) / 2;
+  const double t = (part.t0 + part.t1) / 2, free = axis_tolerance_ / 2;
   const bool before = t < route.change;
-  // Whole turns are counted from the end that is on the same branch.
-  const Joints middle = mix(part.j0, part.j1, 0.5);
-  const bool spans = route.first != route.last && part.t0 < route.change && part.t1 > route.change;
+  const int branch = before ? route.first : route.last;
   const Pose pose = motion.at(t);
-  const Joints held = machine_.joints(pose, before ? route.first : route.last, middle, axis_tolerance_ / 2);
-  const std::size_t k = machine_.branches() == 2 ? machine_.free_joint() : 0;
-  if (!spans || held[k] == middle[k]) return held;
-  return machine_.joints(pose, before ? route.first : route.last, before ? part.j0 : part.j1, 0);
+  const Joints near = mix(part.j0, part.j1, 0.5), held = machine_.joints(pose, branch, near, free);
+  if (machine_.branches() == 1 || part.t0 >= route.change || part.t1 <= route.change) return held;
+  // The free axis turns by less than half a turn on either side of where the pole is nearest, by up to a whole one over
+  // both.
+  const std::size_t k = machine_.free_joint();
+  return held[k] == near[k] ? held : machine_.joints(pose, branch, before ? part.j0 : part.j1, free);
 }
 
 const std::vector<Joints>& Subdivider::split(const Pose& a, const Joints& ja, const Pose& b, const Joints& jb,

@@ -13,6 +13,8 @@ namespace riffler {
 Joints mix(const Joints& a, const Joints& b, double t);
 /// Degrees that the rotary axes turn between them, all together.
 double rotary_way(const Joints& a, const Joints& b);
+/// The share of the move at which its axis is nearest to the pole or to its opposite.
+double nearest_to_pole(const Motion& motion, const Vec3& pole);
 
 /// Within this angle (rad) of a pole, and within half the tolerance, the free rotary axis stays where it is: the noise
 /// of axes that went through single precision must not turn the table.

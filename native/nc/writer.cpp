@@ -258,7 +258,7 @@ class Writer {
     b.inverse = turns && machine_->control().inverse_time;
     b.minutes = std::max({own, least, 1 / kMaxFeed});
     const bool slowed = least > own * (1 + 1e-9);
-    if (slowed && own > 0) ++report_.slowed, slowest_ = std::max(slowest_, least / own);
+    if (slowed && way > 1e-6) ++report_.slowed, slowest_ = std::max(slowest_, least / own);
     if (b.inverse || !(slowed || (machine_->joint_words() && turns))) return;
     // What F counts along under G94, by LinuxCNC's rule, as it is printed: X Y Z where one of them moves, otherwise the
     // rotary axes.

@@ -159,5 +159,40 @@ TEST(JointWords, RefuseOptionsThatAreWrong) {
             "post linuxcnc-xyzac: option max_rotary must be a positive, finite number");
 }
 
+TEST(TipWords, ATurnInPlaceIsNotFasterThanItsAxis) {
+  CutterPath path{{}, {2000}, 9000, 1};
+  for (int k = 0; k <= 20; ++k)
+    path.poses.push_back({{1, 2, 3}, glm::normalize(Vec3(std::sin(0.1 * k), 0.3, std::cos(0.1 * k)))});
+  const Program p = program_from_paths(std::vector{path}, {});
+  WriteOptions options;
+  options.options = {{"rate_c", 300.0}, {"rate_a", 500.0}};
+  const auto blocks = test::block_ends(to_nc(p, options));
+  int turns = 0;
+  for (std::size_t k = 1; k < blocks.size(); ++k) {
+    if (blocks[k].rapid || word(blocks[k - 1], blocks[k], 'X', 0) != word(blocks[k - 1], blocks[k], 'X', 1)) continue;
+    const double a = word(blocks[k - 1], blocks[k], 'A', 1) - word(blocks[k - 1], blocks[k], 'A', 0);
+    const double c = word(blocks[k - 1], blocks[k], 'C', 1) - word(blocks[k - 1], blocks[k], 'C', 0);
+    const double minutes = std::hypot(a, c) / blocks[k].at.at('F');
+    EXPECT_GE(minutes * 300 * 1.0001, std::abs(c));
+    EXPECT_GE(minutes * 500 * 1.0001, std::abs(a));
+    turns += c != 0;
+  }
+  EXPECT_GT(turns, 15);
+}
+
+TEST(JointWords, TheWayOfANewToolIsNotTimed) {
+  // Rows of feed throughout, the tool changed between two of them: where the machine was for it is not known.
+  Program p;
+  for (int k = 0; k < 10; ++k)
+    p.append({{{1e-3 * k, 0, 0}, glm::normalize(Vec3(0.1 * k, 0.2, 1))}, 600, 8000, 1 + k / 5});
+  const std::string text = to_nc(p, to_xyzac());
+  const std::size_t change = text.find("T2 M6"), next = text.find("\nG94", change), move = text.find("G1", change);
+  ASSERT_NE(change, text.npos);
+  EXPECT_LT(next, move);
+  EXPECT_EQ(text.substr(change, move - change).find("G93"), text.npos);
+  const std::string line = text.substr(move, text.find('\n', move) - move);
+  EXPECT_NE(line.find(" F600"), line.npos) << line;
+}
+
 }  // namespace
 }  // namespace riffler

@@ -10,6 +10,7 @@
 #include "nc/rotary.hpp"
 #include "nc/writer.hpp"
 #include "support/nc_blocks.hpp"
+#include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
@@ -177,6 +178,34 @@ TEST(Limits, AnyProgramIsHeldWithinThemOrRefusedByRow) {
   EXPECT_GT(held, 100);
 }
 
+TEST(Limits, LeaveAsSeldomAsAllTurnsOfAWideRangeAllow) {
+  // C goes on by 350° and then back by 1070°: within ±720° only where it begins a turn up, neither at the nearest turn
+  // nor at the ends.
+  CutterPath path{{}, {600}, 8000, 1};
+  for (int k = 0; k <= 142; ++k) {
+    const double around = k <= 35 ? 10.0 * k : 350 - 10.0 * (k - 35);
+    path.poses.push_back({{0.1 * k, 0, 0}, tilted(30, around - 90)});
+  }
+  const Program p = program_from_paths(std::vector{path}, {});
+  const auto machine = tcp(limits(0, 90, -720, 720));
+  const auto way = choose_joints(p, *machine, kAxisTolerance);
+  check(p, *machine, way);
+  EXPECT_EQ(rewinds(way), 0);
+}
+
+TEST(Limits, ThroughThePoleTheFreeAxisTurnsTheWayThatIsLeft) {
+  // A cannot go below 0, so C turns half round at the pole: up from 100° would pass 180°, down does not.
+  for (const double around : {10.0, 190.0}) {
+    CutterPath path{{}, {600}, 8000, 1};
+    for (int k = -10; k <= 10; ++k) path.poses.push_back({{1.0 * k, 0, 0}, tilted(3.0 * k, around)});
+    const Program p = program_from_paths(std::vector{path}, {});
+    const auto machine = tcp(limits(0, 90, -180, 180));
+    const auto way = choose_joints(p, *machine, kAxisTolerance);
+    check(p, *machine, way);
+    EXPECT_EQ(rewinds(way), 0) << around;
+  }
+}
+
 WriteOptions post(const char* name, Options options) {
   WriteOptions out;
   out.post = name, out.options = std::move(options);
@@ -208,6 +237,41 @@ TEST(Rewinds, LeaveUpwardsTurnThereAndComeBack) {
         EXPECT_LE(std::abs(block.at.at(letter)), letter == 'A' ? 90.0 : 360.0);
       }
   }
+}
+
+TEST(Rewinds, HoldTheTipOverWholeTurnsToo) {
+  // From one end of ±3600° to the other: some twenty turns, which samples see as rest.
+  const Program p = program_from_paths(std::vector{round(25, 38, 40)}, {});
+  const Options options{{"limits_c", std::vector<double>{-3600, 3600}}, {"limits_a", std::vector<double>{0, 90}}};
+  WriteReport report;
+  const std::string text = to_nc(p, post("linuxcnc-xyzac", options), &report);
+  ASSERT_EQ(report.rewinds.size(), 1U);
+  double most = 0, back = 0;
+  const auto blocks = test::block_ends(text);
+  for (std::size_t k = 1; k < blocks.size(); ++k) {
+    if (!blocks[k].rapid || !blocks[k - 1].at.contains('C')) continue;
+    const double turned = std::abs(blocks[k].at.at('C') - blocks[k - 1].at.at('C'));
+    most = std::max(most, turned), back += turned;
+  }
+  EXPECT_GT(back, 6500);
+  EXPECT_LT(most, 10) << "a tip 30 mm from the axis leaves its place by 0.03 mm in 5°";
+}
+
+TEST(Rewinds, GoHigherWhereTheToolHangsBelowItsTip) {
+  CutterPath path{{}, {600}, 8000, 1};
+  for (int k = 0; k <= 100; ++k) path.poses.push_back({{30 + 0.1 * k, 0, 0}, tilted(100, 5.0 * k)});
+  Program p = program_from_paths(std::vector{path}, {});
+  const Tool tool = cutters::ball(6, 50);
+  double highest[2];
+  for (const bool known : {false, true}) {
+    if (known) p.tools.emplace(1, tool);
+    WriteReport report;
+    const Program q = parse_nc(to_nc(p, post("tcp", limits(0, 120, -180, 180)), &report), "p.ngc", {"tcp", {}});
+    ASSERT_GE(report.rewinds.size(), 1U);
+    highest[known] = 0;
+    for (const Pose& pose : q.poses()) highest[known] = std::max(highest[known], pose.tip.z);
+  }
+  EXPECT_NEAR(highest[1] - highest[0], 50 * std::sin(10 * kDegree) + 3 * std::cos(10 * kDegree), 1e-4);
 }
 
 TEST(Rewinds, NameTheAxisThatNoTurnBringsWithinItsLimits) {

@@ -86,6 +86,25 @@ std::vector<Machine> chains() {
   return out;
 }
 
+TEST(Machine, RefusesAPoleThatItsOtherAxisCannotBringTheToolTo) {
+  // A table that nutates by 45° reaches the upper half: along C's axis from below is out of reach.
+  const Machine machine = std::move(chains()[2]);
+  EXPECT_NO_THROW(machine.joints({{1, 2, 3}, {0, 0, 1}}, 0, {}, 1e-6));
+  for (const double off : {0.0, 1e-9, 1e-3})
+    EXPECT_THROW(machine.joints({{1, 2, 3}, glm::normalize(Vec3(off, 0, -1))}, 0, {}, 1e-6), std::invalid_argument);
+}
+
+TEST(Machine, TakesLimitsInwardsToWhatCanBePrinted) {
+  MachineDescription description{"m", {{'C', {0, 0, 1}}, {'A', {1, 0, 0}}}, {}, false, {}};
+  description.ranges[3] = {-20.12345678, 90.1}, description.ranges[0] = {-1.0 / 3, 2.0 / 3};
+  const Machine machine(description);
+  EXPECT_EQ(machine.range(3).low, -20.123456);
+  EXPECT_EQ(machine.range(3).high, 90.1);
+  EXPECT_EQ(machine.range(0).low, -0.33333);
+  EXPECT_EQ(machine.range(0).high, 0.66666);
+  EXPECT_FALSE(machine.range(5).limited());
+}
+
 TEST(Machine, JointsHoldThePoseOnBothBranchesAndKeepNear) {
   for (const Machine& machine : chains()) {
     SCOPED_TRACE(machine.axes());

@@ -237,5 +237,77 @@ TEST(ChooseJoints, NamesTheRowThatCannotBeHeld) {
   EXPECT_EQ(error(rapid, *tcp()), "");
 }
 
+/// A head that nutates by 45° under a fork: the free axis turns with the tilt, too. B goes one way only.
+Machine nutating() {
+  const Vec3 z(0, 0, 1), oblique = glm::normalize(Vec3(0, 1, 1));
+  MachineDescription out{"nutating", {{'C', z, {0, 0, 200}, false}, {'B', oblique, {0, 0, 200}, false}}, {}, false, {}};
+  out.ranges[4] = {-1, 181};
+  return Machine(out);
+}
+
+TEST(ChooseJoints, CountsWholeTurnsAlongTheGreatCircleBesideThePole) {
+  // One long move beside the pole turns C by more than half a turn where the other axis leans: the nearest turn of its
+  // end is not where the way leads.
+  const Machine machine = nutating();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit;
+  int beyond_half = 0;
+  for (int n = 0; n < 200; ++n) {
+    const double around = 360 * unit(random);
+    const Program p =
+        feeds({tilted(5 + 75 * unit(random), around), tilted(5 + 75 * unit(random), around + 165 + 30 * unit(random))});
+    const auto way = choose_joints(p, machine, kAxisTolerance);
+    ASSERT_EQ(way.size(), 2U);
+    beyond_half += std::abs(way[1].joints[5] - way[0].joints[5]) > 180;
+    Subdivider splitter(machine, 0.01, kAxisTolerance);
+    Joints before = way[0].joints;
+    const Motion motion(p.poses()[0], p.poses()[1]);
+    double worst = 0;
+    for (const Joints& joints : splitter.split(motion.from(), way[0].joints, motion.to(), way[1].joints, false)) {
+      for (int k = 0; k <= 20; ++k) {
+        const Pose is = machine.pose(mix(before, joints, k / 20.0));
+        const double share = glm::dot(is.tip - motion.from().tip, motion.to().tip - motion.from().tip);  // 1 mm
+        worst = std::max(worst, glm::length(is.tip - motion.tip(share)));
+      }
+      before = joints;
+    }
+    EXPECT_LT(worst, 0.01) << n;
+  }
+  EXPECT_GT(beyond_half, 5);
+}
+
+TEST(Subdivider, ChangesTheBranchOnlyWhereTheMovePassesThePole) {
+  for (const Machine& machine : {nutating(), *tcp()}) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit;
+    for (int n = 0; n < 200; ++n) {
+      const double around = 360 * unit(random), off = 0.02 * (unit(random) - 0.5);
+      const Pose a{{0, 0, 0}, tilted(1 + 70 * unit(random), around)};
+      const Pose b{{1, 0, 0}, tilted(1 + 20 * unit(random), around + 180 + off)};
+      const Joints from = machine.joints(a, 0, {}, 1e-6), to = machine.joints(b, 1, from, 1e-6);
+      Subdivider splitter(machine, 0.01, kAxisTolerance);
+      const Motion motion(a, b);
+      Joints before = from;
+      for (const Joints& joints : splitter.split(a, from, b, to, false)) {
+        for (int k = 0; k <= 20; ++k) {
+          const Pose is = machine.pose(mix(before, joints, k / 20.0));
+          const double share = std::clamp(is.tip.x, 0.0, 1.0);
+          ASSERT_LT(glm::length(is.tip - motion.tip(share)), 0.01) << n;
+          ASSERT_LT(std::abs(glm::dot(is.axis, motion.rotation())) / motion.angle(), kAxisTolerance) << n;
+        }
+        before = joints;
+      }
+    }
+  }
+}
+
+TEST(Subdivider, RefusesWhatTheAxesCannotFollowInsteadOfJumping) {
+  const auto machine = tcp();
+  const Pose a{{0, 0, 0}, tilted(30, 0)}, b{{1, 0, 0}, tilted(30, 60)};
+  const Joints from = machine->joints(a, 0, {}, 1e-6), to = machine->joints(b, 1, from, 1e-6);
+  Subdivider splitter(*machine, 0.01, kAxisTolerance);
+  EXPECT_THROW(splitter.split(a, from, b, to, false), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace riffler

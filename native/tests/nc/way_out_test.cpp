@@ -1,0 +1,67 @@
+// How a tool leaves the material: no part of it may come down into what it leaves.
+#include "nc/way_out.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tool/cutters.hpp"
+
+namespace riffler {
+namespace {
+
+constexpr double kDegree = 3.141592653589793 / 180;
+
+Space space() {
+  Space out;
+  out.box.add({-50, -40, -30}), out.box.add({50, 40, 20});
+  out.top = 60;
+  return out;
+}
+
+Vec3 tilted(double tilt, double around) {
+  return {std::sin(tilt * kDegree) * std::cos(around * kDegree), std::sin(tilt * kDegree) * std::sin(around * kDegree),
+          std::cos(tilt * kDegree)};
+}
+
+/// Whether the tool's centre line, of this length, is in the box with its tip here.
+bool inside(const Box3& box, const Pose& pose, double length) {
+  for (double h = 0; h <= length; h += 0.5) {
+    const Vec3 p = pose.tip + h * pose.axis;
+    if (p.x > box.lower.x && p.x < box.upper.x && p.y > box.lower.y && p.y < box.upper.y && p.z > box.lower.z &&
+        p.z < box.upper.z)
+      return true;
+  }
+  return false;
+}
+
+TEST(WayOut, BringsTheWholeToolOutAndUpWhateverItsTilt) {
+  const Tool tool = cutters::ball(6, 80);
+  const Reach reach(&tool);
+  for (double tilt = 0; tilt <= 180; tilt += 7.5)
+    for (double around = 0; around < 360; around += 22.5) {
+      const Pose pose{{3, -4, -5}, tilted(tilt, around)};
+      const std::vector<Pose> way = way_out(pose, reach, space());
+      EXPECT_DOUBLE_EQ(way.back().tip.z, 60) << tilt << ' ' << around;
+      // The first stretch is along the axis, where the tool has been; after it nothing of the tool is in the space.
+      EXPECT_LT(glm::length(glm::cross(way[0].tip - pose.tip, pose.axis)), 1e-9);
+      Box3 box = space().box;
+      box.lower += Vec3(1e-9), box.upper -= Vec3(1e-9);
+      for (std::size_t k = 1; k < way.size(); ++k)
+        for (double s = 0; s <= 1; s += 1.0 / 64)
+          EXPECT_FALSE(inside(box, Motion(way[k - 1], way[k]).at(s), tool.length()))
+              << "tilt " << tilt << " around " << around << " stretch " << k << " at " << s;
+    }
+}
+
+TEST(WayOut, SaysHowFarATiltedToolHangsBelowItsTip) {
+  const Tool tool = cutters::flat(10, 60);
+  const Reach reach(&tool);
+  EXPECT_EQ(reach.below_tip(1), 0);
+  EXPECT_NEAR(reach.below_tip(0), 5, 1e-12);
+  EXPECT_NEAR(reach.below_tip(-1), 60, 1e-12);
+  EXPECT_NEAR(reach.below_tip(-0.6), 0.6 * 60 + 0.8 * 5, 1e-12);
+}
+
+}  // namespace
+}  // namespace riffler
