@@ -246,6 +246,19 @@ void bind_program(py::module_& m) {
         "Machines that programs are written for and read from, ours and your own: name to description. A post has its "
         "machine's name; the path of a .toml file that describes one will do as well.");
 
+  py::class_<NcStream>(m, "ProgramStream", "What Program.stream gives: an iterator of programs.")
+      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__next__", [](NcStream& self) {
+        Program program;
+        bool more;
+        {
+          const py::gil_scoped_release release;
+          more = self.next(program);
+        }
+        if (!more) throw py::stop_iteration();
+        return program;
+      });
+
   py::class_<Program>(m, "Program", R"(Where the tool goes, how fast and with which tool; immutable.
 
 One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate.
@@ -276,11 +289,24 @@ corners around stock, part and fixtures.)")
             return read_nc(path, how);
           },
           py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(),
-          R"(Reads NC code (RS-274); ``machine`` is a name of machines().
+          R"(Reads NC code (RS-274 as LinuxCNC has it); ``machine`` is a name of machines(), or "apt" for an APT file.
 
-Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for arcs; ``axis_tolerance`` (rad): where it is
-given, feed blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row.
-FormatError names file and line; nothing that is not understood is skipped.)")
+Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
+given, feed blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row;
+``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
+is listed in ``provenance``); ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's
+parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
+programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.)")
+      .def_static(
+          "stream",
+          [](const std::filesystem::path& path, const std::string& machine, const py::object& options, double rows) {
+            if (!(rows >= 2 && rows <= 1e9)) throw py::value_error("rows must be 2 to 1e9");
+            return std::make_unique<NcStream>(path, ReadOptions{machine, to_options(options)},
+                                              static_cast<std::size_t>(rows));
+          },
+          py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::arg("rows") = 65536,
+          R"(Reads as ``read`` does, in memory that does not grow with the file: an iterator of programs of at most ``rows``
+rows. Each after the first begins with the row at which the one before ended.)")
       .def(
           "write",
           [](const Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,

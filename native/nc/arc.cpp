@@ -18,7 +18,27 @@ constexpr double kTurn = 2 * std::numbers::pi;
   throw std::invalid_argument(text);
 }
 
+/// On circles about `centre` through the two ends.
+Arc between(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise) {
+  const Vec2 a = from - centre, b = to - centre;
+  const double start = std::atan2(a.y, a.x);
+  // Angle from a to b in the direction of travel, (0, 2 π].
+  double sweep = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+  if (clockwise) sweep = -sweep;
+  if (glm::length(to - from) < kFullCircle)
+    sweep = kTurn;
+  else if (sweep <= 0)
+    sweep += kTurn;
+  return {centre, glm::length(a), glm::length(b), start, clockwise ? -sweep : sweep};
+}
+
 }  // namespace
+
+Arc Arc::with_turns(int turns) const {
+  Arc out = *this;
+  out.sweep += std::copysign(kTurn * (turns - 1), sweep);
+  return out;
+}
 
 Vec2 Arc::at(double t) const {
   const double r = r0 + t * (r1 - r0), angle = start + t * sweep;
@@ -35,23 +55,16 @@ int Arc::chords(double tolerance) const {
   const double r = std::max(r0, r1);
   const double half = 2 * std::asin(std::min(1.0, std::sqrt(tolerance / (2 * r))));
   const double step = std::min(2 * half, std::numbers::pi / 4);
-  return std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / step)));
+  return std::max(1, static_cast<int>(std::min(1e9, std::ceil(std::abs(sweep) / step))));
 }
 
 Arc arc_about(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise) {
-  const Vec2 a = from - centre, b = to - centre;
-  const double r0 = glm::length(a), r1 = glm::length(b);
-  if (std::abs(r1 - r0) > kArcMiss) fail_miss(std::abs(r1 - r0));
-  if (!(r0 > 0 && r1 > 0)) throw std::invalid_argument("an arc of radius 0");
-  const double start = std::atan2(a.y, a.x);
-  // Angle from a to b in the direction of travel, (0, 2 π].
-  double sweep = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
-  if (clockwise) sweep = -sweep;
-  if (glm::length(to - from) < kFullCircle)
-    sweep = kTurn;
-  else if (sweep <= 0)
-    sweep += kTurn;
-  return {centre, r0, r1, start, clockwise ? -sweep : sweep};
+  const Arc arc = between(from, to, centre, clockwise);
+  if (std::abs(arc.r1 - arc.r0) > kArcMiss) fail_miss(std::abs(arc.r1 - arc.r0));
+  if (!(arc.r0 > 0 && arc.r1 > 0)) throw std::invalid_argument("an arc of radius 0");
+  if (!(std::min(arc.r0, arc.r1) >= kLeastRadius))
+    throw std::invalid_argument("an arc about its centre with a radius below 0.00127 mm");
+  return arc;
 }
 
 Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwise) {
@@ -61,13 +74,13 @@ Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwis
   if (!(r > 0)) throw std::invalid_argument("an arc of radius 0");
   if (length < kFullCircle) throw std::invalid_argument("a full circle by R has no centre");
   // On the circle about the nearest centre that passes through the start, the end misses by what the chord is too long.
-  if (length - 2 * r > kArcMiss) fail_miss(length - 2 * r);
+  if (length - 2 * r > kRadiusMiss) fail_miss(length - 2 * r);
   const double height = std::sqrt(std::max(0.0, (r - length / 2) * (r + length / 2)));
   // Seen along the chord the centre of the shorter arc is on the right for a clockwise one, on the left otherwise.
   const double side = (clockwise == (radius > 0)) ? -1 : 1;
   const Vec2 left(-chord.y / length, chord.x / length);
   const Vec2 centre = (from + to) / 2.0 + side * height * left;
-  Arc arc = arc_about(from, to, centre, clockwise);
+  Arc arc = between(from, to, centre, clockwise);
   // A half circle's two senses differ by rounding only: R says that it is one.
   if (height == 0) arc.sweep = clockwise ? -std::numbers::pi : std::numbers::pi;
   return arc;

@@ -2,6 +2,8 @@
 // write it, and no sum of two of them leaves the range in which doubles keep the printed decimals.
 #pragma once
 
+#include <cstddef>
+
 namespace riffler {
 
 inline constexpr double kMaxLength = 1e6;      // mm: a kilometre, with 1e-10 mm to spare in a double
@@ -9,5 +11,9 @@ inline constexpr double kMaxAngle = 1e8;       // deg: rotary axes may count tur
 inline constexpr double kMaxFeed = 1e9;        // mm/min, or 1/min under G93
 inline constexpr double kMaxSpindle = 1e7;     // rev/min
 inline constexpr int kMaxNumber = 99'999'999;  // tools, offsets, block numbers
+
+// Bounds on memory and time against damaged numbers.
+inline constexpr int kMaxChords = 1'000'000;         // of one block
+inline constexpr std::size_t kMaxRows = 20'000'000;  // of a program that is read at once
 
 }  // namespace riffler

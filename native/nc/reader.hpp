@@ -1,7 +1,9 @@
-// NC code (RS-274) → Program.
+// NC code (RS-274, or an APT cutter location file) → Program.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -11,19 +13,43 @@
 namespace riffler {
 
 struct ReadOptions {
-  std::string machine = "tcp";  ///< a name of machines(): what the axis words mean
-  /// Of the machine, and of the reader: "chord_tolerance" (mm, arcs as chords; default 0.002); "axis_tolerance" (rad):
-  /// where it is given, a feed move whose rotary axes, moving linearly, leave the great circle between its ends by more
-  /// becomes several rows; without it every block is one row.
+  std::string machine = "tcp";  ///< a name of machines(): what the axis words mean; "apt": an APT file
+  /// Of the machine, and of the reader:
+  /// "chord_tolerance" (mm, curves as chords; default 0.002); "axis_tolerance" (rad): where it is given, a feed move
+  /// whose rotary axes, moving linearly, leave the great circle between its ends by more becomes several rows; without
+  /// it every block is one row; "block_delete" (default true: lines that begin with / are passed over);
+  /// "unknown": "error" (default) or "skip"; "subroutines": a folder of files name.ngc; "parameters": a file of
+  /// LinuxCNC's parameters (work offsets, G28); "max_turns" of loops and calls (default 1e6), after which a program
+  /// counts as endless.
   Options options;
 };
 
-/// One row per move end; rows of one block have its line. Coordinates that no block has named are 0. `file` (base name)
-/// stands in messages. FormatError naming the line for everything that is not understood in full; nothing is skipped.
-/// Reads G0–G4, G17–G19, G20/21, G40, G43/G43.4/G49, G54, G61/G61.1/G64, G80, G90/91, G90.1/91.1, G93/94, G98/99,
-/// M0–M9, M30, T, S, F, H, N, and O as the number of the program.
+/// One row per move end; rows of one block have its line. `file` (base name) stands in messages. FormatError naming the
+/// line, with its text, for everything that is not understood in full; docs/reading-nc.md says what is. Poses are in
+/// the coordinates in which the first move is programmed; offsets that change later move what comes after.
 Program parse_nc(std::string_view text, const std::string& file, const ReadOptions& options = {});
 
 Program read_nc(const std::filesystem::path& path, const ReadOptions& options = {});
+
+class NcInterpreter;
+
+/// A file that is read as it is asked for, in memory that does not grow with it.
+class NcStream {
+ public:
+  /// FormatError where the file cannot be opened, std::invalid_argument for options and `rows` < 2.
+  NcStream(const std::filesystem::path& path, const ReadOptions& options = {}, std::size_t rows = 65536);
+  NcStream(NcStream&&) noexcept;
+  ~NcStream();
+
+  /// The next at most `rows` rows; the first of them is the last of those before, where there are any. False, and an
+  /// empty program, at the end. A FormatError ends the stream.
+  bool next(Program& program);
+
+ private:
+  std::unique_ptr<NcInterpreter> interpreter_;
+  std::size_t rows_, taken_ = 0;
+  Program whole_;  // an APT file's rows
+  std::unique_ptr<Move> last_;
+};
 
 }  // namespace riffler

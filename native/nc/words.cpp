@@ -2,82 +2,64 @@
 
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
+#include "nc/expression.hpp"
 #include "nc/limits.hpp"
 
 namespace riffler {
 
 namespace {
 
-std::optional<NcGroup> g_group(int tenths) {
-  switch (tenths) {
-    case 0:
-    case 10:
-    case 20:
-    case 30:
-    case 800:
-      return NcGroup::Motion;
-    case 40:
-      return NcGroup::NonModal;
-    case 170:
-    case 180:
-    case 190:
-      return NcGroup::Plane;
-    case 200:
-    case 210:
-      return NcGroup::Units;
-    case 400:
-      return NcGroup::CutterCompensation;
-    case 430:
-    case 434:
-    case 490:
-      return NcGroup::ToolLength;
-    case 540:
-      return NcGroup::WorkOffset;
-    case 610:
-    case 611:
-    case 640:
-      return NcGroup::PathControl;
-    case 900:
-    case 910:
-      return NcGroup::Distance;
-    case 901:
-    case 911:
-      return NcGroup::ArcDistance;
-    case 930:
-    case 940:
-      return NcGroup::FeedMode;
-    case 980:
-    case 990:
-      return NcGroup::ReturnLevel;
-    default:
-      return std::nullopt;
-  }
+constexpr std::int8_t kUnknown = -1;
+
+/// Group of each code times ten.
+using CodeTable = std::array<std::int8_t, 4400>;
+
+constexpr void put(CodeTable& table, NcGroup group, std::initializer_list<int> tenths) {
+  for (const int code : tenths) table[static_cast<std::size_t>(code)] = static_cast<std::int8_t>(group);
 }
 
-std::optional<NcGroup> m_group(int tenths) {
-  switch (tenths) {
-    case 0:
-    case 10:
-    case 20:
-    case 300:
-      return NcGroup::Stop;
-    case 30:
-    case 40:
-    case 50:
-      return NcGroup::Spindle;
-    case 60:
-      return NcGroup::ToolChange;
-    case 70:
-      return NcGroup::Mist;
-    case 80:
-    case 90:
-      return NcGroup::Flood;
-    default:
-      return std::nullopt;
-  }
+constexpr CodeTable g_codes() {
+  CodeTable t{};
+  t.fill(kUnknown);
+  using enum NcGroup;
+  put(t, Motion, {0, 10, 20, 30, 50, 51, 52, 53, 330, 331, 382, 383, 384, 385, 730, 740, 760, 800});
+  put(t, Motion, {810, 820, 830, 840, 850, 860, 870, 880, 890});
+  put(t, NonModal, {40, 100, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923});
+  put(t, Plane, {170, 171, 180, 181, 190, 191});
+  put(t, Units, {200, 210});
+  put(t, CutterCompensation, {400, 410, 411, 420, 421});
+  put(t, ToolLength, {430, 431, 432, 434, 490});
+  put(t, WorkOffset, {540, 550, 560, 570, 580, 590, 591, 592, 593});
+  put(t, PathControl, {610, 611, 640});
+  put(t, LatheRadius, {70, 80});
+  put(t, Distance, {900, 910});
+  put(t, ArcDistance, {901, 911});
+  put(t, FeedMode, {930, 940, 950});
+  put(t, SpindleMode, {960, 970});
+  put(t, ReturnLevel, {980, 990});
+  return t;
 }
+
+constexpr CodeTable m_codes() {
+  CodeTable t{};
+  t.fill(kUnknown);
+  using enum NcGroup;
+  put(t, Stop, {0, 10, 20, 300, 600});
+  put(t, Spindle, {30, 40, 50, 190});
+  put(t, ToolChange, {60, 610});
+  put(t, Mist, {70});
+  put(t, Flood, {80, 90});
+  put(t, Override, {480, 490, 500, 510, 520, 530});
+  put(t, Signal, {620, 630, 640, 650, 660, 670, 680});
+  put(t, State, {700, 710, 720, 730});
+  put(t, Subprogram, {980, 990});
+  put(t, Kinematics, {4280, 4290, 4300});
+  for (int code = 1000; code <= 1990; code += 10) put(t, User, {code});
+  return t;
+}
+
+constexpr CodeTable kG = g_codes(), kM = m_codes();
 
 /// "G43.4" for 'G' and 434.
 std::string show(char letter, int tenths) {
@@ -86,68 +68,112 @@ std::string show(char letter, int tenths) {
   return text;
 }
 
+constexpr const char* kAdvice = ": correct it, or read with options {'unknown': 'skip'}";
+
 }  // namespace
 
-void NcWords::collect(const NcBlock& block) {
-  constexpr std::string_view kWords = "FHIJKNOPQRSTXYZ";
-  given_ = used_ = 0;
+void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
+  constexpr std::uint32_t kKnown = [] {
+    std::uint32_t bits = 0;
+    for (const char letter : std::string_view("DEFHIJKLNPQRSTXYZ")) bits |= bit(letter);
+    return bits;
+  }();
+  if (!axis_bits_)
+    for (const char letter : axes_) axis_bits_ |= bit(letter);
+  given_ = used_ = groups_ = 0;
+  empty_ = true, skipped_code_ = false;
   codes_.fill(-1);
-  for (std::size_t k = 0; k < block.words.size(); ++k) {
-    const auto [letter, value] = block.words[k];
-    if (letter == 'G' || letter == 'M') {
-      add_code(letter, value);
+  while (const char c = cursor.peek()) {
+    if (c == '#') {
+      empty_ = false;
+      cursor.take();
+      nc_assignment(cursor, parameters, place_);
       continue;
     }
-    if (kWords.find(letter) == kWords.npos && axes_.find(letter) == axes_.npos) fail_unknown(letter);
-    if (letter == 'N' && k > 0) lexer_.fail("N must be first in its block");
-    if (has(letter)) lexer_.fail(std::string(1, letter) + " twice in one block");
-    given_ |= bit(letter);
-    values_[static_cast<std::size_t>(letter - 'A')] = value;
+    if (c == '@' || c == '^') place_.fail("polar coordinates (@, ^) are not read: write X and Y");
+    if (!NcCursor::is_letter(c)) cursor.fail_character();
+    if (c == 'O') place_.fail("an O-word must be first in its block");
+    cursor.take();
+    const double value = cursor.at_number() ? cursor.number(c) : nc_value(cursor, parameters, place_, c);
+    if (c == 'G' || c == 'M') {
+      add_code(c, value);
+    } else if (!((kKnown | axis_bits_) & bit(c))) {
+      const std::string shown(1, c);
+      if (!skip_) place_.fail("unknown letter " + shown + (c <= 'C' ? ": the machine has no such axis" : "") + kAdvice);
+      skip_->push_back(shown);
+    } else {
+      if (c == 'N') place_.fail("N must be first in its block");
+      if (has(c)) place_.fail(std::string(1, c) + " twice in one block");
+      given_ |= bit(c);
+      values_[static_cast<std::size_t>(c - 'A')] = value;
+    }
+    empty_ = false;
   }
-}
-
-void NcWords::fail_unknown(char letter) const {
-  const std::string shown(1, letter);
-  if (letter >= 'A' && letter <= 'C') lexer_.fail("unknown letter " + shown + ": the machine has no such axis");
-  lexer_.fail("unknown letter " + shown);
+  if (skipped_code_) take_skipped_words();
 }
 
 void NcWords::add_code(char letter, double value) {
   const double tenths = std::round(value * 10);
-  std::optional<NcGroup> group;
-  if (value >= 0 && value < 1000 && std::abs(value * 10 - tenths) < 1e-9)
-    group = letter == 'G' ? g_group(static_cast<int>(tenths)) : m_group(static_cast<int>(tenths));
-  if (!group) {
+  const CodeTable& table = letter == 'G' ? kG : kM;
+  std::int8_t group = kUnknown;
+  if (tenths >= 0 && tenths < static_cast<double>(table.size()) && std::abs(value * 10 - tenths) < 1e-9)
+    group = table[static_cast<std::size_t>(tenths)];
+  if (group == kUnknown) {
     char text[64];
-    std::snprintf(text, sizeof text, "unknown code %c%.10g", letter, value);
-    lexer_.fail(text);
+    std::snprintf(text, sizeof text, "%c%.10g", letter, value);
+    skip_code(text);
+    return;
   }
-  int& slot = codes_[static_cast<std::size_t>(*group)];
+  std::int16_t& slot = codes_[static_cast<std::size_t>(group)];
   const int number = static_cast<int>(tenths);
-  if (slot == number) lexer_.fail(show(letter, number) + " twice in one block");
+  if (slot == number) place_.fail(show(letter, number) + " twice in one block");
   if (slot >= 0)
-    lexer_.fail((group == NcGroup::Motion ? "two motions in one block: " : "codes that contradict each other: ") +
+    place_.fail((static_cast<NcGroup>(group) == NcGroup::Motion ? "two motions in one block: "
+                                                                : "codes that contradict each other: ") +
                 show(letter, slot) + " and " + show(letter, number));
-  slot = number;
+  slot = static_cast<std::int16_t>(number);
+  groups_ |= 1U << group;
 }
 
-double NcWords::value(char letter, double limit) {
-  used_ |= bit(letter);
-  const double v = values_[static_cast<std::size_t>(letter - 'A')];
-  if (!(std::abs(v) <= limit)) lexer_.fail(std::string(1, letter) + " is out of range");
-  return v;
+void NcWords::skip_code(const std::string& shown) {
+  if (!skip_) place_.fail("unknown code " + shown + kAdvice);
+  skip_->push_back(shown);
+  skipped_code_ = true;
+}
+
+/// An unknown code takes with it the words that it may own: where the block names no motion of its own, the axis words
+/// too.
+void NcWords::take_skipped_words() {
+  constexpr std::string_view kOwn = "DEHIJKLPQR";
+  const bool moves = code(NcGroup::Motion) >= 0;
+  const bool codes_with_words = moves || code(NcGroup::NonModal) >= 0 || code(NcGroup::ToolLength) >= 0;
+  if (codes_with_words) {
+    pass_over(kOwn);
+    return;
+  }
+  for (const char letter : kOwn) given_ &= ~bit(letter);
+  given_ &= ~axis_bits_;
 }
 
 int NcWords::whole(char letter) {
   const double v = value(letter, kMaxNumber);
-  if (v < 0 || v != std::floor(v)) lexer_.fail(std::string(1, letter) + " must be a whole number");
-  return static_cast<int>(v);
+  // What an expression leaves of a whole number counts as it, as on LinuxCNC.
+  if (v < -1e-4 || std::abs(v - std::round(v)) > 1e-4) place_.fail(std::string(1, letter) + " must be a whole number");
+  return static_cast<int>(std::round(v));
 }
 
-void NcWords::check_all_used() const {
-  const std::uint32_t idle = given_ & ~used_;
-  for (char letter = 'A'; letter <= 'Z'; ++letter)
-    if (idle & bit(letter)) lexer_.fail(std::string(1, letter) + " has no meaning in this block");
+void NcWords::pass_over(std::string_view letters) {
+  for (const char letter : letters) used_ |= bit(letter);
+}
+
+void NcWords::fail_range(char letter) const {
+  place_.fail(std::string(1, letter) + " is out of range");
+}
+
+void NcWords::fail_unused() const {
+  char letter = 'A';
+  while (!(given_ & ~used_ & bit(letter))) ++letter;
+  place_.fail(std::string(1, letter) + " has no meaning in this block");
 }
 
 }  // namespace riffler

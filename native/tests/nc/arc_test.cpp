@@ -42,7 +42,7 @@ TEST(Arc, ThatEndsWhereItBeginsIsAFullCircle) {
 }
 
 TEST(Arc, HalfCircleByRadiusSurvivesRounding) {
-  for (const double radius : {5.0, 5 - 1e-9, -5.0, 4.998, -4.998}) {
+  for (const double radius : {5.0, 5 - 1e-9, -5.0, 4.999, -4.999}) {
     const Arc arc = arc_of_radius({0, 0}, {10, 0}, radius, true);
     EXPECT_NEAR(arc.sweep, -kPi, 1e-4);
     EXPECT_NEAR(arc.at(0.5).y, 5, 1e-3);
@@ -53,14 +53,17 @@ TEST(Arc, WhoseEndMissesItsCircleIsRefused) {
   EXPECT_NO_THROW(arc_about({10, 0}, {0, 10.0049}, {0, 0}, false));
   EXPECT_THROW(arc_about({10, 0}, {0, 10.0051}, {0, 0}, false), std::invalid_argument);
   EXPECT_THROW(arc_about({10, 0}, {0, 9.9949}, {0, 0}, false), std::invalid_argument);
-  EXPECT_NO_THROW(arc_of_radius({0, 0}, {10, 0}, 4.9976, false));
-  EXPECT_THROW(arc_of_radius({0, 0}, {10, 0}, 4.9974, false), std::invalid_argument);
+  EXPECT_NO_THROW(arc_of_radius({0, 0}, {10, 0}, 4.99874, false));
+  EXPECT_THROW(arc_of_radius({0, 0}, {10, 0}, 4.99872, false), std::invalid_argument);
+  EXPECT_NO_THROW(arc_about({0.00128, 0}, {0, 0.00128}, {0, 0}, false));
+  EXPECT_THROW(arc_about({0.00126, 0}, {0, 0.00126}, {0, 0}, false), std::invalid_argument);
+  EXPECT_NO_THROW(arc_of_radius({0, 0}, {1e-5, 0}, 1e-5, false));
   EXPECT_THROW(arc_about({10, 0}, {10, 0}, {10, 0}, false), std::invalid_argument);
   EXPECT_THROW(arc_of_radius({0, 0}, {0.001, 0}, 0, false), std::invalid_argument);
 }
 
 TEST(Arc, ChordsKeepToTheToleranceAndAreNotManyMore) {
-  for (const double r : {0.001, 0.5, 10.0, 1e4})
+  for (const double r : {0.002, 0.5, 10.0, 1e4})
     for (const double tolerance : {0.1, 0.002, 1e-5}) {
       const Arc arc = arc_about({r, 0}, {r, 0}, {0, 0}, false);
       const int n = arc.chords(tolerance);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <string>
 
@@ -19,11 +20,23 @@ const std::string kSeeds[] = {
     "G20 G91\nG1 X1 F10 ; inch\nG2 X1 Y1 I1 J0\nG3 X-1 Y-1 R1\nG18 G2 X1 Z1 K1\nG19 G3 Y1 Z1 R-1\nG17 G2 I.5 "
     "Z.1\nG90.1\n"
     "G90 G3 X2 Y2 I2 J1\nG4 P1\nG64 P.01 Q.02\nM7 M8\nM9 M1\nM2\n",
+    "#1=2 #<a b>=[#1*3]\no1 sub\nG0 X#1 Y[#2-1]\no2 if [#1 GT 0]\no1 call [#1-1] [2]\no2 endif\no1 endsub [#1]\no1 "
+    "call "
+    "[3] [4]\n#1=0\no3 while [#1 LT 5]\n#1=[#1+1]\no4 if [#1 EQ 3]\no3 continue\no4 elseif [#1 MOD 2]\no3 break\no4 "
+    "else\no4 endif\nG0 X#1\no3 endwhile\no5 repeat [3]\nG91 X1\no5 endrepeat\no6 do\n#1=[#1-1]\no6 while [#1 GT 0]\n"
+    "X[SIN[30]+ATAN[1]/[2]-EXISTS[#<a>]]\nM98 P9\nM2\nO9\nG0 Y1\nM99\n",
+    "G0 X1 Y1\nG92 X0 A3\nG10 L2 P2 X5 Y6 R30\nG55 X1\nG52 Y3\nG53 G0 Z4\nG28.1\nG28 X2\nG10 L20 P0 X7\nG92.2\nG92.3\n"
+    "G43.1 Z5\nF100\nG98 G83 X1 Y2 Z-5 R2 Q1.5 L2\nX3\nG99 G73 X1 Z-5 R2 Q3\nG18 G81 X3 Z2 Y-3 R1\nG17 G80\nG1 X1\nG5 "
+    "X5 "
+    "Y5 I1 J2 P-1 Q-2\nG5.1 X7 Y1 I1 J1\nG2 X1 I-3 P2\nM70\nG20 G95 S100 M3\nM72\nM62 P1\nM100 P2\nG59.3 G61\nM61 Q3\n",
+    "PARTNO A\nUNITS/MM\nMULTAX/ON\nCUTTER/10,5,0,5,0,0,50\nLOADTL/1\nSPINDL/900,RPM,CLW\nRAPID\nGOTO/0,0,10,0,0,1\n"
+    "FEDRAT/100,MMPM\nGOTO/1,2,$\n3,0,0.6,0.8\nGODLTA/0,0,-1\nCIRCLE/1,0,2,0,0,1,2\nGOTO/3,0,2\n$$ end\nFINI\n",
 };
+constexpr std::size_t kSeedCount = std::size(kSeeds);
 
-std::string mutated(std::mt19937& random) {
-  std::string text = kSeeds[random() % 2];
-  static const std::string kBytes = "GMXYZABCIJKRFSTHNOPQ0123456789.+-%();/#\n\r\t \x80\xFF";
+std::string mutated(std::size_t seed, std::mt19937& random) {
+  std::string text = kSeeds[seed];
+  static const std::string kBytes = "GMXYZABCIJKRFSTHNOPQL0123456789.+-%();/#[]<>=*,$\n\r\t \x80\xFF";
   for (std::size_t k = 0, count = 1 + random() % 4; k < count && !text.empty(); ++k) {
     const std::size_t at = random() % text.size();
     switch (random() % 10) {
@@ -53,11 +66,16 @@ TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
   std::mt19937 random(20);
   int read = 0, refused = 0;
   for (int round = 0; round < 20'000; ++round) {
-    const std::string text = mutated(random);
+    const std::size_t seed = static_cast<std::size_t>(round) % kSeedCount;
+    const std::string text = mutated(seed, random);
     Program p;
     try {
       // Coarse chords: a mutation may ask for an arc of kilometres.
-      p = parse_nc(text, "fuzz.ngc", {round % 4 ? "tcp" : "3-axis", {{"chord_tolerance", 0.1}}});
+      Options options{{"chord_tolerance", 0.1}};
+      const bool is_apt = seed + 1 == kSeedCount;
+      if (!is_apt) options["max_turns"] = 1000.0;
+      if (random() % 4 == 0) options["unknown"] = std::string("skip");
+      p = parse_nc(text, "fuzz.ngc", {is_apt ? "apt" : random() % 4 ? "tcp" : "3-axis", options});
     } catch (const FormatError& e) {
       ++refused;
       ASSERT_EQ(std::string(e.what()).rfind("fuzz.ngc, line ", 0), 0U) << e.what();
@@ -73,6 +91,39 @@ TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
   }
   EXPECT_GT(read, 1000) << "the seeds are too fragile to test what is read";
   EXPECT_GT(refused, 1000);
+}
+
+TEST(ReaderFuzz, SurvivesBytesOfAnyKind) {
+  std::mt19937 random(21);
+  for (int round = 0; round < 5'000; ++round) {
+    std::string text(random() % 200, '\0');
+    for (char& c : text) c = static_cast<char>(round % 2 ? random() : "GXYZ[]#<>=o1 23.-\nsubif"[random() % 23]);
+    for (const char* machine : {"tcp", "apt"}) {
+      try {
+        parse_nc(text, "fuzz.ngc", {machine, {}});
+      } catch (const FormatError&) {
+      }
+    }
+  }
+}
+
+TEST(ReaderFuzz, SurvivesWhatIsDeep) {
+  const auto many = [](const std::string& what, int count) {
+    std::string out;
+    for (int k = 0; k < count; ++k) out += what;
+    return out;
+  };
+  for (const std::string& text :
+       {"G0 X" + many("[", 100'000), "G0 X" + many("#", 100'000) + "1", "G0 X" + many("-[", 100'000),
+        "G0 X" + many("SIN[", 100'000), many("G0", 100'000), many("o1 repeat [2]\n", 2000), many("o1 do\n", 2000),
+        "G0 X[1" + many("**1", 100'000) + "]", "G0 X[1" + many("+1*2**3", 50'000) + "]", many("o1 call\n", 50),
+        many("G0 X#1 #1=1\n", 20'000), std::string("o1 sub\no1 call\no1 call\no1 endsub\no1 call\n"),
+        many("(", 100'000)}) {
+    try {
+      parse_nc(text, "fuzz.ngc", {"tcp", {{"max_turns", 10'000.0}}});
+    } catch (const FormatError&) {
+    }
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -31,6 +32,18 @@ std::string error_of(const std::string& text, const std::string& machine = "tcp"
   return "no error";
 }
 
+constexpr const char* kAdvice = ": correct it, or read with options {'unknown': 'skip'}";
+
+/// The text of line `number` as messages show it.
+std::string shown(const std::string& text, std::size_t number) {
+  std::size_t begin = 0;
+  while (--number > 0) begin = text.find('\n', begin) + 1;
+  std::string line = text.substr(begin, text.find('\n', begin) - begin);
+  for (char& c : line)
+    if (c < ' ' || c > '~') c = '?';
+  return line;
+}
+
 TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"G1 X NaN F1", "expected a number after X"},
@@ -39,8 +52,8 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
       {"G1 X F1", "expected a number after X"},
       {"G1 X- F1", "expected a number after X"},
       {"G1 X. F1", "expected a number after X"},
-      {"G1 X1e3 F1", "unknown letter E"},
-      {"G1 X1 E3 F1", "unknown letter E"},
+      {"G1 X1e3 F1", "E has no meaning in this block"},
+      {"G1 X1 E3 F1", "E has no meaning in this block"},
       {"G1 X2000000 F1", "X is out of range"},
       {"G1 X1 F1000000000000", "F is out of range"},
       {"T1.5 M6", "T must be a whole number"},
@@ -48,13 +61,13 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
       {"T999999999999 M6", "T is out of range"},
       {"G1 U1 F1", "unknown letter U"},
       {"G1 B1 F1", "unknown letter B: the machine has no such axis"},
-      {"G5 X1", "unknown code G5"},
+      {"G5.5 X1", "unknown code G5.5"},
       {"G43.5 H1", "unknown code G43.5"},
       {"G1.05 X1 F1", "unknown code G1.05"},
       {"G-1", "unknown code G-1"},
-      {"G28", "unknown code G28"},
-      {"G55", "unknown code G55"},
-      {"M98 P1000", "unknown code M98"},
+      {"G29", "unknown code G29"},
+      {"G60", "unknown code G60"},
+      {"M97 P1000", "unknown code M97"},
       {"M-3", "unknown code M-3"},
       {"G1 X1 X2 F1", "X twice in one block"},
       {"G1 X1 F1 F1", "F twice in one block"},
@@ -81,13 +94,14 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
       {"G0 X1 R1", "R has no meaning in this block"},
       {"G0 X1 I1", "I has no meaning in this block"},
       {"X1 N5", "N must be first in its block"},
-      {"G0 X1\nO5", "O is read as the number of the program only, before everything else"},
+      {"G0 X1\nO5",
+       "O with a number alone is the number of the program, before everything else, or a subprogram of M98, after its "
+       "end"},
       {"G0 X\xC3\xA9", "expected a number after X"},
       {"G0 X1 \xC3\xA9", "a character outside ASCII (byte 0xC3)"},
       {"\xEF\xBB\xBFG0 X1", "a character outside ASCII (byte 0xEF)"},
-      {"G0 X1 #5", "unexpected '#'"},
-      {"G0 X[1+1]", "expected a number after X"},
-      {"/G0 X1", "unexpected '/'"},
+      {"G0 X1 #5", "expected = after a parameter"},
+      {"G0 X1 /G0", "unexpected '/'"},
       {"G0 X1 2", "unexpected '2'"},
       {"G0 X1.2.3", "unexpected '.'"},
       {"% G0", "text beside %"},
@@ -107,10 +121,15 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
     std::size_t line = 2;
     for (const char* c = text; *c; ++c) line += *c == '\n';
     // The third of three lines is wrong except where the end comes first.
-    EXPECT_EQ(error_of(lines), "p.ngc, line " + std::to_string(line + 1) + ": " + what) << text;
+    const std::string advice = std::string_view(what).starts_with("unknown ") ? kAdvice : "";
+    EXPECT_EQ(error_of(lines),
+              "p.ngc, line " + std::to_string(line + 1) + ": " + what + advice + " [" + shown(lines, line + 1) + "]")
+        << text;
   }
-  EXPECT_EQ(error_of("G0 X1 A1", "3-axis"), "p.ngc, line 1: unknown letter A: the machine has no such axis");
-  EXPECT_EQ(error_of("G0 X" + std::string(400, '9')), "p.ngc, line 1: the number after X is out of range");
+  EXPECT_EQ(error_of("G0 X1 A1", "3-axis"),
+            std::string("p.ngc, line 1: unknown letter A: the machine has no such axis") + kAdvice + " [G0 X1 A1]");
+  EXPECT_EQ(error_of("G0 X" + std::string(400, '9')),
+            "p.ngc, line 1: the number after X is out of range [G0 X" + std::string(76, '9') + " ...]");
   EXPECT_THROW(read_nc("/nowhere/at/all.ngc"), FormatError);
 }
 
@@ -127,8 +146,10 @@ TEST(Reader, RefusesUnknownMachinesAndOptions) {
       error("lathe", {}),
       "unknown machine lathe; known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, head-head, head-table, 3-axis, heidenhain, "
       "apt, or the path of a .toml file that describes your machine");
-  EXPECT_TRUE(
-      error("tcp", {{"chord", 1.0}}).starts_with("machine tcp: unknown option 'chord'; known: tcp, max_rotary"));
+  const std::string unknown = error("tcp", {{"chord", 1.0}});
+  EXPECT_TRUE(unknown.starts_with("machine tcp: unknown option 'chord'; known: tcp, max_rotary")) << unknown;
+  EXPECT_TRUE(unknown.ends_with("block_delete, max_turns, unknown, subroutines, parameters")) << unknown;
+  EXPECT_EQ(error("heidenhain", {}), "machine heidenhain: its language (heidenhain) is not read; rs274 and apt are");
   EXPECT_NE(error("tcp", {{"chord_tolerance", -1.0}}), "");
   EXPECT_NE(error("tcp", {{"chord_tolerance", std::string("small")}}), "");
 }
@@ -151,6 +172,123 @@ TEST(Reader, ReadsWhatOthersWrite) {
   EXPECT_EQ(p.spindle(), (std::vector<double>{1000, 1000, 1000, 1000, 1000, 0}));
   for (const int tool : p.tool()) EXPECT_EQ(tool, 3);
   for (const Pose& pose : p.poses()) EXPECT_EQ(pose.axis, Vec3(0, 0, 1));
+}
+
+TEST(Reader, ReadsTheFilesOfOtherSystems) {
+  const Program p = read(
+      "%\nO1234\n(T1 D=6. CR=3. - BALL)\nN10G90G94G17G49G40G80\nN15G21\nN20G28G91Z0.\nN25G90\nN30T1M6\nN35S5000M3\n"
+      "N40G54\nN45M8\nN50G0X1.Y2.\nN55G43Z15.H1\nN60G1Z-1.F333.\nF500.\nX5.\nG2X6.Y3.I0.J1.\nN99G0Z15.\nM9M5\n"
+      "G28G91Z0.\nG28X0.Y0.\nM30\n%\n");
+  EXPECT_EQ(p.tool().back(), 1);
+  EXPECT_EQ(p.feed()[4], 333);
+  EXPECT_EQ(p.feed()[5], 500);
+  EXPECT_EQ(p.poses().back().tip, Vec3(0, 0, 0));
+}
+
+TEST(Reader, PassesOverBlocksThatAreDeletedUnlessToldNotTo) {
+  EXPECT_EQ(read("G0 X1\n/X2\n /N5 X3 nonsense").size(), 1U);
+  EXPECT_EQ(read("G0 X1\n/X2\n/N5 X3", "tcp", {{"block_delete", false}}).size(), 3U);
+}
+
+TEST(Reader, SkipsUnknownWordsWhereItIsToldToAndListsThem) {
+  const Program p = read("G0 X1 U7\nG1 X2 F10\nG187 P1 E0.1\nG60 X9\nG60 G1 X3\nM97 P5\nX4", "tcp",
+                         {{"unknown", std::string("skip")}});
+  ASSERT_EQ(p.size(), 4U);
+  EXPECT_EQ(p.poses()[2].tip.x, 3) << "G60 takes its block's words with it where no motion stands beside it";
+  EXPECT_EQ(p.provenance[1].first, "skipped");
+  EXPECT_EQ(p.provenance[1].second, "line 1: U; line 3: G187; line 4: G60; line 5: G60; line 6: M97");
+  std::string many = "G0\n";
+  for (int k = 0; k < 1000; ++k) many += "X1 U1\n";
+  const std::string listed = read(many, "tcp", {{"unknown", std::string("skip")}}).provenance[1].second;
+  EXPECT_TRUE(listed.ends_with("line 21: U; and 980 more")) << listed;
+}
+
+TEST(Reader, FollowsSwitchesOfTheKinematics) {
+  const Options table{{"rot_point", std::vector<double>{1, 2, 3}}, {"offset", std::vector<double>{0, 4, 5}}};
+  const std::string machine = "linuxcnc-xyzac";
+  Options joints = table, tips = table;
+  joints["tcp"] = false, tips["tcp"] = true;
+  const std::string path = "G0 X10 Y20 Z30\nG1 X11 A20 C30 F100\n";
+  EXPECT_EQ(read("M428\n" + path, machine, table).poses().back().tip, read(path, machine, tips).poses().back().tip);
+  EXPECT_EQ(read("M429\n" + path, machine, table).poses().back().tip, read(path, machine, table).poses().back().tip);
+  // The machine stands still while its kinematics are switched.
+  for (const std::string order : {"M428", "M429"}) {
+    const std::string other = order == "M428" ? "M429" : "M428";
+    const Program p = read(order + "\n" + path + other + "\nG91 G1 X0\n" + order + "\nX0", machine, table);
+    const Pose here = p.poses()[p.size() - 3];
+    for (std::size_t row = p.size() - 2; row < p.size(); ++row) {
+      EXPECT_LT(glm::length(p.poses()[row].tip - here.tip), 1e-12);
+      EXPECT_LT(glm::length(p.poses()[row].axis - here.axis), 1e-15);
+    }
+  }
+  EXPECT_EQ(error_of("G0 X1\nM428", machine), "no error");
+  const auto fails = [&](const std::string& text, const std::string& name, const Options& options) -> std::string {
+    try {
+      read(text, name, options);
+    } catch (const FormatError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(
+      fails("\nM428", machine, joints),
+      "p.ngc, line 2: M428 has X Y Z mean the tip, but option tcp says otherwise: leave the option out, and what the "
+      "program says is followed [M428]");
+  EXPECT_EQ(
+      fails("\nM429", machine, tips),
+      "p.ngc, line 2: M429 has X Y Z mean where the axes stand, but option tcp says otherwise: leave the option out, "
+      "and what the program says is followed [M429]");
+  EXPECT_NE(fails("M430", "3-axis", {}), "");
+  EXPECT_EQ(fails("M428\nM429", "3-axis", {}), "");
+}
+
+TEST(Reader, SplinesFollowTheirPolynomials) {
+  const Program p = read("F100\nG0 X1\nG5 X5 Y5 I1 J2 P-1 Q-2\nX9 Y5 P-1 Q-2\nG5.1 X12 Y3 I1 J1");
+  const auto cubic = [](Vec2 a, Vec2 b, Vec2 c, Vec2 d, double t) {
+    const auto mix = [t](Vec2 u, Vec2 v) { return (1 - t) * u + t * v; };  // de Casteljau's
+    return mix(mix(mix(a, b), mix(b, c)), mix(mix(b, c), mix(c, d)));
+  };
+  const auto check = [&](int line, Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+    double worst = 0;
+    std::size_t ends = 0;
+    for (std::size_t row = 1; row < p.size(); ++row) {
+      if (p.line()[row] != line) continue;
+      ++ends;
+      // Every point of the curve is near a chord, densely.
+    }
+    for (int i = 0; i <= 2000; ++i) {
+      const Vec2 q = cubic(a, b, c, d, i / 2000.0);
+      double near = 1e9;
+      for (std::size_t row = 1; row < p.size(); ++row) {
+        if (p.line()[row] != line) continue;
+        const Vec2 from(p.poses()[row - 1].tip), to(p.poses()[row].tip);
+        const double t = std::clamp(glm::dot(q - from, to - from) / glm::dot(to - from, to - from), 0.0, 1.0);
+        near = std::min(near, glm::length(q - from - t * (to - from)));
+      }
+      worst = std::max(worst, near);
+    }
+    EXPECT_LE(worst, 0.002) << line;
+    EXPECT_GT(ends, 10U);
+    EXPECT_LT(ends, 200U);
+  };
+  check(3, {1, 0}, {2, 2}, {4, 3}, {5, 5});
+  check(4, {5, 5}, {6, 7}, {8, 3}, {9, 5});
+  const Vec2 control(10, 6);
+  check(5, {9, 5}, (Vec2(9, 5) + 2.0 * control) / 3.0, (Vec2(12, 3) + 2.0 * control) / 3.0, {12, 3});
+}
+
+TEST(Reader, ArcsOfSeveralTurns) {
+  const Program p = read("G0 X10\nG3 X-10 I-10 Z4 P3 F100");
+  double way = 0;
+  for (std::size_t k = 1; k < p.size(); ++k) way += glm::length(p.poses()[k].tip - p.poses()[k - 1].tip);
+  EXPECT_NEAR(way, std::hypot(50 * kPi, 4), 0.03);
+  EXPECT_EQ(read("G2 I5 P2 F1").poses().back().tip, Vec3(0, 0, 0));
+}
+
+TEST(Reader, TakesFeedPerTurnFromTheSpindle) {
+  EXPECT_EQ(read("G95 F0.1 S2000 M3 G1 X1").feed()[0], 200);
+  EXPECT_EQ(error_of("G95 F0.1 G1 X1"),
+            "p.ngc, line 1: a feed per revolution (G95) without a spindle speed S [G95 F0.1 G1 X1]");
 }
 
 TEST(Reader, ReadsNothingFromNothing) {

@@ -13,7 +13,7 @@ import pytest
 
 FOLDER = Path(__file__).parents[3] / ".envs" / "linuxcnc"
 PROGRAM = FOLDER / "usr" / "bin" / "rs274"
-CALL = re.compile(r"^\s*\d+ N\S+ (\w+)\((.*)\)$")
+CALL = re.compile(r"^\s*\d+ N\S+\s+(\w+)\((.*)\)$")
 
 needed = pytest.mark.skipif(not PROGRAM.exists(), reason="no LinuxCNC interpreter: run `make envs`, or no apt-get here")
 
@@ -32,18 +32,27 @@ class RefusedError(Exception):
     """With what the interpreter says."""
 
 
-def interpreted(path: Path) -> Moves:
-    """The canonical moves of a program; tool 1 has the length 0, so that offsets say nothing."""
+def output(path: Path, *options: str) -> str:
+    """The canonical calls of a program as rs274 prints them; tools have the length 0, so that offsets say nothing."""
     table, out = path.with_suffix(".tbl"), path.with_suffix(".canon")
-    table.write_text("T1 P1 Z0 D6\nT2 P2 Z0 D6\n")
+    table.write_text("".join(f"T{n} P{n} Z0 D6\n" for n in range(1, 9)))
+    out.unlink(missing_ok=True)
     libraries = f"{FOLDER}/usr/lib:{FOLDER}/usr/lib/x86_64-linux-gnu"
     done = subprocess.run(
-        [PROGRAM, "-t", table, "-g", path, out], env=os.environ | {"LD_LIBRARY_PATH": libraries},
-        capture_output=True, text=True, timeout=120, check=False,
+        [PROGRAM, *options, "-t", table, "-g", path, out],
+        # It keeps its tools in a file of the home directory: one for each run, or runs beside each other mix them up.
+        env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": str(path.parent)},
+        capture_output=True, text=True, timeout=120, check=False, cwd=path.parent,
     )  # fmt: skip
     text = out.read_text() if out.exists() else ""
-    if done.returncode != 0 or "PROGRAM_END" not in text:
+    if done.returncode != 0 or not ("PROGRAM_END" in text or "%" in path.read_text()):
         raise RefusedError(done.stderr.strip() or done.stdout.strip())
+    return text
+
+
+def interpreted(path: Path) -> Moves:
+    """The canonical moves of a program."""
+    text = output(path)
     joints, rapid, minutes, feed, unit = [np.zeros(6)], [True], [np.nan], 0.0, 1.0
     for line in text.splitlines():
         found = CALL.match(line)
@@ -69,3 +78,109 @@ def between(joints: np.ndarray, parts: int) -> np.ndarray:
     """(n − 1, parts + 1, 6): all axes move evenly from one row to the next."""
     share = np.linspace(0, 1, parts + 1)[None, :, None]
     return joints[:-1, None] + share * (joints[1:, None] - joints[:-1, None])
+
+
+@dataclass
+class Call:
+    """A canonical move in machine coordinates, mm and degrees: its ends (6,); feed in mm/min, NaN for rapids; the
+    printed digits' error, mm. Of arcs: the axes (u, v) of the plane, the centre in it, and the signed sweep (rad)."""
+
+    start: np.ndarray
+    end: np.ndarray
+    feed: float
+    error: float
+    spindle: float
+    tool: int
+    plane: tuple[int, int] | None = None
+    centre: np.ndarray | None = None
+    sweep: float = 0.0
+
+
+@dataclass
+class Frame:
+    """From program to machine coordinates, as LinuxCNC's documents have it: G92, the turn, the work offset."""
+
+    work: np.ndarray
+    shift: np.ndarray
+    degrees: float
+
+    def machine(self, point: np.ndarray) -> np.ndarray:
+        out = point + self.shift
+        c, s = np.cos(np.radians(self.degrees)), np.sin(np.radians(self.degrees))
+        out[:2] = c * out[0] - s * out[1], s * out[0] + c * out[1]
+        return out + self.work
+
+    def program(self, point: np.ndarray) -> np.ndarray:
+        out = point - self.work
+        c, s = np.cos(np.radians(self.degrees)), np.sin(np.radians(self.degrees))
+        out[:2] = c * out[0] + s * out[1], -s * out[0] + c * out[1]
+        return out - self.shift
+
+
+PLANES = {"XY": (0, 1), "XZ": (2, 0), "YZ": (1, 2)}
+
+
+def calls(text: str) -> tuple[list[Call], Frame]:
+    """The moves of rs274's output, all offsets applied, and the frame in which the first of them was programmed."""
+    out: list[Call] = []
+    frame = first = Frame(np.zeros(6), np.zeros(6), 0.0)
+    at, unit, feed, per_turn, speed, turning, tool, plane = np.zeros(6), 1.0, 0.0, False, 0.0, 0, 0, (0, 1)
+
+    def lengths(words):
+        return np.array([float(word) for word in words]) * np.repeat([unit, 1], 3)
+
+    def move(end, **arc):
+        nonlocal at, first
+        if not out:
+            first = frame
+        rapid = np.nan if call == "STRAIGHT_TRAVERSE" else feed * (speed if per_turn else 1)
+        out.append(Call(at, end, rapid, 3e-4 * unit, turning * speed, tool, **arc))
+        at = end
+
+    for line in text.splitlines():
+        found = CALL.match(line)
+        if not found:
+            continue
+        call, inside = found.groups()
+        words = inside.split(",")
+        if call == "USE_LENGTH_UNITS":
+            unit = {"CANON_UNITS_MM": 1.0, "CANON_UNITS_INCHES": 25.4}[inside]
+        elif call == "SET_FEED_RATE":
+            feed = float(inside) * unit
+        elif call == "SET_FEED_MODE":
+            per_turn = int(words[1]) == 1
+        elif call == "SET_SPINDLE_SPEED":
+            speed = float(words[1])
+        elif call.startswith("START_SPINDLE"):
+            turning = 1 if call == "START_SPINDLE_CLOCKWISE" else -1
+        elif call == "STOP_SPINDLE_TURNING":
+            turning = 0
+        elif call == "CHANGE_TOOL":
+            tool = int(inside)
+        elif call == "SELECT_PLANE":
+            plane = PLANES[inside[-2:]]
+        elif call == "SET_G5X_OFFSET":
+            frame = Frame(lengths(words[1:]), frame.shift, frame.degrees)
+        elif call == "SET_G92_OFFSET":
+            frame = Frame(frame.work, lengths(words), frame.degrees)
+        elif call == "SET_XY_ROTATION":
+            frame = Frame(frame.work, frame.shift, float(inside))
+        elif call in ("STRAIGHT_FEED", "STRAIGHT_TRAVERSE"):
+            move(frame.machine(lengths(words)))
+        elif call == "ARC_FEED":
+            numbers = np.array([float(word) for word in words])
+            u, v = plane
+            end, centre = frame.program(at), frame.program(at)
+            end[u], end[v], end[3 - u - v] = [*numbers[:2].tolist(), numbers[5]]
+            end[[u, v, 3 - u - v]] *= unit
+            end[3:] = numbers[6:9]
+            centre[[u, v]] = numbers[2:4] * unit
+            centre = frame.machine(centre)[[u, v]]
+            end, turns = frame.machine(end), int(numbers[4])
+            (a, b), (c, d) = at[[u, v]] - centre, end[[u, v]] - centre
+            sweep = np.arctan2(a * d - b * c, a * c + b * d) * np.sign(turns) % (2 * np.pi)
+            if np.hypot(c - a, d - b) < 0.02:  # what was printed in inches is no better
+                sweep = 2 * np.pi
+            sweep = np.sign(turns) * (sweep + 2 * np.pi * (abs(turns) - 1))
+            move(end, plane=plane, centre=centre, sweep=sweep)
+    return out, first

@@ -1,0 +1,330 @@
+#include "nc/apt_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "nc/apt_lexer.hpp"
+#include "nc/arc.hpp"
+#include "nc/limits.hpp"
+#include "nc/machines.hpp"
+#include "nc/post.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr double kInch = 25.4;
+constexpr std::size_t kMaxListed = 20;
+
+constexpr std::string_view kPassedOver[] = {
+    "PARTNO", "PPRINT", "COOLNT", "END",    "STOP",    "OPSTOP",   "MACHIN",  "MODE",        "DELAY", "SEQNO",
+    "TOOLNO", "OPSKIP", "PREFUN", "AUXFUN", "DISPLAY", "TOOLPATH", "PAINT",   "END-OF-PATH", "MSYS",  "LEADER",
+    "REWIND", "CLEARP", "LPRINT", "CLPRNT", "NOPOST",  "ROTREF",   "SELECTL", "TPNAME",      "OP",    "LINTOL",
+};
+
+class AptReader {
+ public:
+  AptReader(std::string_view text, const std::string& file, const ReadOptions& options)
+      : place_{file, 0, {}}, lexer_(text, place_) {
+    OptionReader taken(options.options, "machine " + options.machine);
+    make_machine(options.machine, taken);
+    take_post_options(taken);  // the same options write and read
+    chord_tolerance_ = taken.positive("chord_tolerance").value_or(0.002);
+    skip_unknown_ = taken.word("unknown", {"error", "skip"}, "error") == "skip";
+    taken.done();
+    if (chord_tolerance_ < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
+    program_.provenance.emplace_back("source", file);
+  }
+
+  Program run() {
+    while (lexer_.next(s_) && s_.major != "FINI") {
+      const std::string shown = s_.major + (s_.text.empty() ? "" : "/" + s_.text);
+      place_.line = s_.line, place_.text = shown;
+      execute();
+    }
+    place_.text = {};
+    if (circle_) place_.fail("CIRCLE without the GOTO of its end");
+    if (!skipped_.empty()) program_.provenance.emplace_back("skipped", skipped_);
+    return std::move(program_);
+  }
+
+ private:
+  void execute() {
+    const std::string& m = s_.major;
+    if (m == "GOTO") return go_to(values(3, 6));
+    if (m == "FROM") return from(values(3, 6));
+    if (m == "GODLTA") return go_delta(values(1, 3));
+    if (m == "RAPID") {
+      rapid_ = true;
+    } else if (m == "CIRCLE") {
+      circle_ = values(7, 16);
+    } else if (m == "FEDRAT") {
+      feed_rate();
+    } else if (m == "SPINDL") {
+      spindle();
+    } else if (m == "TLAXIS") {
+      axis_ = unit(values(3, 3), 0);
+    } else if (m == "UNITS") {
+      unit_ = word() == "MM" ? 1 : word() == "INCHES" || word() == "INCH" ? kInch : fail_word("MM or INCHES");
+    } else if (m == "MULTAX") {
+      if (!s_.words.empty() && word() != "ON" && word() != "OFF") fail_word("ON or OFF");
+    } else if (m == "LOADTL" || m == "TURRET") {
+      load_tool();
+    } else if (m == "CUTTER") {
+      cutter(values(1, 7));
+    } else if (m == "CUTCOM") {
+      if (word() != "OFF")
+        place_.fail("cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre");
+    } else if (m == "CYCLE") {
+      if (word() != "OFF") place_.fail("cycles (CYCLE) are not read: have the CAM system write their moves");
+    } else if (m == "INSERT") {
+      list("INSERT " + s_.text);
+    } else if (std::find(std::begin(kPassedOver), std::end(kPassedOver), m) == std::end(kPassedOver)) {
+      if (!skip_unknown_)
+        place_.fail("unknown statement " + m + ": correct it, or read with options {'unknown': 'skip'}");
+      list(m);
+    }
+  }
+
+  // --- Words ---
+
+  const std::string& word() const {
+    if (s_.words.empty()) place_.fail(s_.major + " without a word");
+    return s_.words[0];
+  }
+
+  [[noreturn]] double fail_word(const std::string& expected) const {
+    place_.fail(s_.major + ": expected " + expected + ", not " + word());
+  }
+
+  /// All words as numbers, `least` to `most` of them.
+  std::vector<double> values(std::size_t least, std::size_t most) const {
+    std::vector<double> out;
+    for (const std::string& word : s_.words) {
+      const std::optional<double> value = lexer_.number(word);
+      if (!value) place_.fail(s_.major + ": expected a number, not '" + word + "'");
+      out.push_back(*value);
+    }
+    if (out.size() < least || out.size() > most)
+      place_.fail(s_.major + " takes " + std::to_string(least) + (least < most ? " to " + std::to_string(most) : "") +
+                  " numbers, not " + std::to_string(out.size()));
+    return out;
+  }
+
+  Vec3 point(const std::vector<double>& v) const {
+    const Vec3 p = unit_ * Vec3(v[0], v[1], v[2]);
+    for (int k = 0; k < 3; ++k)
+      if (!(std::abs(p[k]) <= kMaxLength)) place_.fail("a coordinate is out of range");
+    return p;
+  }
+
+  /// A direction as it was printed, with some digits less than a double has.
+  Vec3 unit(const std::vector<double>& v, std::size_t first) const {
+    const Vec3 d(v[first], v[first + 1], v[first + 2]);
+    const double length = glm::length(d);
+    if (!(std::abs(length - 1) < 1e-3)) place_.fail("a direction that is not a unit vector");
+    return d / length;
+  }
+
+  void list(const std::string& what) {
+    if (listed_++ >= kMaxListed) return;
+    skipped_ += (skipped_.empty() ? "line " : "; line ") + std::to_string(s_.line) + ": " + what;
+  }
+
+  // --- Feed, speed, tools ---
+
+  void feed_rate() {
+    double number = -1;
+    for (const std::string& word : s_.words) {
+      if (const std::optional<double> value = lexer_.number(word))
+        number = *value;
+      else if (word == "MMPM" || word == "IPM" || word == "PERMIN")
+        feed_unit_ = word == "MMPM" ? 1 : word == "IPM" ? kInch : 0, per_turn_ = false;
+      else if (word == "MMPR" || word == "IPR" || word == "PERREV")
+        feed_unit_ = word == "MMPR" ? 1 : word == "IPR" ? kInch : 0, per_turn_ = true;
+      else if (word == "RAPID")
+        rapid_ = true;
+      else
+        place_.fail("FEDRAT: unknown word " + word);
+    }
+    if (number < 0) {
+      if (rapid_ || s_.words.empty()) return;
+      place_.fail("FEDRAT without a positive number");
+    }
+    feed_ = number * (feed_unit_ > 0 ? feed_unit_ : unit_);
+    if (!(feed_ > 0 && feed_ <= kMaxFeed)) place_.fail("FEDRAT is out of range");
+  }
+
+  void spindle() {
+    for (const std::string& word : s_.words) {
+      if (const std::optional<double> value = lexer_.number(word)) {
+        speed_ = *value;
+        if (!(speed_ >= 0 && speed_ <= kMaxSpindle)) place_.fail("SPINDL is out of range");
+        if (turning_ == 0) turning_ = 1;
+      } else if (word == "CLW" || word == "ON") {
+        turning_ = 1;
+      } else if (word == "CCLW") {
+        turning_ = -1;
+      } else if (word == "OFF") {
+        turning_ = 0;
+      } else if (word != "RPM" && word != "RANGE") {
+        place_.fail("SPINDL: unknown word " + word);
+      }
+    }
+  }
+
+  void load_tool() {
+    const std::optional<double> number = lexer_.number(word());
+    if (!number || !(*number >= 0 && *number <= kMaxNumber && *number == std::floor(*number)))
+      place_.fail(s_.major + " needs the tool's number");
+    tool_ = static_cast<int>(*number), loads_ = true;
+    use_cutter();
+  }
+
+  /// d, r, e, f, a, b, h of the seven-parameter cutter: flat, ball and fillet ends are shapes of ours; of others the
+  /// shape stays unknown.
+  void cutter(std::vector<double> v) {
+    const bool has_height = v.size() == 7;
+    v.resize(7);
+    const double d = v[0] * unit_, r = v[1] * unit_, h = v[6] * unit_;
+    cutter_.reset();
+    cutter_waits_ = true;
+    const double flank = v[5] * (std::numbers::pi / 180);
+    // The corner's centre lies where a corner that touches the end and the flank has it.
+    const double slack = 1e-6 * std::abs(d);
+    const bool plain =
+        std::abs(v[2] * unit_ - (d / 2 - r)) <= slack && std::abs(v[3] * unit_ - r) <= slack && v[4] == 0;
+    const bool is_ball = std::abs(2 * r - d) <= slack;
+    if (!(has_height && plain && d > 0 && r >= 0 && h > 0 && flank >= 0) || (flank > 0 && !is_ball))
+      return list("CUTTER of a shape that is not known");
+    try {
+      if (flank > 0)  // a cone up to the top, from where the ball ends
+        cutter_ =
+            cutters::taper(r, flank, 2 * (r * std::cos(flank) + (h - r * (1 - std::sin(flank))) * std::tan(flank)), h);
+      else if (r == 0)
+        cutter_ = cutters::flat(d, h);
+      else if (is_ball)
+        cutter_ = cutters::ball(d, h);
+      else
+        cutter_ = cutters::fillet(d, r, h);
+    } catch (const std::invalid_argument& e) {
+      place_.fail(std::string("CUTTER: ") + e.what());
+    }
+  }
+
+  /// The cutter belongs to the tool that is loaded beside it, before or after; where a file loads none, each is one.
+  void use_cutter() {
+    if (!std::exchange(cutter_waits_, false)) return;
+    if (!loads_) ++tool_;
+    if (!cutter_) return;
+    const auto [found, fresh] = program_.tools.emplace(tool_, *cutter_);
+    if (!fresh && !(found->second.parameters() == cutter_->parameters() && found->second.kind() == cutter_->kind()))
+      place_.fail("tool " + std::to_string(tool_) + " has two shapes");
+    cutter_.reset();
+  }
+
+  // --- Moves ---
+
+  void from(const std::vector<double>& v) {
+    rapid_ = true;
+    go_to(v);
+  }
+
+  void go_delta(const std::vector<double>& v) {
+    if (v.size() == 2) place_.fail("GODLTA takes one number or three");
+    const Vec3 by = v.size() == 1 ? v[0] * unit_ * axis_ : unit_ * Vec3(v[0], v[1], v[2]);
+    move({at_ + by, axis_});
+  }
+
+  void go_to(const std::vector<double>& v) {
+    if (v.size() != 3 && v.size() != 6) place_.fail(s_.major + " takes 3 or 6 numbers");
+    const Pose to{point(v), v.size() == 6 ? unit(v, 3) : axis_};
+    if (circle_)
+      arc(to);
+    else
+      move(to);
+  }
+
+  void move(const Pose& to) {
+    for (int k = 0; k < 3; ++k)
+      if (!(std::abs(to.tip[k]) <= kMaxLength)) place_.fail("a coordinate is out of range");
+    row(to);
+    rapid_ = false;
+  }
+
+  void row(const Pose& pose) {
+    use_cutter();
+    if (program_.size() >= kMaxRows) place_.fail("more rows than can be held");
+    if (!rapid_ && !(feed_ > 0) && program_.size() > 0) place_.fail("a feed move without FEDRAT");
+    double feed = rapid_ ? 0 : feed_;
+    if (per_turn_ && !rapid_) {
+      if (!(speed_ > 0)) place_.fail("a feed per revolution without a spindle speed");
+      feed *= speed_;
+      if (!(feed <= kMaxFeed)) place_.fail("FEDRAT is out of range");
+    }
+    // Where the tool comes from to its first point is not known: it is not cut.
+    const bool first = program_.empty();
+    program_.append({pose, first && !(feed > 0) ? 0 : feed, turning_ * speed_, tool_, s_.line, rapid_ || first});
+    at_ = pose.tip, axis_ = pose.axis;
+  }
+
+  /// About the circle's axis, right-handed; along it evenly.
+  void arc(const Pose& to) {
+    const std::vector<double> v = *std::exchange(circle_, std::nullopt);
+    if (program_.empty()) place_.fail("CIRCLE before the first point");
+    const Vec3 centre = point(v), n = unit(v, 3), from = at_;
+    const double radius = v[6] * unit_;
+    Vec3 x = from - centre - glm::dot(from - centre, n) * n;
+    if (!(glm::length(x) > 0)) place_.fail("an arc of radius 0");
+    x /= glm::length(x);
+    const Vec3 y = glm::cross(n, x);
+    const auto in_plane = [&](const Vec3& p) { return Vec2(glm::dot(p - centre, x), glm::dot(p - centre, y)); };
+    const double low = glm::dot(from - centre, n), high = glm::dot(to.tip - centre, n);
+    Arc round{};
+    try {
+      round = arc_about(in_plane(from), in_plane(to.tip), {0, 0}, false);
+    } catch (const std::invalid_argument& e) {
+      place_.fail(e.what());
+    }
+    if (!(std::abs(round.r0 - radius) <= kArcMiss)) place_.fail("the circle's radius is not the distance of its start");
+    if (!(glm::dot(axis_, to.axis) > -1 + 1e-12)) place_.fail("the tool's axis turns to its opposite");
+    const Motion turning({from, axis_}, to);
+    const int chords = round.chords(chord_tolerance_);
+    if (chords > kMaxChords) place_.fail("an arc of too many chords");
+    for (int i = 1; i <= chords; ++i) {
+      const double t = static_cast<double>(i) / chords;
+      const Vec2 p = round.at(t);
+      row(i == chords ? to : Pose{centre + p.x * x + p.y * y + (low + t * (high - low)) * n, turning.axis(t)});
+    }
+    rapid_ = false;
+  }
+
+  NcPlace place_;
+  AptLexer lexer_;
+  AptStatement s_;
+  double chord_tolerance_ = 0;
+  bool skip_unknown_ = false;
+  Program program_;
+  std::string skipped_;
+  std::size_t listed_ = 0;
+
+  double unit_ = 1, feed_ = 0, feed_unit_ = 0, speed_ = 0;
+  bool per_turn_ = false, rapid_ = false, loads_ = false, cutter_waits_ = false;
+  int turning_ = 0, tool_ = 0;
+  Vec3 at_{0}, axis_{0, 0, 1};
+  std::optional<std::vector<double>> circle_;
+  std::optional<Tool> cutter_;
+};
+
+}  // namespace
+
+Program parse_apt(std::string_view text, const std::string& file, const ReadOptions& options) {
+  return AptReader(text, file, options).run();
+}
+
+}  // namespace riffler

@@ -1,0 +1,44 @@
+#include "nc/drill_cycle.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr double kMaxPecks = 100'000;
+
+}  // namespace
+
+bool is_drill_cycle(int code) {
+  switch (code) {
+    case 730:
+    case 810:
+    case 820:
+    case 830:
+    case 850:
+    case 860:
+    case 890:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void drill(const DrillCycle& cycle, const NcPlace& place, const std::function<void(double, bool)>& move) {
+  if (cycle.code == 730 || cycle.code == 830) {
+    if (!((cycle.retract - cycle.bottom) / cycle.peck <= kMaxPecks)) place.fail("Q is too small: too many pecks");
+    for (double depth = cycle.retract - cycle.peck; depth > cycle.bottom; depth -= cycle.peck) {
+      move(depth, false);
+      if (cycle.code == 830) move(cycle.retract, true);
+      move(depth + kPeckClearance, true);
+    }
+  }
+  move(cycle.bottom, false);
+  if (cycle.code == 890) {
+    move(cycle.clear, false);
+  } else {
+    if (cycle.code == 850) move(cycle.retract, false);
+    if (cycle.code != 850 || cycle.clear != cycle.retract) move(cycle.clear, true);
+  }
+}
+
+}  // namespace riffler

@@ -1,0 +1,28 @@
+// Canned drilling cycles: what happens at one hole, along the drilling axis.
+#pragma once
+
+#include <functional>
+
+#include "nc/source.hpp"
+
+namespace riffler {
+
+/// Heights along the drilling axis, mm.
+struct DrillCycle {
+  int code;        ///< times ten: 810 for G81
+  double retract;  ///< R
+  double bottom;   ///< Z
+  double clear;    ///< where the tool goes in the end: R, or the level from before (G98)
+  double peck;     ///< Q; 0: none
+};
+
+/// LinuxCNC's: what a peck keeps from the ground before (G83), or breaks the chip with (G73).
+inline constexpr double kPeckClearance = 0.254;
+
+/// Whether `code` (times ten) is a drilling cycle that is read.
+bool is_drill_cycle(int code);
+
+/// Calls `move(height, rapid)` for every move from R on. FormatError where the cycle has more pecks than can be held.
+void drill(const DrillCycle& cycle, const NcPlace& place, const std::function<void(double, bool)>& move);
+
+}  // namespace riffler

@@ -1,0 +1,190 @@
+#include "nc/interpreter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "nc/limits.hpp"
+#include "nc/machines.hpp"
+#include "nc/post.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// Of each kind that provenance lists.
+constexpr std::size_t kMaxNotes = 20;
+
+/// A path, which OptionReader has no form of its own for.
+std::string path_option(const Options& options, OptionReader& taken, const std::string& name) {
+  const auto found = options.find(name);
+  const std::string* path = found == options.end() ? nullptr : std::get_if<std::string>(&found->second);
+  if (found != options.end() && !path) throw std::invalid_argument("option " + name + " must be a path");
+  return taken.word(name, {path ? *path : ""}, "");
+}
+
+}  // namespace
+
+NcInterpreter::NcInterpreter(std::unique_ptr<NcSource> source, const std::filesystem::path& folder,
+                             const ReadOptions& options)
+    : parameters_(*this), source_(source->name()) {
+  if (!folder.empty()) given_.folders.push_back(folder);
+  take_options(options);
+  flow_ = std::make_unique<NcControlFlow>(std::move(source), given_.folders, given_.max_turns, place_, parameters_);
+  words_ = std::make_unique<NcWords>(rows_->machine().axes(), place_, given_.skip_unknown ? &skipped_here_ : nullptr);
+  if (!given_.parameters.empty()) {
+    parameters_.load(given_.parameters);
+    modes_.system = std::clamp(static_cast<int>(parameters_.stored(5220)), 1, 9);
+    home_noted_ = true;
+  }
+  frame_ = frame_of_parameters();
+  rows_->set_frame(frame_);
+  at_ = frame_.to_program({});
+}
+
+void NcInterpreter::take_options(const ReadOptions& options) {
+  machine_ = options.machine, machine_options_ = options.options;
+  tcp_given_ = machine_options_.contains("tcp");
+  OptionReader taken(options.options, "machine " + options.machine);
+  std::unique_ptr<Machine> machine = make_machine(options.machine, taken);
+  const double chord = taken.positive("chord_tolerance").value_or(0.002);
+  const std::optional<double> axis = taken.positive("axis_tolerance");
+  take_post_options(taken);  // the same options write and read
+  given_.block_delete = taken.flag("block_delete", true);
+  given_.max_turns = taken.positive("max_turns").value_or(1e6);
+  given_.skip_unknown = taken.word("unknown", {"error", "skip"}, "error") == "skip";
+  if (const std::string folder = path_option(options.options, taken, "subroutines"); !folder.empty())
+    given_.folders.emplace_back(folder);
+  given_.parameters = path_option(options.options, taken, "parameters");
+  taken.done();
+  if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
+  if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
+  rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);
+}
+
+bool NcInterpreter::step() {
+  std::string_view line;
+  // What follows the end in a subroutine, or may be met on another way, is not judged.
+  if (ended_ && (flow_->depth() > 0 || flow_->is_used())) return false;
+  if (!flow_->next(line)) return false;
+  NcCursor cursor(line, place_);
+  if (ended_) return !ended(line);
+  if (executes(cursor)) block(cursor);
+  return true;
+}
+
+/// Whether the line, whose / and N are taken, holds a block.
+bool NcInterpreter::executes(NcCursor& cursor) {
+  const char c = cursor.peek();
+  if (c == '\0') return false;
+  if (c == '%') {
+    percent(cursor);
+    return false;
+  }
+  if (c == '/') {
+    if (given_.block_delete) return false;
+    cursor.take();
+  }
+  if (cursor.peek() == 'N') {
+    cursor.take();
+    const double number = cursor.number('N');
+    if (!(std::abs(number) <= kMaxNumber)) place_.fail("N is out of range");
+    if (number < 0 || number != std::floor(number)) place_.fail("N must be a whole number");
+  }
+  return cursor.peek() != '\0';
+}
+
+/// Whether nothing can follow `line`, which stands after the end of the program: subroutines may.
+bool NcInterpreter::ended(std::string_view line) {
+  if (NcControlFlow::begins_subroutine(line)) return true;
+  NcCursor cursor(line, place_);
+  if (executes(cursor)) place_.fail("text after the end of the program");
+  return false;
+}
+
+void NcInterpreter::percent(NcCursor& cursor) {
+  cursor.take();
+  if (cursor.peek() != '\0') place_.fail("text beside %");
+  // The first frames the start, the second the end.
+  if (!started_ && !percent_)
+    percent_ = true;
+  else
+    ended_ = true;
+}
+
+void NcInterpreter::block(NcCursor& cursor) {
+  const bool first = !started_;
+  started_ = true;
+  if (cursor.peek() == 'O') {
+    cursor.take();
+    if (flow_->execute(cursor)) return leave_saved_states();
+    if (!first)
+      place_.fail(
+          "O with a number alone is the number of the program, before everything else, or a subprogram of "
+          "M98, after its end");
+  }
+  try {
+    words_->read(cursor, parameters_);
+  } catch (...) {
+    parameters_.drop();
+    throw;
+  }
+  for (const std::string& word : skipped_here_) {
+    if (skipped_.size() < kMaxNotes)
+      skipped_.push_back("line " + std::to_string(place_.line) + ": " + word);
+    else
+      ++more_skipped_;
+  }
+  skipped_here_.clear();
+  parameters_.apply();
+  execute();
+}
+
+/// In the order in which LinuxCNC does it (its manual, "G-Code Order of Execution"), except that G20 and G21 hold for
+/// the F beside them.
+void NcInterpreter::execute() {
+  if (words_->only_moves() && !words_->has('H')) {
+    feed_and_speed();
+    if (words_->has('T')) next_tool_ = words_->whole('T');
+    motion();
+  } else {
+    units_and_feed_mode();
+    feed_and_speed();
+    spindle();
+    signals();
+    tool();
+    states();
+    kinematics();
+    dwell();
+    modes();
+    tool_length();
+    select_system(words_->code(NcGroup::WorkOffset));
+    paths();
+    non_modal();
+    motion();
+    subprograms();
+    stop();
+  }
+  words_->check_all_used();
+}
+
+void NcInterpreter::note(const std::string& text) {
+  const std::string at = "line " + std::to_string(flow_->program_line()) + ": " + text;
+  if (notes_.size() < kMaxNotes) notes_.push_back(at);
+}
+
+Provenance NcInterpreter::provenance() const {
+  Provenance out{{"source", source_}};
+  const auto list = [](const std::vector<std::string>& all) {
+    std::string text;
+    for (const std::string& one : all) text += (text.empty() ? "" : "; ") + one;
+    return text;
+  };
+  if (!skipped_.empty())
+    out.emplace_back("skipped",
+                     list(skipped_) + (more_skipped_ ? "; and " + std::to_string(more_skipped_) + " more" : ""));
+  if (!notes_.empty()) out.emplace_back("notes", list(notes_));
+  return out;
+}
+
+}  // namespace riffler

@@ -1,0 +1,151 @@
+// RS-274 as LinuxCNC 2.9 reads it: block by block, from text to rows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nc/control_flow.hpp"
+#include "nc/frame.hpp"
+#include "nc/parameters.hpp"
+#include "nc/reader.hpp"
+#include "nc/rows.hpp"
+#include "nc/source.hpp"
+#include "nc/words.hpp"
+
+namespace riffler {
+
+class NcInterpreter final : private NcPredefined {
+ public:
+  /// `folder`: where files of subroutines are sought, beside those of the options. std::invalid_argument for options.
+  NcInterpreter(std::unique_ptr<NcSource> source, const std::filesystem::path& folder, const ReadOptions& options);
+
+  /// Executes one line. False at the end of the program. Rows are left in pending(). FormatError.
+  bool step();
+  std::vector<Move>& pending() { return rows_->pending(); }
+  /// More rows than can be held: FormatError naming the line.
+  [[noreturn]] void fail_rows() const { place_.fail("more rows than can be held"); }
+
+  /// "source", and "skipped" and "notes" where there are any.
+  Provenance provenance() const;
+
+ private:
+  /// What M70 saves and M72 restores.
+  struct Modes {
+    std::array<std::size_t, 3> plane{0, 1, 2};  // joints of the plane's two axes and of its normal
+    double unit = 1;                            // mm
+    bool absolute = true, absolute_centre = false;
+    int feed_mode = 940, return_level = 990, system = 1;
+    double feed = 0;  // mm/min, 1/min, or mm/rev; 0: none
+    double speed = 0;
+    int turning = 0;  // 1 clockwise
+    bool surface_speed = false;
+    int path_control = 640;
+  };
+  struct Given {
+    bool block_delete = true;
+    double max_turns = 0;
+    std::vector<std::filesystem::path> folders;
+    std::string parameters;
+    bool skip_unknown = false;
+  };
+  struct Saved {
+    Modes modes;
+    std::size_t depth;  // of calls
+    bool restores;      // at the end of the subroutine (M73)
+  };
+  /// The words of a canned cycle that stay, mm.
+  struct Cycle {
+    int code = -1;
+    double retract = 0, bottom = 0, peck = 0;
+    double level = 0;  // of the drilling axis before the first of the cycles in a row
+  };
+
+  // interpreter.cpp: options, lines, the order of what a block does.
+  void take_options(const ReadOptions& options);
+  bool executes(NcCursor& cursor);
+  bool ended(std::string_view line);
+  void percent(NcCursor& cursor);
+  void block(NcCursor& cursor);
+  void execute();
+  void note(const std::string& text);
+
+  // interpreter_modes.cpp: what moves nothing.
+  void units_and_feed_mode();
+  void feed_and_speed();
+  void spindle();
+  void signals();
+  void tool();
+  void states();
+  void leave_saved_states();
+  void restore(const Modes& modes);
+  void kinematics();
+  void dwell();
+  void modes();
+  void tool_length();
+  void paths();
+  void subprograms();
+  void stop();
+
+  // interpreter_offsets.cpp: where program coordinates are; parameters that say so.
+  NcFrame frame_of_parameters() const;
+  void use_frame(const NcFrame& frame);
+  void select_system(int code);
+  void non_modal();
+  void set_data();
+  void set_system(int number, bool by_position);
+  void shift_by_words(bool local);
+  void store_shift();
+  void go_home(int first_parameter);
+  double length_or_angle(std::size_t joint);
+  std::optional<double> predefined(int number) const override;
+  std::optional<double> predefined(std::string_view name) const override;
+
+  // interpreter_motion.cpp
+  void motion();
+  void move(int code);
+  void refuse(int code);
+  bool axes_are_taken() const;
+  void check_feed() const;
+  Joints target();
+  Joints machine_target();
+  void line_to(const Joints& to, bool rapid);
+  void arc_to(const Joints& to, bool clockwise);
+  Arc the_arc(const Vec2& from, const Vec2& end, bool clockwise);
+  void spline_to(const Joints& to, int code);
+  void drill_at(int code);
+  void take_cycle_words(int code);
+  NcRowWords row_words(bool rapid);
+
+  NcPlace place_;
+  NcParameters parameters_;
+  Given given_;
+  Options machine_options_;
+  std::string machine_;
+  bool tcp_given_ = false;
+  std::vector<std::string> skipped_here_;
+  std::unique_ptr<NcControlFlow> flow_;
+  std::unique_ptr<NcRows> rows_;
+  std::unique_ptr<NcWords> words_;
+  std::string source_;
+  std::vector<std::string> skipped_, notes_;
+  std::size_t more_skipped_ = 0;
+
+  Joints at_{};  // program coordinates, mm and degrees
+  Modes modes_;
+  int motion_ = -1;  // the code times ten; −1: none
+  NcFrame frame_;
+  Cycle cycle_;
+  std::optional<Vec2> spline_end_;  // of a G5: from its end to its second control point
+  int tool_ = 0, next_tool_ = 0, length_number_ = 0;
+  std::optional<Vec3> length_;  // of the tool at hand, as the first dynamic offset gave it
+  bool length_used_ = false, length_off_ = false, home_noted_ = false;
+  std::vector<Saved> saved_;
+  bool started_ = false, percent_ = false, ended_ = false;
+};
+
+}  // namespace riffler

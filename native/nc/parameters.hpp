@@ -1,0 +1,77 @@
+// Parameters of NC code: #1 … #5601, #<local>, #<_global>, and those that the control itself sets.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "nc/source.hpp"
+
+namespace riffler {
+
+/// The parameters that follow from the control's state: read only.
+class NcPredefined {
+ public:
+  virtual ~NcPredefined() = default;
+  virtual std::optional<double> predefined(int number) const = 0;
+  virtual std::optional<double> predefined(std::string_view name) const = 0;
+};
+
+class NcParameters {
+ public:
+  static constexpr int kLast = 5601;     ///< LinuxCNC's
+  static constexpr int kArguments = 30;  ///< #1 … #30 belong to the subroutine
+
+  explicit NcParameters(const NcPredefined& predefined) : predefined_(predefined) { frames_.emplace_back(); }
+
+  /// FormatError (by `place`) unless `number` is whole and in range.
+  int index(double number, const NcPlace& place) const;
+  double get(int number) const;
+  /// FormatError for a name that nothing was assigned to.
+  double get(const std::string& name, const NcPlace& place) const;
+  bool exists(const std::string& name) const;
+
+  /// Assignments take effect together, after the whole block was read. FormatError for what is read only.
+  void assign(int number, double value, const NcPlace& place);
+  void assign(const std::string& name, double value, const NcPlace& place);
+  void apply();
+  /// Drops what a block has assigned so far.
+  void drop() { pending_.clear(); }
+
+  /// What was assigned to a number, or loaded, wherever the control's own value would come first.
+  double stored(int number) const { return numbered_[static_cast<std::size_t>(number)]; }
+  /// At once, and where the program may not.
+  void set(int number, double value) { numbered_[static_cast<std::size_t>(number)] = value; }
+
+  /// Into a subroutine: its #1 … #30 are `arguments`, then 0; its local names are its own.
+  void enter(const std::vector<double>& arguments);
+  /// Out of it, with its value.
+  void leave(std::optional<double> value);
+  std::size_t depth() const { return frames_.size() - 1; }
+
+  /// LinuxCNC's file of parameters: a number and a value on each line. FormatError.
+  void load(const std::filesystem::path& path);
+
+ private:
+  struct Frame {
+    std::array<double, kArguments> outer{};  // what #1 … #30 were outside
+    std::map<std::string, double, std::less<>> names;
+  };
+  using Key = std::variant<int, std::string>;
+
+  const NcPredefined& predefined_;
+  std::vector<double> numbered_ = std::vector<double>(kLast + 1);
+  std::map<std::string, double, std::less<>> globals_;
+  std::vector<Frame> frames_;
+  std::vector<std::pair<Key, double>> pending_;
+  double value_ = 0;
+  bool value_returned_ = false;
+};
+
+}  // namespace riffler

@@ -1,0 +1,61 @@
+// Text of NC code, line by line, from memory or from a file that is larger than memory; control flow jumps within it.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace riffler {
+
+/// Where the reader is, for messages.
+struct NcPlace {
+  std::string file;       ///< base name
+  int line = 0;           ///< 1-based
+  std::string_view text;  ///< of the block
+
+  /// Throws FormatError with file, line, `what` and the block's text (its first 80 characters).
+  [[noreturn]] void fail(const std::string& what) const;
+};
+
+class NcSource {
+ public:
+  /// A line to which go() returns.
+  struct Mark {
+    std::uint64_t offset = 0;
+    int line = 0;  ///< of the line before it
+  };
+
+  /// Keeps `text`, which must outlive it.
+  NcSource(std::string_view text, std::string name) : name_(std::move(name)), window_(text) {}
+  /// Reads the file in windows of `window` bytes, which no line may exceed. FormatError where it cannot be opened.
+  explicit NcSource(const std::filesystem::path& path, std::size_t window = 1 << 18);
+
+  /// The next line without its end (LF or CR LF), valid until the next call; false at the end.
+  bool next(std::string_view& line);
+  /// 1-based, of the line that next() gave last.
+  int line() const { return line_; }
+  Mark mark() const { return {base_ + at_, line_}; }
+  void go(const Mark& mark);
+
+  const std::string& name() const { return name_; }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  bool more();
+
+  std::string name_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::vector<char> buffer_;
+  std::string_view window_;
+  std::uint64_t base_ = 0;  // of the window in the text
+  std::size_t at_ = 0;      // in the window
+  int line_ = 0;
+};
+
+}  // namespace riffler

@@ -1,0 +1,109 @@
+#include "nc/apt_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "support/nc_reading.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler {
+namespace {
+
+Program read(const std::string& text, Options options = {}) {
+  return parse_apt(text, "p.apt", {"apt", std::move(options)});
+}
+
+TEST(AptReader, ReadsMovesToolsFeedsAndSpeeds) {
+  const Program p = read(
+      "PARTNO/A PART, WITH $ AND /\r\nPPRINT hello $\r\n$$ a comment\r\nUNITS / MM\nMULTAX/ON\n"
+      "CUTTER/ 10.0, 5.0, 0.0, 5.0, 0, 0, 60\nLOADTL/3,ADJUST,1\nSPINDL/ 8000,RPM,CLW\nCOOLNT/ON\nRAPID\n"
+      "GOTO/ 1.0,2.0, $ comes\n  30.0, 0.0,0.0,1.0\n"
+      "FEDRAT/ 500.0,MMPM\ngoto / 1,2,3 $$ the tool's axis stays\nGOTO/4,5,6,0.6,0,.8\nGODLTA/0,0,-1\nGODLTA/10\n"
+      "LOADTL/4\nCUTTER/8,1,3,1,0,0,40\nSPINDL/OFF\nRAPID\nFEDRAT/MMPM,250\nGOTO/0,0,50,0,0,1\nGOTO/"
+      "0,0,0\nEND\nFINI\nGARBAGE");
+  ASSERT_EQ(p.size(), 7U);
+  EXPECT_EQ(p.poses()[0].tip, Vec3(1, 2, 30));
+  EXPECT_EQ(p.poses()[1].tip, Vec3(1, 2, 3));
+  EXPECT_EQ(p.poses()[2].tip, Vec3(4, 5, 6));
+  EXPECT_LT(glm::length(p.poses()[2].axis - Vec3(0.6, 0, 0.8)), 1e-15);
+  EXPECT_EQ(p.poses()[3].tip, Vec3(4, 5, 5));
+  EXPECT_LT(glm::length(p.poses()[4].tip - Vec3(10, 5, 13)), 1e-14) << "one number goes along the axis";
+  EXPECT_EQ(p.rapid(), (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(p.feed(), (std::vector<double>{0, 500, 500, 500, 500, 0, 250}));
+  EXPECT_EQ(p.tool(), (std::vector<std::int32_t>{3, 3, 3, 3, 3, 4, 4}));
+  EXPECT_EQ(p.spindle(), (std::vector<double>{8000, 8000, 8000, 8000, 8000, 0, 0}));
+  EXPECT_EQ(p.line(), (std::vector<std::int32_t>{11, 14, 15, 16, 17, 23, 24}));
+  EXPECT_EQ(p.tools.at(3).parameters(), cutters::ball(10, 60).parameters());
+  EXPECT_EQ(p.tools.at(4).parameters(), cutters::fillet(8, 1, 40).parameters());
+}
+
+TEST(AptReader, ConvertsInches) {
+  const Program p =
+      read("UNITS/INCHES\nCUTTER/1,0,.5,0,0,0,2\nFEDRAT/10\nFROM/1,2,3\nGOTO/2,2,3\nFEDRAT/100,MMPM\nGOTO/0,0,0");
+  EXPECT_EQ(p.poses()[0].tip, 25.4 * Vec3(1, 2, 3));
+  EXPECT_EQ(p.feed(), (std::vector<double>{0, 254, 100}));
+  EXPECT_EQ(p.tools.at(1).parameters(), cutters::flat(25.4, 50.8).parameters());
+  EXPECT_EQ(p.tool(), (std::vector<std::int32_t>{1, 1, 1})) << "a file that loads no tools";
+}
+
+TEST(AptReader, CirclesGoCounterClockwiseAboutTheirAxis) {
+  const Program p =
+      read("FEDRAT/100\nGOTO/10,0,1\nCIRCLE/0,0,1,0,0,1,10\nGOTO/0,10,3\nCIRCLE/0,0,3,0,0,-1,10\nGOTO/10,0,3");
+  double way = 0;
+  for (std::size_t k = 1; k < p.size(); ++k) {
+    const Vec3 &a = p.poses()[k - 1].tip, &b = p.poses()[k].tip;
+    way += glm::length(b - a);
+    EXPECT_NEAR(std::hypot(b.x, b.y), 10, 1e-12);
+    EXPECT_GE(std::hypot(a.x + b.x, a.y + b.y) / 2, 10 - 0.002);
+    EXPECT_GT(b.x + b.y, 9.99) << "both quarters lie in the first quadrant";
+  }
+  EXPECT_NEAR(way, std::hypot(5 * std::numbers::pi, 2) + 5 * std::numbers::pi, 0.01);
+  EXPECT_EQ(p.poses().back().tip, Vec3(10, 0, 3));
+}
+
+TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"GOTO/1,2", "GOTO takes 3 to 6 numbers, not 2 [GOTO/1,2]"},
+      {"GOTO/1,2,3,4", "GOTO takes 3 or 6 numbers [GOTO/1,2,3,4]"},
+      {"GOTO/1,2,X", "GOTO: expected a number, not 'X' [GOTO/1,2,X]"},
+      {"GOTO/1,2,nan", "GOTO: expected a number, not 'NAN' [GOTO/1,2,nan]"},
+      {"GOTO/1,2,3,0,0,2", "a direction that is not a unit vector [GOTO/1,2,3,0,0,2]"},
+      {"GOTO/1,2,1e300", "a coordinate is out of range [GOTO/1,2,1e300]"},
+      {"GOTO/0,0,0\nGOTO/1,0,0", "a feed move without FEDRAT [GOTO/1,0,0]"},
+      {"FEDRAT/0", "FEDRAT is out of range [FEDRAT/0]"},
+      {"FEDRAT/5,PARSEC", "FEDRAT: unknown word PARSEC [FEDRAT/5,PARSEC]"},
+      {"SPINDL/5,SFM", "SPINDL: unknown word SFM [SPINDL/5,SFM]"},
+      {"UNITS/FEET", "UNITS: expected MM or INCHES, not FEET [UNITS/FEET]"},
+      {"CYCLE/DRILL,5", "cycles (CYCLE) are not read: have the CAM system write their moves [CYCLE/DRILL,5]"},
+      {"CUTCOM/LEFT",
+       "cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre [CUTCOM/LEFT]"},
+      {"LOADTL/1.5", "LOADTL needs the tool's number [LOADTL/1.5]"},
+      {"THREAD/1", "unknown statement THREAD: correct it, or read with options {'unknown': 'skip'} [THREAD/1]"},
+      {"FEDRAT/1\nGOTO/0,0,0\nCIRCLE/5,0,0,0,0,1,4\nGOTO/10,0,0",
+       "the circle's radius is not the distance of its start [GOTO/10,0,0]"},
+      {"CIRCLE/5,0,0,0,0,1,4", "CIRCLE without the GOTO of its end"},
+      {"GOTO/1,2,$", "the file ends within a statement that $ continues [GOTO/1,2,$]"},
+      {"GOTO/1,2,\xC3", "a character outside ASCII, or none that is printed [GOTO/1,2,?]"},
+      {"LOADTL/1\nCUTTER/10,0,5,0,0,0,50\nGOTO/0,0,0\nCUTTER/8,0,4,0,0,0,50\nRAPID\nGOTO/0,0,0",
+       "tool 1 has two shapes [GOTO/0,0,0]"},
+  };
+  for (const auto& [text, what] : cases) {
+    std::string error = "no error";
+    int line = 2;
+    for (const char* c = text; *c; ++c) line += *c == '\n';
+    try {
+      read(std::string("$$\n") + text);
+    } catch (const FormatError& e) {
+      error = e.what();
+    }
+    EXPECT_EQ(error, "p.apt, line " + std::to_string(line) + ": " + what);
+  }
+  const Program p = read("THREAD/1\nGOTO/0,0,0\nINSERT M100", {{"unknown", std::string("skip")}});
+  EXPECT_EQ(p.provenance[1].second, "line 1: THREAD; line 3: INSERT M100");
+}
+
+}  // namespace
+}  // namespace riffler

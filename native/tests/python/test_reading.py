@@ -1,0 +1,100 @@
+"""Reading NC code and APT files from Python: streams, options, what is recorded."""
+
+import itertools
+import threading
+
+import numpy as np
+import pytest
+import riffler
+
+LINES = 20_000
+
+
+@pytest.fixture
+def part(tmp_path):
+    file = tmp_path / "part.ngc"
+    t = np.arange(LINES) * 1e-2
+    lines = [f"G1 X{x:.4f} Y{y:.4f} Z-1" for x, y in zip(t, np.sin(t), strict=True)]
+    file.write_text("\n".join(["G21 G90", "F500", *lines, "M2"]) + "\n")
+    return file
+
+
+def test_a_stream_gives_what_reading_gives(part):
+    whole = riffler.Program.read(part)
+    chunks = list(riffler.Program.stream(part, machine="tcp", rows=1000))
+    assert all(len(chunk) <= 1000 for chunk in chunks)
+    for before, after in itertools.pairwise(chunks):
+        np.testing.assert_array_equal(before.poses[-1], after.poses[0])
+    for column in ("poses", "feed", "rapid", "tool", "line", "spindle"):
+        parts = [getattr(chunk, column)[k > 0 :] for k, chunk in enumerate(chunks)]
+        np.testing.assert_array_equal(np.concatenate(parts), getattr(whole, column))
+    assert all(chunk.provenance == {"source": "part.ngc"} for chunk in chunks)
+
+
+def test_a_stream_says_what_is_wrong_when_it_gets_there(part):
+    part.write_text(part.read_text().replace("M2", "G1 X"))
+    stream = riffler.Program.stream(part, rows=LINES)
+    assert len(next(stream)) == LINES
+    wrong = rf"^part\.ngc, line {LINES + 3}: expected a number after X \[G1 X\]$"
+    with pytest.raises(riffler.FormatError, match=wrong):
+        next(stream)
+    with pytest.raises(riffler.FormatError, match="none"):
+        riffler.Program.stream(part.with_name("none.ngc"))
+    with pytest.raises(ValueError, match="rows"):
+        riffler.Program.stream(part, rows=1)
+    with pytest.raises(ValueError, match="unknown option 'rows'"):
+        riffler.Program.stream(part, options={"rows": 5})
+
+
+def test_streams_run_beside_each_other(part):
+    sums = []
+
+    def read():
+        sums.append(sum(len(chunk) - 1 for chunk in riffler.Program.stream(part, rows=500)))
+
+    threads = [threading.Thread(target=read) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sums == [LINES - 1] * 4
+
+
+def test_an_apt_file_is_a_program_like_any_other(tmp_path):
+    file = tmp_path / "part.apt"
+    file.write_text(
+        "PARTNO PART\nUNITS/MM\nMULTAX/ON\nCUTTER/6,3,0,3,0,0,30\nLOADTL/2\nSPINDL/9000,RPM,CLW\nRAPID\n"
+        "GOTO/0,0,30,0,0,1\nFEDRAT/600,MMPM\nGOTO/0,0,0,0,0,1\nGOTO/50,0,-1,0.6,0,0.8\nFINI\n"
+    )
+    program = riffler.Program.read(file, machine="apt")
+    np.testing.assert_allclose(program.poses[-1], [50, 0, -1, 0.6, 0, 0.8], atol=1e-15)
+    assert program.tools == {2: riffler.Tool.ball(6, 30)} and set(program.tool) == {2}
+    assert program.feed.tolist() == [0, 600, 600] and program.line.tolist() == [8, 10, 11]
+    (chunk,) = riffler.Program.stream(file, machine="apt")
+    assert chunk.tools == program.tools and len(chunk) == 3
+
+
+def test_what_was_skipped_is_in_the_provenance(tmp_path):
+    file = tmp_path / "p.ngc"
+    file.write_text("G0 X1\nG187 P1\nG0 X2 U5\nG28\n")
+    with pytest.raises(riffler.FormatError, match=r"line 2: unknown code G187: .*'unknown': 'skip'"):
+        riffler.Program.read(file)
+    program = riffler.Program.read(file, options={"unknown": "skip"})
+    assert program.provenance["skipped"] == "line 2: G187; line 3: U"
+    assert program.provenance["notes"].startswith("line 4: G28, G30 and G53 go to positions of the machine")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"unknown": "ask"}, "option unknown must be one of error, skip"),
+        ({"block_delete": 1.0}, "option block_delete must be true or false"),
+        ({"subroutines": 5.0}, "option subroutines must be a path"),
+        ({"max_turns": -1.0}, "option max_turns must be a positive"),
+    ],
+)
+def test_options_are_checked(tmp_path, options, message):
+    file = tmp_path / "p.ngc"
+    file.write_text("G0 X1\n")
+    with pytest.raises(ValueError, match=message):
+        riffler.Program.read(file, options=options)
