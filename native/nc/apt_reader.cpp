@@ -12,13 +12,13 @@
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/post.hpp"
+#include "nc/units.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
 
 namespace {
 
-constexpr double kInch = 25.4;
 constexpr std::size_t kMaxListed = 20;
 
 constexpr std::string_view kPassedOver[] = {

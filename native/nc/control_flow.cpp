@@ -17,83 +17,9 @@ namespace {
 /// As on LinuxCNC.
 constexpr std::size_t kDeepestCall = 10;
 
-constexpr std::pair<std::string_view, NcKeyword> kKeywords[] = {
-    {"", NcKeyword::None},
-    {"SUB", NcKeyword::Sub},
-    {"ENDSUB", NcKeyword::EndSub},
-    {"CALL", NcKeyword::Call},
-    {"RETURN", NcKeyword::Return},
-    {"IF", NcKeyword::If},
-    {"ELSEIF", NcKeyword::ElseIf},
-    {"ELSE", NcKeyword::Else},
-    {"ENDIF", NcKeyword::EndIf},
-    {"WHILE", NcKeyword::While},
-    {"ENDWHILE", NcKeyword::EndWhile},
-    {"DO", NcKeyword::Do},
-    {"REPEAT", NcKeyword::Repeat},
-    {"ENDREPEAT", NcKeyword::EndRepeat},
-    {"BREAK", NcKeyword::Break},
-    {"CONTINUE", NcKeyword::Continue},
-};
-
-std::optional<NcKeyword> keyword_of(std::string_view text) {
-  for (const auto& [name, keyword] : kKeywords)
-    if (name == text) return keyword;
-  return std::nullopt;
-}
-
 /// O100 and O<name>.
 std::string show(const std::string& label) {
   return NcCursor::is_digit(label[0]) ? "O" + label : "O<" + label + ">";
-}
-
-struct OLine {
-  std::string label;
-  NcKeyword keyword;
-  std::string_view rest;
-};
-
-/// A line that begins with an O-word whose label is written out, as it is seen while lines are passed over: nothing
-/// else in them is judged.
-std::optional<OLine> o_line(std::string_view line) {
-  std::size_t at = 0;
-  const auto blanks = [&] {
-    while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
-  };
-  const auto digits = [&] {
-    blanks();
-    const std::size_t begin = at;
-    while (at < line.size() && NcCursor::is_digit(line[at])) ++at;
-    return line.substr(begin, at - begin);
-  };
-  const auto take = [&](char c) {
-    blanks();
-    if (at == line.size() || NcCursor::upper(line[at]) != c) return false;
-    ++at;
-    return true;
-  };
-  take('/');
-  if (take('N')) digits();
-  if (!take('O')) return std::nullopt;
-  OLine out;
-  if (take('<')) {
-    for (; at < line.size() && line[at] != '>'; ++at)
-      if (line[at] != ' ' && line[at] != '\t') out.label += NcCursor::lower(line[at]);
-    if (at == line.size() || out.label.empty()) return std::nullopt;
-    ++at;
-  } else {
-    std::string_view number = digits();
-    if (number.empty()) return std::nullopt;
-    number.remove_prefix(std::min(number.find_first_not_of('0'), number.size() - 1));
-    out.label = number;
-  }
-  blanks();
-  std::string word;
-  for (; at < line.size() && NcCursor::is_letter(line[at]); ++at) word += NcCursor::upper(line[at]);
-  const std::optional<NcKeyword> keyword = keyword_of(word);
-  if (!keyword) return std::nullopt;
-  out.keyword = *keyword, out.rest = line.substr(at);
-  return out;
 }
 
 }  // namespace
@@ -127,7 +53,7 @@ int NcControlFlow::program_line() const {
 }
 
 bool NcControlFlow::begins_subroutine(std::string_view line) {
-  const std::optional<OLine> o = o_line(line);
+  const std::optional<NcOLine> o = nc_o_line(line);
   return o && (o->keyword == NcKeyword::Sub || o->keyword == NcKeyword::None);
 }
 
@@ -160,7 +86,7 @@ bool NcControlFlow::execute(NcCursor& cursor) {
     place_.fail("expected a number or <name> after O");
   }
   const std::string word = cursor.letters();
-  const std::optional<NcKeyword> keyword = keyword_of(word);
+  const std::optional<NcKeyword> keyword = nc_keyword(word);
   if (!keyword) place_.fail("unknown word after " + show(label) + ": " + word);
   used_ = used_ || *keyword != NcKeyword::None;
   switch (*keyword) {
@@ -217,7 +143,7 @@ void NcControlFlow::index(File& file) {
   file.source->go({});
   std::string_view line;
   while (file.source->next(line)) {
-    const std::optional<OLine> o = o_line(line);
+    const std::optional<NcOLine> o = nc_o_line(line);
     if (!o) continue;
     if (o->keyword == NcKeyword::Sub) file.subs.emplace(o->label, file.source->mark());
     if (o->keyword == NcKeyword::None) file.subprograms.emplace(o->label, file.source->mark());
@@ -304,7 +230,7 @@ std::pair<NcKeyword, std::string_view> NcControlFlow::skip(const std::string& la
   std::string_view line;
   const bool to_end = *keywords.begin() == NcKeyword::EndSub;
   while (advance(line)) {
-    const std::optional<OLine> o = o_line(line);
+    const std::optional<NcOLine> o = nc_o_line(line);
     if (!o) continue;
     if (o->label == label && std::find(keywords.begin(), keywords.end(), o->keyword) != keywords.end())
       return {o->keyword, o->rest};

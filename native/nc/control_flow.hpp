@@ -10,29 +10,11 @@
 #include <vector>
 
 #include "nc/cursor.hpp"
+#include "nc/o_word.hpp"
 #include "nc/parameters.hpp"
 #include "nc/source.hpp"
 
 namespace riffler {
-
-enum class NcKeyword : std::uint8_t {
-  None,
-  Sub,
-  EndSub,
-  Call,
-  Return,
-  If,
-  ElseIf,
-  Else,
-  EndIf,
-  While,
-  EndWhile,
-  Do,
-  Repeat,
-  EndRepeat,
-  Break,
-  Continue
-};
 
 class NcControlFlow {
  public:

@@ -6,19 +6,9 @@
 #include "nc/interpreter.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
+#include "nc/units.hpp"
 
 namespace riffler {
-
-namespace {
-
-constexpr double kInch = 25.4;
-
-std::string show(char letter, int tenths) {
-  std::string text = letter + std::to_string(tenths / 10);
-  return tenths % 10 ? text + "." + std::to_string(tenths % 10) : text;
-}
-
-}  // namespace
 
 void NcInterpreter::units_and_feed_mode() {
   if (const int code = words_->code(NcGroup::Units); code >= 0) modes_.unit = code == 200 ? kInch : 1;
@@ -76,7 +66,7 @@ void NcInterpreter::spindle() {
 void NcInterpreter::signals() {
   const int code = words_->code(NcGroup::Signal);
   const auto need = [&](char letter) {
-    if (!words_->has(letter)) place_.fail(show('M', code) + " needs " + letter);
+    if (!words_->has(letter)) place_.fail(nc_code_name('M', code) + " needs " + letter);
   };
   if (code >= 620 && code <= 650) need('P');
   if (code == 660 && words_->has('P') == words_->has('E')) place_.fail("M66 needs P or E");
@@ -85,7 +75,7 @@ void NcInterpreter::signals() {
   if (words_->code(NcGroup::Override) >= 0) words_->pass_over("P");
   if (words_->code(NcGroup::User) >= 0) {
     words_->pass_over("PQ");
-    note(show('M', words_->code(NcGroup::User)) + " is the user's own: taken to move nothing");
+    note(nc_code_name('M', words_->code(NcGroup::User)) + " is the user's own: taken to move nothing");
   }
 }
 
@@ -155,7 +145,7 @@ void NcInterpreter::kinematics() {
   OptionReader taken(options, "machine " + machine_);
   std::unique_ptr<Machine> other = make_machine(machine_, taken);
   if (other->joint_words() == tip_words)
-    place_.fail(show('M', code) + " switches kinematics that machine " + machine_ +
+    place_.fail(nc_code_name('M', code) + " switches kinematics that machine " + machine_ +
                 " does not have: read with the machine that the program is for");
   at_ = rows_->change_machine(std::move(other), at_);
 }
@@ -184,7 +174,7 @@ void NcInterpreter::modes() {
       place_.fail("planes of the axes U V W (G17.1, G18.1, G19.1) are not read");
   }
   if (const int code = words_->code(NcGroup::CutterCompensation); code > 400)
-    place_.fail("cutter radius compensation (" + show('G', code) +
+    place_.fail("cutter radius compensation (" + nc_code_name('G', code) +
                 ") is not read: have the CAM system write the path of the tool's centre");
   if (words_->code(NcGroup::LatheRadius) == 70) place_.fail("G7 (diameters) is for lathes: write radii (G8)");
 }

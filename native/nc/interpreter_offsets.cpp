@@ -10,7 +10,6 @@ namespace riffler {
 
 namespace {
 
-constexpr std::string_view kLetters = "XYZABC";
 // LinuxCNC's numbers: G92 in 5210 … 5216, the system in use in 5220, system n in 5201 + 20 n … 5210 + 20 n.
 constexpr int kShifted = 5210, kShift = 5211, kSystem = 5220, kHome = 5161, kSecondHome = 5181;
 
@@ -55,7 +54,7 @@ void NcInterpreter::select_system(int code) {
 }
 
 double NcInterpreter::length_or_angle(std::size_t joint) {
-  return words_->value(kLetters[joint], joint < 3 ? kMaxLength : kMaxAngle) * (joint < 3 ? modes_.unit : 1);
+  return words_->value(kJointLetters[joint], joint < 3 ? kMaxLength : kMaxAngle) * (joint < 3 ? modes_.unit : 1);
 }
 
 void NcInterpreter::non_modal() {
@@ -121,7 +120,7 @@ void NcInterpreter::set_system(int number, bool by_position) {
   const Joints machine = frame_.to_machine(at_);
   Joints wanted = frame.to_program(machine);
   for (std::size_t k = 0; k < 6; ++k) {
-    if (!words_->has(kLetters[k])) continue;
+    if (!words_->has(kJointLetters[k])) continue;
     const double word = length_or_angle(k);
     if (by_position)
       wanted[k] = word;
@@ -145,7 +144,7 @@ void NcInterpreter::shift_by_words(bool local) {
   if (!words_->has_axes()) place_.fail(local ? "G52 without axis words" : "G92 without axis words");
   NcFrame frame = frame_;
   for (std::size_t k = 0; k < 6; ++k)
-    if (words_->has(kLetters[k]))
+    if (words_->has(kJointLetters[k]))
       frame.shift[k] = local ? length_or_angle(k) : at_[k] + frame.shift[k] - length_or_angle(k);
   for (std::size_t k = 0; k < 6; ++k) {
     if (!(std::abs(frame.shift[k]) <= kMaxAngle)) place_.fail("offsets are out of range");
@@ -164,8 +163,8 @@ void NcInterpreter::go_home(int first_parameter) {
     machine = frame_.to_machine(at_);
   }
   for (std::size_t k = 0; k < 6; ++k) {
-    const bool axis = rows_->machine().axes().find(kLetters[k]) != std::string_view::npos;
-    if (axis && (!some || words_->has(kLetters[k])))
+    const bool axis = rows_->machine().axes().find(kJointLetters[k]) != std::string_view::npos;
+    if (axis && (!some || words_->has(kJointLetters[k])))
       machine[k] = parameters_.stored(first_parameter + static_cast<int>(k));
   }
   if (!home_noted_)

@@ -61,16 +61,14 @@ constexpr CodeTable m_codes() {
 
 constexpr CodeTable kG = g_codes(), kM = m_codes();
 
-/// "G43.4" for 'G' and 434.
-std::string show(char letter, int tenths) {
-  char text[32];
-  std::snprintf(text, sizeof text, tenths % 10 ? "%c%d.%d" : "%c%d", letter, tenths / 10, tenths % 10);
-  return text;
-}
-
 constexpr const char* kAdvice = ": correct it, or read with options {'unknown': 'skip'}";
 
 }  // namespace
+
+std::string nc_code_name(char letter, int tenths) {
+  const std::string text = letter + std::to_string(tenths / 10);
+  return tenths % 10 ? text + '.' + std::to_string(tenths % 10) : text;
+}
 
 void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
   constexpr std::uint32_t kKnown = [] {
@@ -126,11 +124,11 @@ void NcWords::add_code(char letter, double value) {
   }
   std::int16_t& slot = codes_[static_cast<std::size_t>(group)];
   const int number = static_cast<int>(tenths);
-  if (slot == number) place_.fail(show(letter, number) + " twice in one block");
+  if (slot == number) place_.fail(nc_code_name(letter, number) + " twice in one block");
   if (slot >= 0)
     place_.fail((static_cast<NcGroup>(group) == NcGroup::Motion ? "two motions in one block: "
                                                                 : "codes that contradict each other: ") +
-                show(letter, slot) + " and " + show(letter, number));
+                nc_code_name(letter, slot) + " and " + nc_code_name(letter, number));
   slot = static_cast<std::int16_t>(number);
   groups_ |= 1U << group;
 }

@@ -43,6 +43,9 @@ enum class NcGroup : std::uint8_t {
   User,
 };
 
+/// "G43.4" for 'G' and 434.
+std::string nc_code_name(char letter, int tenths);
+
 class NcWords {
  public:
   /// `axes`: the letters of the machine's axes. Errors are raised by `place`. Unknown words are skipped where `skip` is
