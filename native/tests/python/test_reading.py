@@ -98,3 +98,18 @@ def test_options_are_checked(tmp_path, options, message):
     file.write_text("G0 X1\n")
     with pytest.raises(ValueError, match=message):
         riffler.Program.read(file, options=options)
+
+
+def test_apt_files_that_riffler_writes_read_back(tmp_path):
+    t = np.linspace(0, 1, 20)
+    axes = np.column_stack([np.sin(t), 0.2 * np.cos(t), np.ones(20)])
+    path = np.column_stack([50 * t, 10 * t**2, -t, axes / np.linalg.norm(axes, axis=1)[:, None]])
+    tools = [riffler.Tool.fillet(8, 1, 40), riffler.Tool.flat(6, 30)]
+    program = riffler.Program.from_cl([path, path[::-1]], tools=tools, feed=[300, 250.5], spindle=[5000, -900])
+    program.write(tmp_path / "p.apt", post="apt")
+    back = riffler.Program.read(tmp_path / "p.apt", machine="apt")
+    np.testing.assert_allclose(back.poses, program.poses, atol=1e-5)
+    for column in ("feed", "rapid", "tool", "spindle"):
+        np.testing.assert_array_equal(getattr(back, column), getattr(program, column))
+    assert {number: tool.to_dict()["kind"] for number, tool in back.tools.items()} == {1: "fillet", 2: "flat"}
+    assert "skipped" not in back.provenance
