@@ -63,7 +63,8 @@ Machine::Machine(MachineDescription description) : description_(std::move(descri
     AxisRange& range = description_.ranges[k];
     // What is within a limit must also be within it when it is printed.
     const double scale = std::pow(10.0, k >= 3 ? kAngleDecimals : kLengthDecimals);
-    range.low = std::ceil(range.low * scale - 1e-3) / scale, range.high = std::floor(range.high * scale + 1e-3) / scale;
+    range.low = std::ceil(range.low * scale - 1e-3) / scale + 0.0;  // no -0
+    range.high = std::floor(range.high * scale + 1e-3) / scale + 0.0;
     if (!(range.low < range.high)) refuse(std::string("the limits of ") + kJointLetters[k] + " must grow");
     if (!(range.rate > 0)) refuse(std::string("the rate of ") + kJointLetters[k] + " must be positive");
     const bool there = letters_.find(kJointLetters[k]) != letters_.npos;

@@ -167,6 +167,9 @@ class Chooser {
     Stands stands;
     for (int b = 0; b < machine_.branches(); ++b) {
       Stand before;
+      // An axis that is free throughout stands within its limits, not at 0.
+      for (const std::size_t k : rotary_)
+        before.joints[k] = std::clamp(0.0, machine_.range(k).low, machine_.range(k).high);
       if (away != program_.poses().end())
         before.joints = joints_of(static_cast<std::size_t>(away - program_.poses().begin()), *away, b, {});
       Stands here;

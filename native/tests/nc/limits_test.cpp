@@ -1,6 +1,8 @@
 // Limits of rotary axes: which turns and branches are left, and where the tool must leave to turn an axis back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -151,6 +153,60 @@ TEST(Limits, BesideThePoleTheToolLeavesToChangeTheBranch) {
   EXPECT_EQ(rewinds(way), 1);
 }
 
+/// Of all ways over the places (A, C + 360° m) and (−A, C + 180° + 360° m) of every row that leave at rows only: the
+/// least number of leavings; −1 where there is no such way. No move passes the pole.
+int least_leavings(const std::vector<double>& tilt, const std::vector<double>& around, double a_low, double a_high,
+                   double c_low, double c_high) {
+  constexpr int kNone = 1000, kTurns = 6;
+  using Places = std::array<int, 2 * (2 * kTurns + 1)>;  // by branch and turn
+  const auto open = [&](std::size_t row, std::size_t place) {
+    const bool first = place % 2 == 0;
+    const double a = first ? tilt[row] : -tilt[row];
+    const double c = around[row] + 90 + (first ? 0 : 180) + 360 * (static_cast<int>(place / 2) - kTurns);
+    return a >= a_low && a <= a_high && c >= c_low && c <= c_high;
+  };
+  Places now;
+  for (std::size_t p = 0; p < now.size(); ++p) now[p] = open(0, p) ? 0 : kNone;
+  for (std::size_t row = 1; row < tilt.size(); ++row) {
+    const int least = *std::min_element(now.begin(), now.end());
+    for (std::size_t p = 0; p < now.size(); ++p) {
+      if (open(row - 1, p)) now[p] = std::min(now[p], least + 1);
+      if (!open(row, p)) now[p] = kNone;
+    }
+  }
+  const int least = *std::min_element(now.begin(), now.end());
+  return least < kNone ? least : -1;
+}
+
+TEST(Limits, MakeTheToolLeaveAsSeldomAsTheBestOfAllWays) {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<double> unit;
+  int counts[4]{};
+  for (int n = 0; n < 400; ++n) {
+    std::vector<double> tilt, around;
+    CutterPath path{{}, {600}, 8000, 1};
+    double up = 20 + 30 * unit(random), at = -180 + 360 * unit(random), drift = 120 * (unit(random) - 0.5);
+    for (int k = 0; k < 40; ++k) {
+      if (unit(random) < 0.1) drift = 120 * (unit(random) - 0.5);
+      tilt.push_back(up), around.push_back(at);
+      path.poses.push_back({{1.0 * k, 0, 0}, tilted(up, at)});
+      up = std::clamp(up + 10 * (unit(random) - 0.5), 15.0, 60.0), at += drift;
+    }
+    const double a_low = unit(random) < 0.5 ? 0 : -90, c_low = -600 * unit(random);
+    const double c_high = c_low + 370 + 800 * unit(random);
+    const Program p = program_from_paths(std::vector{path}, {});
+    const auto machine = tcp(limits(a_low, 90, c_low, c_high));
+    // Rows of program_from_paths before and after the path stand above it.
+    const int least = least_leavings(tilt, around, a_low, 90, c_low, c_high);
+    if (least < 0) continue;
+    const auto way = choose_joints(p, *machine, kAxisTolerance);
+    check(p, *machine, way);
+    EXPECT_EQ(rewinds(way), least) << n;
+    ++counts[std::min(least, 3)];
+  }
+  for (const int count : counts) EXPECT_GT(count, 10);
+}
+
 TEST(Limits, AnyProgramIsHeldWithinThemOrRefusedByRow) {
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
@@ -176,6 +232,14 @@ TEST(Limits, AnyProgramIsHeldWithinThemOrRefusedByRow) {
     }
   }
   EXPECT_GT(held, 100);
+}
+
+TEST(Limits, AreKeptByAnAxisThatIsFreeThroughout) {
+  CutterPath path{{}, {600}, 8000, 1};
+  for (int k = 0; k < 5; ++k) path.poses.push_back({{1.0 * k, 0, 0}, {0, 0, 1}});
+  const Program p = program_from_paths(std::vector{path}, {});
+  const auto machine = tcp(limits(-5, 90, 10, 350));
+  for (const Waypoint& w : choose_joints(p, *machine, kAxisTolerance)) EXPECT_EQ(w.joints[5], 10);
 }
 
 TEST(Limits, LeaveAsSeldomAsAllTurnsOfAWideRangeAllow) {
