@@ -301,6 +301,25 @@ TEST(Subdivider, ChangesTheBranchOnlyWhereTheMovePassesThePole) {
   }
 }
 
+TEST(Subdivider, DoesNotTakeWholeTurnsForRest) {
+  // Twenty turns with the tip held look like rest at every tenth of them.
+  OptionReader none({}, "machine linuxcnc-xyzac");
+  const auto machine = make_machine("linuxcnc-xyzac", none);
+  const Pose pose{{30, 0, 5}, tilted(20, 40)};
+  const Joints from = machine->joints(pose, 0, {}, 1e-6);
+  Joints to = from;
+  to[5] += 7200;
+  Subdivider splitter(*machine, 0.01, kAxisTolerance);
+  Joints before = from;
+  double worst = 0;
+  for (const Joints& joints : splitter.split(pose, from, pose, machine->with_tip(to, pose.tip), true)) {
+    for (int k = 0; k <= 100; ++k)
+      worst = std::max(worst, glm::length(machine->pose(mix(before, joints, k / 100.0)).tip - pose.tip));
+    before = joints;
+  }
+  EXPECT_LT(worst, 0.01);
+}
+
 TEST(Subdivider, RefusesWhatTheAxesCannotFollowInsteadOfJumping) {
   const auto machine = tcp();
   const Pose a{{0, 0, 0}, tilted(30, 0)}, b{{1, 0, 0}, tilted(30, 60)};
