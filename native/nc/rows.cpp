@@ -13,6 +13,13 @@ bool same_turns(const Joints& a, const Joints& b) {
   return a[3] == b[3] && a[4] == b[4] && a[5] == b[5];
 }
 
+/// What F counts along under G94, by LinuxCNC's rule: X Y Z where one of them moves, otherwise the rotary axes.
+double way_of_words(const Joints& a, const Joints& b) {
+  double linear = 0, rotary = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) (k < 3 ? linear : rotary) += (b[k] - a[k]) * (b[k] - a[k]);
+  return std::sqrt(linear > 1e-12 ? linear : rotary);
+}
+
 }  // namespace
 
 void NcRows::begin(const Joints& from) {
@@ -42,17 +49,21 @@ double NcRows::feed_over(double way, const NcRowWords& words) const {
 }
 
 void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words) {
+  // From where the first move comes nobody knows: it is one row.
+  const bool known = first_.has_value();
   begin(from);
   const Joints to = in_part(end);
   const Pose last = pose(to);
-  const bool splits = machine_->joint_words() || (!words.rapid && axis_tolerance_);
+  const bool splits = known && (machine_->joint_words() || (!words.rapid && axis_tolerance_));
   const int parts = splits ? rotary_parts(to, !words.rapid) : 1;
+  const bool along_words = machine_->joint_words() && !words.inverse_time && !same_turns(at_, to);
   double way = 0;
   if (parts > 1)
     for (int i = 1; i <= parts; ++i) way += glm::length(between(to, i, parts).tip - between(to, i - 1, parts).tip);
-  else if (words.inverse_time)
+  else if (words.inverse_time || along_words)
     way = glm::length(last.tip - last_.tip);
-  const double feed = feed_over(way, words);
+  double feed = feed_over(way, words);
+  if (along_words) feed = std::min(feed * way / way_of_words(at_, to), kMaxFeed);
   for (int i = 1; i < parts; ++i) row(between(to, i, parts), feed, words);
   row(last, feed, words);
   at_ = to, last_ = last;

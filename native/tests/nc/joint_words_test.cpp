@@ -135,6 +135,27 @@ TEST(JointWords, ReadBackAsTheSamePosesAndFeeds) {
       }
 }
 
+TEST(JointWords, UnderUnitsPerMinuteReadBackWithTheFeedOfTheTip) {
+  const Program p = swaying(25);
+  const WriteOptions write = to_xyzac({{"feed", std::string("per-minute")}, {"max_rotary", 1e7}});
+  const std::string text = to_nc(p, write);
+  EXPECT_EQ(text.find("G93"), text.npos);
+  const Program back = parse_nc(text, "p.ngc", {"linuxcnc-xyzac", write.options});
+  double minutes = 0, wanted = 0;
+  for (std::size_t k = 1; k < back.size(); ++k)
+    if (!back.rapid()[k] && back.feed()[k] > 0)
+      minutes += glm::length(back.poses()[k].tip - back.poses()[k - 1].tip) / back.feed()[k];
+  for (std::size_t k = 1; k < p.size(); ++k)
+    if (!p.rapid()[k]) wanted += glm::length(p.poses()[k].tip - p.poses()[k - 1].tip) / p.feed()[k];
+  EXPECT_NEAR(minutes, wanted, 1e-3 * wanted);
+}
+
+TEST(JointWords, ComeFromNowhereInTheirFirstRapid) {
+  const Program p = swaying(5);
+  const Program back = parse_nc(to_nc(p, to_xyzac()), "p.ngc", {"linuxcnc-xyzac", kTable});
+  EXPECT_LT(glm::length(back.poses()[0].tip - p.poses()[0].tip), 1e-4) << "one row, where it ends";
+}
+
 TEST(JointWords, SayInTheHeaderWhatTheyAre) {
   const std::string joints = to_nc(swaying(2), to_xyzac()), tip = to_nc(swaying(2), to_xyzac({{"tcp", true}}));
   EXPECT_NE(joints.find("kinematics off [M429]"), std::string::npos);
