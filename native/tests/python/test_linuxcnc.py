@@ -209,3 +209,34 @@ def test_where_a_limit_is_met_the_tool_turns_back_above_the_part(tmp_path):
         against = back & (np.sign(ways[:, 5]) != np.sign(np.sum(ways[~moves.rapid[1:], 5])))
         assert against.any() and moves.rapid[1:][against].all(), post
         assert at[1:][against, 2].min() > poses[:, 2].max() + 9
+
+
+def along(call, parts=12):
+    """Joints (parts + 1, 6) on the way of a canonical move."""
+    share = np.linspace(0, 1, parts + 1)[:, None]
+    out = call.start + share * (call.end - call.start)
+    if call.plane is not None:
+        at = call.start[list(call.plane)] - call.centre
+        angle = np.arctan2(at[1], at[0]) + share[:, 0] * call.sweep
+        out[:, list(call.plane)] = call.centre + np.hypot(*at) * np.column_stack([np.cos(angle), np.sin(angle)])
+    return out
+
+
+@pytest.mark.parametrize("post", ["linuxcnc-xyzac", "tcp"])
+def test_arcs_stay_within_the_tolerance_of_the_straight_runs(tmp_path, post):
+    t = np.linspace(0, 9, 400)[:, None]
+    tips = np.hstack([20 * np.cos(t), 20 * np.sin(t), -0.1 * t])
+    poses = np.hstack([tips, np.tile(normed([0.1, 0.2, 1]), (400, 1))])
+    file = written(tmp_path, poses, post, arcs=True)
+    moves, _ = linuxcnc.calls(linuxcnc.output(file))
+    cuts = [move for move in moves if not np.isnan(move.feed)]
+    assert sum(move.plane is not None for move in cuts) >= 3 and len(cuts) < 100
+    dense = np.vstack([forward(along(move), POSTS[post][2]) for move in cuts[1:]])
+    assert abs(dense[:, 3:] - poses[0, 3:]).max() < 1e-5
+    way = np.diff(tips, axis=0)
+
+    def beside(point):
+        share = np.clip(((point - tips[:-1]) * way).sum(1) / (way * way).sum(1), 0, 1)[:, None]
+        return np.linalg.norm(point - tips[:-1] - share * way, axis=1).min()
+
+    assert max(beside(point) for point in dense[:, :3]) <= 0.01 + 5e-4
