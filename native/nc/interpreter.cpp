@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "nc/header.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/post.hpp"
@@ -30,6 +31,7 @@ NcInterpreter::NcInterpreter(std::unique_ptr<NcSource> source, const std::filesy
     : parameters_(*this), source_(source->name()) {
   if (!folder.empty()) given_.folders.push_back(folder);
   take_options(options);
+  if (given_.check_header) check_header(*source, rows_->machine());
   flow_ = std::make_unique<NcControlFlow>(std::move(source), given_.folders, given_.max_turns, place_, parameters_);
   words_ = std::make_unique<NcWords>(rows_->machine().axes(), place_, given_.skip_unknown ? &skipped_here_ : nullptr);
   if (!given_.parameters.empty()) {
@@ -51,6 +53,7 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   const std::optional<double> axis = taken.positive("axis_tolerance");
   take_post_options(taken);  // the same options write and read
   given_.block_delete = taken.flag("block_delete", true);
+  given_.check_header = taken.word("header", {"check", "ignore"}, "check") == "check";
   given_.max_turns = taken.positive("max_turns").value_or(1e6);
   given_.skip_unknown = taken.word("unknown", {"error", "skip"}, "error") == "skip";
   if (const std::string folder = path_option(options.options, taken, "subroutines"); !folder.empty())

@@ -47,7 +47,7 @@ class NcInterpreter final : private NcPredefined {
     int path_control = 640;
   };
   struct Given {
-    bool block_delete = true;
+    bool block_delete = true, check_header = true;
     double max_turns = 0;
     std::vector<std::filesystem::path> folders;
     std::string parameters;

@@ -9,6 +9,7 @@
 #include "geom/directions.hpp"
 #include "geom/io.hpp"
 #include "nc/arc_fit.hpp"
+#include "nc/header.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/number_text.hpp"
@@ -152,7 +153,7 @@ class Writer {
   }
 
   void begin() {
-    std::vector<std::string> comments{"Riffler " RIFFLER_VERSION ", post " + machine_->name(), machine_->meaning(),
+    std::vector<std::string> comments{header_line(*machine_), machine_->meaning(),
                                       "mm, degrees, feed in mm/min at the tip; tolerance " +
                                           number_text(options_.tolerance) + " mm, axis " +
                                           number_text(options_.axis_tolerance, 8) + " rad"};

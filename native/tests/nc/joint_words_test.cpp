@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "geom/error.hpp"
 #include "nc/cutter_path.hpp"
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
@@ -148,6 +149,34 @@ TEST(JointWords, UnderUnitsPerMinuteReadBackWithTheFeedOfTheTip) {
   for (std::size_t k = 1; k < p.size(); ++k)
     if (!p.rapid()[k]) wanted += glm::length(p.poses()[k].tip - p.poses()[k - 1].tip) / p.feed()[k];
   EXPECT_NEAR(minutes, wanted, 1e-3 * wanted);
+}
+
+TEST(Header, KeepsCodeFromBeingReadForAnotherMachine) {
+  const auto error = [](const std::string& text, const char* machine, Options options = {}) -> std::string {
+    try {
+      parse_nc(text, "p.ngc", {machine, std::move(options)});
+    } catch (const FormatError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string joints = to_nc(swaying(3), to_xyzac()), tip = to_nc(swaying(3), to_xyzac({{"tcp", true}}));
+  EXPECT_EQ(error(joints, "linuxcnc-xyzac", kTable), "");
+  EXPECT_EQ(error(joints, "tcp").substr(0, 104),
+            "p.ngc, line 1: written for machine linuxcnc-xyzac, not tcp: read it with machine linuxcnc-xyzac, or with");
+  EXPECT_NE(
+      error(joints, "linuxcnc-xyzac", {{"tcp", true}}).find("line 2: X Y Z are where the axes stand here: read it"),
+      std::string::npos);
+  EXPECT_NE(error(tip, "linuxcnc-xyzac", kTable).find("read it with options {'tcp': True}"), std::string::npos);
+  EXPECT_EQ(error(joints, "tcp", {{"header", std::string("ignore")}}), "");
+
+  CutterPath upright{{{{1, 2, 3}, {0, 0, 1}}, {{4, 5, 6}, {0, 0, 1}}}, {500}, 0, 1};
+  WriteOptions three;
+  three.post = "3-axis";
+  const std::string text = to_nc(program_from_paths(std::vector{upright}, {}), three);
+  EXPECT_EQ(error(text, "tcp"), "") << "upright tools are upright anywhere";
+  EXPECT_NE(error(text, "linuxcnc-xyzac"), "");
+  EXPECT_EQ(error("(some other CAM)\nG0 X1\n", "tcp"), "");
 }
 
 TEST(JointWords, ComeFromNowhereInTheirFirstRapid) {
