@@ -126,12 +126,7 @@ void NcInterpreter::block(NcCursor& cursor) {
           "O with a number alone is the number of the program, before everything else, or a subprogram of "
           "M98, after its end");
   }
-  try {
-    words_->read(cursor, parameters_);
-  } catch (...) {
-    parameters_.drop();
-    throw;
-  }
+  words_->read(cursor, parameters_);
   for (const std::string& word : skipped_here_) {
     if (skipped_.size() < kMaxNotes)
       skipped_.push_back("line " + std::to_string(place_.line) + ": " + word);

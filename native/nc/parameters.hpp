@@ -41,8 +41,6 @@ class NcParameters {
   void assign(int number, double value, const NcPlace& place);
   void assign(const std::string& name, double value, const NcPlace& place);
   void apply();
-  /// Drops what a block has assigned so far.
-  void drop() { pending_.clear(); }
 
   /// What was assigned to a number, or loaded, wherever the control's own value would come first.
   double stored(int number) const { return numbered_[static_cast<std::size_t>(number)]; }

@@ -70,6 +70,19 @@ NcStream::~NcStream() = default;
 
 bool NcStream::next(Program& program) {
   program = Program();
+  try {
+    fill(program);
+  } catch (...) {
+    // What follows an error has no meaning.
+    interpreter_.reset(), whole_ = Program();
+    throw;
+  }
+  if (program.empty()) return false;
+  last_ = std::make_unique<Move>(program[program.size() - 1]);
+  return true;
+}
+
+void NcStream::fill(Program& program) {
   std::size_t fresh = 0;
   const auto append = [&](const Move& move) {
     if (fresh++ == 0 && last_) program.append(*last_);
@@ -78,21 +91,18 @@ bool NcStream::next(Program& program) {
   if (!interpreter_) {
     while (taken_ < whole_.size() && program.size() < rows_) append(whole_[taken_++]);
     program.provenance = whole_.provenance, program.tools = whole_.tools;
-  } else {
-    std::vector<Move>& pending = interpreter_->pending();
-    bool more = true;
-    while (more && program.size() < rows_) {
-      if (taken_ == pending.size()) {
-        pending.clear(), taken_ = 0;
-        more = interpreter_->step();
-      }
-      while (taken_ < pending.size() && program.size() < rows_) append(pending[taken_++]);
-    }
-    program.provenance = interpreter_->provenance();
+    return;
   }
-  if (program.empty()) return false;
-  last_ = std::make_unique<Move>(program[program.size() - 1]);
-  return true;
+  std::vector<Move>& pending = interpreter_->pending();
+  bool more = true;
+  while (more && program.size() < rows_) {
+    if (taken_ == pending.size()) {
+      pending.clear(), taken_ = 0;
+      more = interpreter_->step();
+    }
+    while (taken_ < pending.size() && program.size() < rows_) append(pending[taken_++]);
+  }
+  program.provenance = interpreter_->provenance();
 }
 
 }  // namespace riffler

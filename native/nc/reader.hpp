@@ -42,10 +42,12 @@ class NcStream {
   ~NcStream();
 
   /// The next at most `rows` rows; the first of them is the last of those before, where there are any. False, and an
-  /// empty program, at the end. A FormatError ends the stream.
+  /// empty program, at the end and after a FormatError.
   bool next(Program& program);
 
  private:
+  void fill(Program& program);
+
   std::unique_ptr<NcInterpreter> interpreter_;
   std::size_t rows_, taken_ = 0;
   Program whole_;  // an APT file's rows

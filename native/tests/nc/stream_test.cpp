@@ -65,6 +65,7 @@ TEST_F(NcStreamFile, SaysWhatIsWrongWhenItGetsThere) {
   ASSERT_TRUE(stream.next(chunk));
   EXPECT_EQ(chunk.size(), 3U);
   EXPECT_THROW(stream.next(chunk), FormatError);
+  EXPECT_FALSE(stream.next(chunk));
   EXPECT_THROW(NcStream(path_, {}, 1), std::invalid_argument);
   EXPECT_THROW(NcStream("/nowhere/at/all.ngc"), FormatError);
   write("");

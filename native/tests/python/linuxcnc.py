@@ -124,6 +124,7 @@ def calls(text: str) -> tuple[list[Call], Frame]:
     """The moves of rs274's output, all offsets applied, and the frame in which the first of them was programmed."""
     out: list[Call] = []
     frame = first = Frame(np.zeros(6), np.zeros(6), 0.0)
+    printed = {"SET_G5X_OFFSET": 1.0, "SET_G92_OFFSET": 1.0}  # units in which offsets were printed, with 4 decimals
     at, unit, feed, per_turn, speed, turning, tool, plane = np.zeros(6), 1.0, 0.0, False, 0.0, 0, 0, (0, 1)
 
     def lengths(words):
@@ -134,7 +135,7 @@ def calls(text: str) -> tuple[list[Call], Frame]:
         if not out:
             first = frame
         rapid = np.nan if call == "STRAIGHT_TRAVERSE" else feed * (speed if per_turn else 1)
-        out.append(Call(at, end, rapid, 3e-4 * unit, turning * speed, tool, **arc))
+        out.append(Call(at, end, rapid, 1e-4 * (unit + sum(printed.values())), turning * speed, tool, **arc))
         at = end
 
     for line in text.splitlines():
@@ -143,6 +144,8 @@ def calls(text: str) -> tuple[list[Call], Frame]:
             continue
         call, inside = found.groups()
         words = inside.split(",")
+        if call in printed:
+            printed[call] = unit
         if call == "USE_LENGTH_UNITS":
             unit = {"CANON_UNITS_MM": 1.0, "CANON_UNITS_INCHES": 25.4}[inside]
         elif call == "SET_FEED_RATE":
