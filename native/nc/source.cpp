@@ -32,7 +32,7 @@ bool NcSource::more() {
   if (kept == buffer_.size())
     throw FormatError(name_, "line " + std::to_string(line_ + 1),
                       "the line is longer than " + std::to_string(buffer_.size()) + " bytes");
-  std::memmove(buffer_.data(), window_.data() + at_, kept);
+  if (kept > 0) std::memmove(buffer_.data(), window_.data() + at_, kept);
   base_ += at_, at_ = 0;
   const std::size_t got = std::fread(buffer_.data() + kept, 1, buffer_.size() - kept, file_.get());
   if (std::ferror(file_.get()))
