@@ -125,10 +125,10 @@ def between(joints: np.ndarray, wanted: np.ndarray, axes: Axes, tied: np.ndarray
 
 
 def interpreter() -> Path | None:
-    """rs274 of a developer's checkout (`make envs`), or that of the system."""
-    own = Path(__file__).resolve().parents[4] / ".envs" / "linuxcnc" / "usr" / "bin" / "rs274"
+    """rs274 of the checkout that this lies in (`make envs`), installed there or not, or that of the system."""
+    own = (folder / ".envs" / "linuxcnc" / "usr" / "bin" / "rs274" for folder in Path(__file__).resolve().parents)
     installed = shutil.which("rs274")
-    return own if own.exists() else Path(installed) if installed else None
+    return next((path for path in own if path.exists()), Path(installed) if installed else None)
 
 
 def child_seconds() -> float:
