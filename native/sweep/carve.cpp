@@ -25,21 +25,6 @@ std::string row(std::size_t i) {
   return "poses, row " + std::to_string(i) + ": ";
 }
 
-void check(std::span<const Pose> poses) {
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Pose& p = poses[i];
-    if (!finite(p.tip) || !finite(p.axis)) throw std::invalid_argument(row(i) + "not finite");
-    const double length = glm::length(p.axis);
-    if (!(std::abs(length - 1) < 1e-6))
-      throw std::invalid_argument(row(i) + "the axis must be a unit vector; its length is " + std::to_string(length));
-    if (i == 0) continue;
-    const Vec3 axis = p.axis / length, before = glm::normalize(poses[i - 1].axis);
-    if (glm::dot(before, axis) < 0 && glm::length(glm::cross(before, axis)) < 1e-14)
-      throw std::invalid_argument(row(i) + "the axis is exactly opposite to that of the row before, so the way it " +
-                                  "turns is undefined; put a pose between");
-  }
-}
-
 void check(const CarveOptions& options, std::size_t moves) {
   if (!std::isfinite(options.tolerance) || !(options.tolerance > 0))
     throw std::invalid_argument("tolerance must be a positive length in mm");
@@ -84,15 +69,22 @@ class Rollback {
 /// Cuts one grid, batch by batch.
 class GridCarver {
  public:
-  GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback& rollback)
+  /// `rollback` may be null.
+  GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback* rollback)
       : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback) {}
 
-  /// Holds no more of the program than one batch, so its length costs no memory here.
-  void run(const Tool& tool, std::span<const Pose> poses, const std::function<void(std::size_t)>& moves_done) {
-    const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
-    Pose from = poses.empty() ? Pose{} : local(poses[0]);
-    for (std::size_t m = 0; m + 1 < poses.size(); ++m) {
-      const Pose to = local(poses[m + 1]);
+  /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds no more of the program than one batch, so
+  /// its length costs no memory here.
+  template <class End, class Done>
+  void run(std::span<const ConvexGroup> cutter, std::span<const Pose> poses, std::size_t moves, const End& end,
+           const Done& moves_done) {
+    Pose from;
+    std::size_t last = 0;
+    for (std::size_t m = 0; m < moves; ++m) {
+      const std::size_t e = end(m);
+      if (m == 0 || last != e - 1) from = local(poses[e - 1]);
+      last = e;
+      const Pose to = local(poses[e]);
       const Motion& motion = motions_.emplace_back(from, to);
       for_each_step(cutter, motion, static_cast<std::uint32_t>(m), grid_.box(), options_.tolerance,
                     [&](Step&& step) { steps_.push_back(std::move(step)); });
@@ -178,7 +170,7 @@ class GridCarver {
       cut_.torque[s.move] += to_world(grid_.axis(), s.torque);
     }
     if (!w.done.tile) return;
-    rollback_.keep(grid_, w.tile);
+    if (rollback_) rollback_->keep(grid_, w.tile);
     grid_.set_tile(w.tile, std::move(w.done.tile));
   }
 
@@ -186,7 +178,7 @@ class GridCarver {
   bool measured_;
   const CarveOptions& options_;
   Cut& cut_;
-  Rollback& rollback_;
+  Rollback* rollback_;
   std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   std::vector<Step> steps_;
   std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // (tile, step)
@@ -195,20 +187,37 @@ class GridCarver {
 
 }  // namespace
 
+void check_path(std::span<const Pose> poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose& p = poses[i];
+    if (!finite(p.tip) || !finite(p.axis)) throw std::invalid_argument(row(i) + "not finite");
+    const double length = glm::length(p.axis);
+    if (!(std::abs(length - 1) < 1e-6))
+      throw std::invalid_argument(row(i) + "the axis must be a unit vector; its length is " + std::to_string(length));
+    if (i == 0) continue;
+    const Vec3 axis = p.axis / length, before = glm::normalize(poses[i - 1].axis);
+    if (glm::dot(before, axis) < 0 && glm::length(glm::cross(before, axis)) < 1e-14)
+      throw std::invalid_argument(row(i) + "the axis is exactly opposite to that of the row before, so the way it " +
+                                  "turns is undefined; put a pose between");
+  }
+}
+
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options) {
   const std::size_t moves = poses.empty() ? 0 : poses.size() - 1;
-  check(poses);
+  check_path(poses);
   check(options, moves);
   check_memory(moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
+  const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
   Rollback rollback;
   Stats stats;
   stats.moves = moves;
   const std::size_t grids = volume.grids().size();
   for (std::size_t g = 0; g < grids; ++g) {
     Grid& grid = volume.grids()[g];
-    GridCarver carver(grid, &grid == &volume.reference(), options, cut, rollback);
-    carver.run(tool, poses, [&](std::size_t done) {
+    GridCarver carver(grid, &grid == &volume.reference(), options, cut, &rollback);
+    const auto next = [](std::size_t m) { return m + 1; };
+    carver.run(cutter, poses, moves, next, [&](std::size_t done) {
       report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
                                    static_cast<double>(grids));
     });
@@ -218,6 +227,18 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   if (rollback.commit()) volume.touch();
   volume.count(stats);
   return cut;
+}
+
+std::vector<double> carve_moves(Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+                                std::span<const std::uint32_t> ends, double tolerance, Stats& stats) {
+  CarveOptions options;
+  options.tolerance = tolerance;
+  Cut cut{std::vector<double>(ends.size()), std::vector<Vec3>(ends.size()), std::vector<Vec3>(ends.size())};
+  GridCarver carver(grid, true, options, cut, nullptr);
+  carver.run(cutter, poses, ends.size(), [&](std::size_t m) { return ends[m]; }, [](std::size_t) {});
+  stats += carver.stats();
+  stats.moves += ends.size();
+  return std::move(cut.removed);
 }
 
 }  // namespace riffler

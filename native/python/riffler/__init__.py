@@ -9,6 +9,7 @@ from ._core import (
     Collider,
     Contact,
     Cut,
+    Finding,
     FormatError,
     Journal,
     JournalStroke,
@@ -18,9 +19,12 @@ from ._core import (
     Program,
     Snapshot,
     Tool,
+    Verification,
+    VerifyReport,
     Volume,
     __version__,
     machines,
+    verify,
 )
 
 __all__ = [
@@ -28,6 +32,7 @@ __all__ = [
     "Collider",
     "Contact",
     "Cut",
+    "Finding",
     "FormatError",
     "Journal",
     "JournalStroke",
@@ -37,8 +42,11 @@ __all__ = [
     "Program",
     "Snapshot",
     "Tool",
+    "Verification",
+    "VerifyReport",
     "Volume",
     "__version__",
     "machines",
     "plan",
+    "verify",
 ]
