@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -130,6 +132,7 @@ class GridCarver {
   /// Tiles of the batch with the steps that may touch them, both in ascending order.
   std::vector<Work> assign() {
     pairs_.clear();
+    std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
     for (std::size_t k = 0; k < steps_.size(); ++k) {
       const Footprint& footprint = steps_[k].footprint;
       const auto [u0, u1] = ray_indices(footprint.rows(), grid_.box().lower.x, grid_.pitch(), grid_.nu());
@@ -137,14 +140,32 @@ class GridCarver {
       if (u0 > u1 || v0 > v1) continue;
       for (int a = u0 / kTileSide; a <= u1 / kTileSide; ++a)
         for (int b = v0 / kTileSide; b <= v1 / kTileSide; ++b) pairs_.emplace_back(grid_.tile_index(a, b), k);
+      first = std::min(first, grid_.tile_index(u0 / kTileSide, v0 / kTileSide));
+      last = std::max(last, grid_.tile_index(u1 / kTileSide, v1 / kTileSide));
     }
-    std::sort(pairs_.begin(), pairs_.end());
+    sort_pairs(first, last);
     std::vector<Work> work;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       if (work.empty() || work.back().tile != pairs_[k].first) work.push_back({pairs_[k].first, k, k, {}});
       work.back().end = k + 1;
     }
     return work;
+  }
+
+  /// By tiles, all of them from `first` to `last`; steps ascend already. They are counted where they are many for that
+  /// range: short moves pass the same few tiles again and again.
+  void sort_pairs(std::size_t first, std::size_t last) {
+    if (pairs_.empty()) return;
+    if (last - first > 2 * pairs_.size()) {
+      std::sort(pairs_.begin(), pairs_.end());
+      return;
+    }
+    starts_.assign(last - first + 2, 0);
+    for (const auto& pair : pairs_) ++starts_[pair.first - first + 1];
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    sorted_.resize(pairs_.size());
+    for (const auto& pair : pairs_) sorted_[starts_[pair.first - first]++] = pair;
+    pairs_.swap(sorted_);
   }
 
   /// Cuts one tile with its steps of the batch.
@@ -181,7 +202,8 @@ class GridCarver {
   Rollback* rollback_;
   std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   std::vector<Step> steps_;
-  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // (tile, step)
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
+  std::vector<std::uint32_t> starts_;
   Stats stats_;
 };
 
