@@ -64,7 +64,7 @@ Target::Deepest deepest_loss(const Target& target, const Workbench& bench, const
 
 Target::Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress)
     : volume_(from_mesh(part, frame, progress)),
-      surface_(part),
+      surface_(part, true),
       tolerance_(tolerance),
       bounds_(riffler::bounds(part)) {}
 

@@ -17,6 +17,7 @@ class Target {
   Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress = {});
 
   const Volume& volume() const { return volume_; }
+  /// With sides.
   const Closest& surface() const { return surface_; }
   double tolerance() const { return tolerance_; }
   const Box3& bounds() const { return bounds_; }

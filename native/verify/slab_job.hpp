@@ -27,11 +27,10 @@ struct SlabSnapshot {
 struct SlabState {
   SlabTiles tiles;  ///< of the stock only
   SlabReport report;
-  std::vector<SlabSnapshot> snapshots;  ///< by rows; the first is the stock itself, row 0
-  std::uint64_t spacing = kLeastSpacing, since = 0;
-  std::int64_t done = 0;  ///< rows up to this one have been run
+  std::vector<SlabSnapshot> snapshots;   ///< by rows; the first is the stock itself, row 0
+  std::uint64_t spacing = 1, since = 0;  ///< batches between snapshots
+  std::int64_t done = 0;                 ///< rows up to this one have been run
 
-  static constexpr std::uint64_t kLeastSpacing = 16;
   static constexpr std::size_t kMostSnapshots = 12;
 
   /// Called after each batch. Keeps every so many, and half of them when there are too many.

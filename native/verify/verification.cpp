@@ -7,6 +7,7 @@
 #include <string>
 
 #include "geom/parallel.hpp"
+#include "verify/rest.hpp"
 #include "verify/timing.hpp"
 
 namespace riffler {
@@ -171,11 +172,9 @@ VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& 
   report.volume.touch();
   report.findings = findings.take();
   if (options_.rest_tolerance) {
-    const auto [mesh, distance] = deviation_of(report.volume, *part_, progress);
-    const auto worst = std::max_element(distance.begin(), distance.end());
-    if (worst != distance.end() && *worst > *options_.rest_tolerance) {
-      Finding rest{Kind::Rest, Member::Cutter, -1, 0, 0, 0, 0, 0, *worst, *worst, {}, {}};
-      rest.point = mesh.vertices[static_cast<std::size_t>(worst - distance.begin())];
+    const Rest found = rest_on(*target_, report.volume, *options_.rest_tolerance, progress);
+    if (found.height > 0) {
+      Finding rest{Kind::Rest, Member::Cutter, -1, 0, 0, 0, 0, 0, found.height, found.height, found.point, {}};
       rest.message = message_of(rest);
       report.findings.push_back(std::move(rest));
     }

@@ -1,0 +1,567 @@
+"""Verification of programs, judged by a height map, dense sampling and closed forms of the test's own."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import riffler
+from verify_reference import HeightMap, blocks, box_mesh, in_frusta, points_of, tops
+
+UP = [0.0, 0.0, 1.0]
+
+
+def path(tips, axis=UP):
+    tips = np.asarray(tips, float)
+    return np.column_stack([tips, np.broadcast_to(np.asarray(axis, float), tips.shape)])
+
+
+def program(poses, cutter=None, **columns):
+    columns = {"feed": 1000.0, "spindle": 8000.0, "line": np.arange(len(poses)) + 100} | columns
+    tools = {} if cutter is None else {1: cutter}
+    return riffler.Program(poses, columns.pop("feed"), tools=tools, **columns)
+
+
+def line_of_moves(first, last, step):
+    first, last = np.asarray(first, float), np.asarray(last, float)
+    n = int(np.ceil(np.linalg.norm(last - first) / step))
+    return first + np.linspace(0, 1, n + 1)[:, None] * (last - first)
+
+
+def rows(report, kind):
+    """All rows of the findings of a kind."""
+    return [r for f in report.findings if f.kind == kind for r in range(f.row, f.last_row + 1)]
+
+
+def kinds(report):
+    return sorted({f.kind for f in report.findings})
+
+
+def state(report):
+    """Everything a report says, but how much work it was."""
+    data = report.to_dict()
+    del data["stats"]
+    return (
+        json.dumps(data),
+        np.asarray(report.removed).tobytes(),
+        np.asarray(report.seconds).tobytes(),
+        report.volume.to_bytes(),
+    )
+
+
+# --- cutting -------------------------------------------------------------------------------------------------------
+
+CUTTERS = {
+    "flat": (lambda: riffler.Tool.flat(6, 40), (3.0, 0.0)),
+    "ball": (lambda: riffler.Tool.ball(6, 40), (3.0, 3.0)),
+    "bull": (lambda: riffler.Tool.fillet(8, 1, 40), (4.0, 1.0)),
+}
+
+
+def random_program(seed, n, rapids=0.25):
+    """Moves of all lengths over and in a block from z = -10 to 0, rapids high up and deep down."""
+    rng = np.random.default_rng(seed)
+    tips = np.column_stack([rng.uniform(-4, 34, n), rng.uniform(-4, 24, n), rng.uniform(-6, 1, n)])
+    rapid = rng.random(n) < rapids
+    tips[rapid & (rng.random(n) < 0.6), 2] = 3.0
+    still = rng.random(n) < 0.2  # plunges and retracts
+    for row in np.flatnonzero(still[1:]) + 1:
+        tips[row, :2] = tips[row - 1, :2]
+    return tips, rapid
+
+
+@pytest.mark.parametrize("cutter", CUTTERS)
+@pytest.mark.parametrize("seed", range(6))
+def test_three_axis_programs_are_cut_as_a_height_map_is(cutter, seed):
+    make, profile = CUTTERS[cutter]
+    lower, upper, h = [0, 0, -10], [30, 20, 0], 0.5
+    tips, rapid = random_program(seed, 60)
+    report = riffler.verify(program(path(tips), make(), rapid=rapid), riffler.Volume.block(lower, upper, h))
+    heights = HeightMap(lower, upper, h)
+    removed, deepest = np.zeros(len(tips)), np.zeros(len(tips))
+    for row in range(1, len(tips)):
+        lost = heights.cut(profile, tips[row - 1], tips[row])
+        removed[row], deepest[row] = lost.sum() * h * h, lost.max()
+    assert np.abs(tops(report.volume) - heights.z).max() < 1e-7
+    assert np.abs(report.removed - removed).max() < 1e-5
+    assert rows(report, "rapid") == np.flatnonzero(rapid & (deepest > 0.01)).tolist()
+    assert any(rows(report, "rapid")), "the program should have some"
+    for f in report.findings:
+        if f.kind == "rapid":
+            assert f.value == pytest.approx(removed[f.row : f.last_row + 1].sum(), rel=1e-6)
+            assert f.unit == "mm³" and f.line == f.row + 100 and f.last_line == f.last_row + 100
+    assert not report.passed
+
+
+@pytest.mark.parametrize("directions", ["z", "xyz"])
+def test_slabs_put_together_are_the_stock_carved_whole(directions):
+    tool = riffler.Tool.fillet(6, 1, 30)
+    rng = np.random.default_rng(5)
+    axis = rng.normal(size=(80, 3)) * [0.3, 0.3, 0] + UP
+    poses = np.column_stack([rng.uniform([0, 0, -6], [60, 40, 2], (80, 3)), axis])
+    poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1)[:, None]
+    stock = riffler.Volume.block([0, 0, -10], [60, 40, 0], 0.25, directions)
+    before = stock.to_bytes()
+    report = riffler.verify(program(poses, tool), stock)
+    whole = stock.copy()
+    cut = whole.carve(tool, poses)
+    assert report.volume.to_bytes() == whole.to_bytes()
+    assert np.allclose(report.removed[1:], cut.removed, rtol=1e-12, atol=1e-12)
+    assert stock.to_bytes() == before
+
+
+# --- shank and holder ----------------------------------------------------------------------------------------------
+
+STEP_LOWER, STEP_UPPER = [0, 0, -30], [60, 40, 0]
+
+
+def stepped(h=0.25):
+    """Low on the left (z = -20), high on the right of x = 30 (z = 0)."""
+    return blocks(h, STEP_LOWER, STEP_UPPER, ([0, 0, -30], [60, 40, -20]), ([30, 0, -30], [60, 40, 0]))
+
+
+HOLDER = [(20, 10, 50, 10)]
+
+
+def held(length=15):
+    return riffler.Tool.ball(6, length).with_shank([(length, 3, 20, 3)]).with_holder(HOLDER)
+
+
+def test_holder_hits_on_the_right_line_and_not_one_move_earlier():
+    tips = line_of_moves([10, 20, -20.5], [24, 20, -20.5], 1.0)  # the holder's lower face at z = -0.5
+    report = riffler.verify(program(path(tips), held()), stepped())
+    # The first rays of the wall stand at x = 30.125: reached when the tip passes x = 20.125, in the move to 21.
+    assert rows(report, "holder") == [11, 12, 13, 14]
+    (found,) = [f for f in report.findings if f.kind == "holder"]
+    assert (found.line, found.last_line, found.tool, found.member) == (111, 114, 1, "holder")
+    # The worst row is the last, from x = 23 to 24: rays within 10 mm of that way, half a millimetre of each.
+    x, y = np.meshgrid(30.125 + 0.25 * np.arange(40), 0.125 + 0.25 * np.arange(160), indexing="ij")
+    inside = np.hypot(np.maximum(x - 24, 0), y - 20) < 10
+    assert found.value == pytest.approx(inside.sum() * 0.5 * 0.25**2, rel=1e-9)
+    assert found.point[2] == pytest.approx(-0.25) and found.point[0] > 30
+    assert kinds(report) == ["holder"]
+
+
+@pytest.mark.parametrize(("above", "hit"), [(0.01, False), (0.0, False), (-0.02, True)])
+def test_a_holder_that_stays_a_hundredth_of_a_millimetre_above_does_not_hit(above, hit):
+    tips = line_of_moves([10, 20, -20 + above], [26, 20, -20 + above], 0.5)
+    report = riffler.verify(program(path(tips), held()), stepped())
+    assert kinds(report) == (["holder"] if hit else [])
+
+
+def test_one_long_move_and_many_short_ones_hit_alike():
+    for step in (100.0, 1.0, 0.01):
+        tips = line_of_moves([10, 20, -20.5], [26, 20, -20.5], step)
+        found = rows(riffler.verify(program(path(tips), held()), stepped()), "holder")
+        first = tips[found[0], 0]
+        assert 20.125 < first <= 20.125 + step + 0.03 or step > 10
+        assert found == list(range(found[0], len(tips)))
+
+
+def test_a_shank_wider_than_the_cutter_is_found():
+    tool = riffler.Tool.ball(6, 15).with_shank([(15, 5, 60, 5)]).with_holder([(60, 10, 90, 10)])
+    tips = line_of_moves([10, 20, -20.5], [26.5, 20, -20.5], 0.5)
+    report = riffler.verify(program(path(tips), tool), stepped())
+    # The shank reaches the wall's first rays at x = 25.125.
+    assert kinds(report) == ["shank"] and rows(report, "shank")[0] == np.argmax(tips[:, 0] > 25.135)
+
+
+def test_what_an_earlier_move_took_away_is_not_hit():
+    """A pocket that only the cutter's own passes make room in: the holder is as low as the stock's top all the time."""
+    tool = riffler.Tool.flat(20, 5).with_holder([(5, 9, 60, 9)])
+    stock = riffler.Volume.block([0, 0, -20], [60, 40, 0], 0.25)
+    tips = [[-15, 20, 2]]
+    for z in (-4, -8, -12):
+        tips += [[-15, 20, z], [40, 20, z], [-15, 20, z]]
+    assert kinds(riffler.verify(program(path(tips), tool), stock)) == []
+    # Without the pass before it the second one is too deep.
+    assert kinds(riffler.verify(program(path(np.delete(tips, [1, 2, 3], axis=0)), tool), stock)) == ["holder"]
+
+
+def test_a_thin_shank_may_follow_its_cutter_in_one_plunge():
+    tool = riffler.Tool.flat(6, 4).with_shank([(4, 2, 60, 2)]).with_holder([(60, 10, 80, 10)])
+    stock = riffler.Volume.block([0, 0, -40], [20, 20, 0], 0.25)
+    down = program(path([[10, 10, 5], [10, 10, -30]]), tool)
+    assert kinds(riffler.verify(down, stock)) == []
+    # And it must not come first: up from below, the shank would meet the roof before the cutter does.
+    cave = blocks(0.25, [0, 0, -40], [20, 20, 0], ([0, 0, -10], [20, 20, -5]))
+    up = program(path([[10, 10, -80], [10, 10, -2]]), riffler.Tool.flat(6, 4).with_shank([(4, 2, 40, 2)]))
+    assert "shank" in kinds(riffler.verify(up, cave))
+
+
+def test_tilting_into_a_wall_hits_on_the_row_that_dense_sampling_finds():
+    tool = held()
+    angles = np.radians(np.arange(0, 31, 1.0))
+    axes = np.column_stack([np.sin(angles), 0 * angles, np.cos(angles)])
+    poses = np.column_stack([np.tile([18.0, 20.0, -19.5], (len(angles), 1)), axes])
+    stock = stepped()
+    points = points_of(stock, 0.05)
+    points = points[(points[:, 0] > 29) & (points[:, 2] > -12)]
+    depth = np.array([in_frusta(points, HOLDER, pose).max() for pose in poses])
+    assert not ((depth > 0) & (depth < 0.03)).any(), "the scene should leave no doubt"
+    report = riffler.verify(program(poses, tool), stock)
+    assert rows(report, "holder") == np.flatnonzero(depth > 0.02).tolist()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_five_axis_hits_agree_with_dense_sampling(seed):
+    rng = np.random.default_rng(seed)
+    tool = riffler.Tool.ball(4, 10).with_shank([(10, 2, 16, 3)]).with_holder([(16, 6, 30, 8)])
+    stock = blocks(0.5, [0, 0, -12], [24, 24, 6], ([0, 0, -12], [24, 24, -6]), ([14, 0, -12], [24, 24, 6]))
+    poses, wanted = [], {"shank": [], "holder": []}
+    unsure = set()
+    last = None
+    left = stock.copy()
+    for row in range(25):
+        axis = UP + rng.normal(size=3) * [0.35, 0.35, 0]
+        pose = np.append(rng.uniform([2, 2, -6], [14, 22, 0]), axis / np.linalg.norm(axis))
+        poses.append(pose)
+        if last is not None:
+            left.carve(tool, np.array([last, pose]))
+            points = points_of(left, 0.25)
+            points = points[points[:, 2] > -1]  # neither shank nor holder comes lower
+            t = np.linspace(0, 1, 80)[:, None]
+            angle = np.arccos(np.clip(last[3:] @ pose[3:], -1, 1))
+            way = (np.sin((1 - t) * angle) * last[3:] + np.sin(t * angle) * pose[3:]) / np.sin(angle)
+            tips = last[:3] + t * (pose[:3] - last[:3])
+            for name, frusta in (("shank", [(10, 2, 16, 3)]), ("holder", [(16, 6, 30, 8)])):
+                depth = max(in_frusta(points, frusta, np.append(p, a)).max() for p, a in zip(tips, way, strict=True))
+                if depth > 0.02:
+                    wanted[name].append(row)
+                elif depth > -0.3:
+                    unsure.add((name, row))  # between samples
+        last = pose
+    report = riffler.verify(program(np.array(poses), tool), stock)
+    for name in ("shank", "holder"):
+        found = set(rows(report, name))
+        # What the material hits before this move's cutter has taken it is found on top of what is left after it.
+        before = {r for r in found - set(wanted[name]) if (name, r) not in unsure}
+        assert set(wanted[name]) <= found and len(before) <= 3, (name, found, wanted[name])
+    assert wanted["holder"] or wanted["shank"]
+
+
+def test_a_tool_whose_description_ends_below_material_does_not_pass():
+    bare = riffler.Tool.flat(6, 5)
+    stock = riffler.Volume.block([0, 0, -20], [60, 40, 0], 0.25)
+    slot = lambda z: program(path([[-10, 20, z], [70, 20, z]]), bare)  # noqa: E731
+    assert riffler.verify(slot(-4.5), stock).passed
+    deep = riffler.verify(slot(-6), stock)
+    assert kinds(deep) == ["unknown"] and not deep.passed and "describe the shank" in deep.findings[0].message
+    assert any("tool 1" in sentence for sentence in deep.not_checked)
+
+
+# --- fixtures ------------------------------------------------------------------------------------------------------
+
+
+def test_fixtures_are_met_by_cutter_and_holder_on_the_right_rows():
+    stock = riffler.Volume.block([0, 0, -10], [60, 40, 0], 0.25)
+    clamp = box_mesh([40, 15, -10], [50, 25, 8])
+    vise = riffler.Volume.block([0, -20, -10], [60, -1, -5], 0.5)
+    tips = line_of_moves([5, 20, -1], [45, 20, -1], 1.0)
+    report = riffler.verify(program(path(tips), held()), stock, None, [vise, clamp])
+    # The clamp's first rays at x = 40.125; the ball's equator passes 3 mm ahead of the tip.
+    assert rows(report, "fixture") == [r for r in range(len(tips)) if tips[r, 0] + 3 > 40.125]
+    (found,) = report.findings
+    assert (found.fixture, found.member) == (1, "cutter") and "fixture 2" in found.message
+    over = path(line_of_moves([5, 20, 8], [45, 20, 8], 1.0))  # its tip just touches the clamp's top
+    assert riffler.verify(program(over, held()), stock, None, [vise, clamp]).passed
+    tall = box_mesh([40, 15, -10], [50, 25, 19.5])  # below the holder's face by half a millimetre, beside the shank
+    report = riffler.verify(program(path([[5, 20, -1], [31, 20, -1]]), held()), stock, None, [tall])
+    assert kinds(report) == ["fixture"] and report.findings[0].member == "holder"
+
+
+# --- the part ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("directions", ["z", "xyz"])
+def test_a_gouge_of_known_depth_is_found_on_its_lines(directions):
+    part = box_mesh([0, 0, -20], [40, 30, -5])
+    stock = riffler.Volume.block([0, 0, -20], [40, 30, 0], 0.25, directions)
+    tips = line_of_moves([-10, 15, -5], [50, 15, -5], 1.0)
+    tips[25:31, 2] = -5.2
+    report = riffler.verify(program(path(tips), riffler.Tool.flat(6, 30)), stock, part)
+    assert kinds(report) == ["gouge"]
+    (found,) = report.findings
+    # The move into the depth and the move out of it gouge too.
+    assert (found.row, found.last_row, found.line, found.last_line) == (25, 31, 125, 131)
+    assert found.value == pytest.approx(0.2, abs=0.004) and found.unit == "mm"
+    mesh, distance = report.deviation
+    assert len(distance) == len(mesh.vertices) and distance.min() == pytest.approx(-0.2, abs=0.01)
+    finer = riffler.verify(program(path(tips), riffler.Tool.flat(6, 30)), stock, part, gouge_tolerance=0.25)
+    assert finer.passed
+
+
+def test_a_hole_drilled_through_the_part_is_as_deep_as_its_middle():
+    part = box_mesh([0, 0, -20], [40, 30, -5])
+    stock = riffler.Volume.block([0, 0, -20], [40, 30, 0], 0.5)
+    report = riffler.verify(program(path([[20, 15, 5], [20, 15, -30]]), riffler.Tool.flat(6, 60)), stock, part)
+    (found,) = [f for f in report.findings if f.kind == "gouge"]
+    assert found.value == pytest.approx(7.5, rel=0.02) and found.row == 1
+    assert found.point[2] == pytest.approx(-12.5, abs=0.2)
+
+
+def test_rest_material_is_mapped_with_the_height_of_the_cusps():
+    radius, over = 3.0, 2.0
+    cusp = radius - np.sqrt(radius**2 - (over / 2) ** 2)
+    part = box_mesh([0, 0, -10], [30, 30, -5])
+    stock = riffler.Volume.block([0, 0, -10], [30, 30, 0], 0.2)  # rays stand on the cusps
+    tips = []
+    for k, y in enumerate(np.arange(-4.1, 34.1, over)):
+        tips += [[-5, y, -5], [35, y, -5]][:: 1 if k % 2 == 0 else -1]
+    whole = program(path(tips), riffler.Tool.ball(6, 30))
+    report = riffler.verify(whole, stock, part)
+    mesh, distance = report.deviation
+    assert tops(report.volume)[10:-10, 10:-10].max() == pytest.approx(cusp - 5, abs=1e-6)
+    # Between the rays the mesh cuts the cusps off, by half a pitch times their slope.
+    slack = 0.1 * (over / 2) / (radius - cusp) + 0.005
+    inner = np.all((mesh.vertices[:, :2] > 2) & (mesh.vertices[:, :2] < 28), axis=1) & (mesh.vertices[:, 2] > -7)
+    assert cusp - slack < distance[inner].max() < cusp + 0.001 and distance[inner].min() > -0.01
+    assert report.passed and any("rest" in sentence for sentence in report.not_checked)
+    assert riffler.verify(whole, stock, part, rest_tolerance=cusp + 0.001).passed
+    judged = riffler.verify(whole, stock, part, rest_tolerance=cusp - 0.001)
+    assert kinds(judged) == ["rest"] and judged.findings[0].value == pytest.approx(cusp, abs=1e-6)
+
+
+def test_the_part_map_says_what_covers_the_part():
+    part = box_mesh([0, 0, -10], [30, 30, -5])
+    stock = riffler.Volume.block([0, 0, -10], [30, 30, 0], 0.5)
+    report = riffler.verify(program(path([[-20, 0, 9], [-20, 0, 10]]), riffler.Tool.ball(6, 30)), stock, part)
+    top = part.vertices[:, 2] > -6
+    assert report.part_map.shape == (8,) and np.abs(report.part_map[~top]).max() < 0.3
+    empty = riffler.Volume.block([100, 100, 100], [101, 101, 101], 0.5)
+    nothing = riffler.verify(
+        program(path([[100.5, 100.5, 90], [100.5, 100.5, 110]]), riffler.Tool.flat(6, 30)), empty, part
+    )
+    assert np.all(nothing.part_map == -np.inf) and len(nothing.deviation[1]) == 0
+
+
+def test_a_stock_that_lacks_some_of_the_part_is_said_so_before_the_first_move():
+    part = box_mesh([0, 0, -10], [30, 30, 2])
+    stock = riffler.Volume.block([0, 0, -10], [30, 30, 0], 0.5)
+    moves = program(path([[-20, 0, 9], [-20, 0, 10]]), riffler.Tool.ball(6, 30))
+    report = riffler.verify(moves, stock, part)
+    assert [(f.kind, f.row) for f in report.findings] == [("gouge", 0)]
+    assert report.findings[0].value == pytest.approx(2)
+    hollow = blocks(0.5, [0, 0, -10], [30, 30, 0], ([0, 0, -10], [30, 30, -4]))
+    (found,) = riffler.verify(moves, hollow, box_mesh([0, 0, -10], [30, 30, 0])).findings
+    assert found.row == 0 and found.value == pytest.approx(4, rel=0.02)
+
+
+# --- other checks --------------------------------------------------------------------------------------------------
+
+
+def test_a_feed_into_material_with_a_spindle_that_stands_is_found():
+    stock = riffler.Volume.block([0, 0, -10], [60, 40, 0], 0.5)
+    poses = path([[-10, 20, 5], [-10, 20, -1], [20, 20, -1], [40, 20, -1]])
+    report = riffler.verify(program(poses, held(), spindle=[0, 0, 0, 500]), stock)
+    assert [(f.kind, f.row, f.last_row) for f in report.findings] == [("spindle", 2, 2)]
+
+
+def test_times_and_rates_follow_the_feed():
+    stock = riffler.Volume.block([0, 0, -10], [60, 40, 0], 0.5)
+    tilted = [np.sin(0.5), 0, np.cos(0.5)]
+    poses = np.vstack([path([[-10, 20, 5], [-10, 20, -1], [50, 20, -1]]), np.append([50, 20, -1], tilted)])
+    report = riffler.verify(program(poses, held(), feed=[0, 0, 600, 600], rapid=[1, 1, 0, 0]), stock, rapid_feed=6000)
+    assert report.seconds == pytest.approx([0, 0.06, 6.0, np.degrees(0.5) / 60])
+    assert report.time == pytest.approx(report.seconds.sum())
+    assert report.rate[2] == pytest.approx(report.removed[2] / 6 * 60) and report.rate[0] == 0
+
+
+def test_rapids_before_the_first_tool_are_passed_over_and_said_so():
+    stock = riffler.Volume.block([0, 0, -10], [60, 40, 0], 0.5)
+    poses = path([[0, 0, 50], [10, 10, 50], [10, 10, 5]])
+    report = riffler.verify(program(poses, held(), rapid=[1, 1, 1], feed=0, tool=[0, 0, 1]), stock)
+    assert report.passed and any("before a tool" in sentence for sentence in report.not_checked)
+
+
+# --- the same bytes ------------------------------------------------------------------------------------------------
+
+
+def busy_scene():
+    """A five-axis program with everything going wrong somewhere."""
+    rng = np.random.default_rng(3)
+    n = 600
+    t = np.linspace(0, 1, n)
+    tips = np.column_stack([30 + 24 * np.sin(17 * t), 20 + 16 * np.cos(23 * t), -4 - 4 * np.sin(40 * t)])
+    axes = UP + 0.3 * np.column_stack([np.sin(9 * t), np.cos(7 * t), 0 * t])
+    poses = np.column_stack([tips, axes / np.linalg.norm(axes, axis=1)[:, None]])
+    rapid = rng.random(n) < 0.05
+    tool = riffler.Tool.ball(6, 8).with_shank([(8, 2, 14, 4)]).with_holder([(14, 8, 40, 10)])
+    stock = blocks(0.5, [0, 0, -20], [60, 40, 8], ([0, 0, -20], [60, 40, -4]), ([40, 0, -20], [60, 40, 8]))
+    part = box_mesh([0, 0, -20], [60, 40, -7])
+    fixtures = [box_mesh([-10, 10, -20], [4, 30, 2])]
+    return poses, rapid, tool, stock, part, fixtures
+
+
+def busy_program(poses, rapid, tool):
+    return program(poses, tool, rapid=rapid, feed=np.where(rapid, 0, 1000), line=np.arange(len(poses)))
+
+
+def test_chunks_of_any_length_and_a_kept_verification_say_the_same():
+    poses, rapid, tool, stock, part, fixtures = busy_scene()
+    whole = busy_program(poses, rapid, tool)
+    report = riffler.verify(whole, stock, part, fixtures)
+    assert {"rapid", "holder", "fixture", "gouge"} <= set(kinds(report))
+    for length in (1, 7, 250):
+        starts = range(0, len(poses) - 1, length)
+        chunks = (
+            program(poses[a : a + length + 1], tool, rapid=rapid[a : a + length + 1],
+                    feed=np.where(rapid[a : a + length + 1], 0, 1000), line=np.arange(len(poses))[a : a + length + 1])
+            for a in starts
+        )  # fmt: skip
+        assert state(riffler.verify(chunks, stock, part, fixtures)) == state(report)
+    assert state(riffler.Verification(stock, part, fixtures).run(whole)) == state(report)
+
+
+def test_the_report_is_the_same_for_any_number_of_threads():
+    code = (
+        "import hashlib, test_verify as t, riffler\n"
+        "poses, rapid, tool, stock, part, fixtures = t.busy_scene()\n"
+        "r = riffler.verify(t.busy_program(poses, rapid, tool), stock, part, fixtures)\n"
+        "print(hashlib.sha256(repr(t.state(r)).encode()).hexdigest(), r.stats)\n"
+    )
+    out = []
+    for threads in ("1", "4"):
+        places = os.pathsep.join(map(os.path.abspath, sys.path))
+        environment = os.environ | {"RIFFLER_THREADS": threads, "PYTHONPATH": places}
+        command = [sys.executable, "-c", code]
+        folder = os.path.dirname(__file__)
+        out.append(subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE, cwd=folder).stdout)
+    assert out[0] == out[1] and len(out[0]) > 64
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_after_any_edit_the_report_is_that_of_a_fresh_run(seed):
+    rng = np.random.default_rng(seed)
+    poses, rapid, tool, stock, part, fixtures = busy_scene()
+    kept = riffler.Verification(stock, part, fixtures)
+    kept.run(busy_program(poses, rapid, tool))
+    for _ in range(6):
+        n = len(poses)
+        at = int(rng.integers(1, n))
+        match rng.integers(5):
+            case 0:
+                poses[at, 2] -= 0.7
+            case 1:
+                poses = np.insert(poses, at, [[*rng.uniform([0, 0, -8], [60, 40, 4]), *UP]], axis=0)
+                rapid = np.insert(rapid, at, bool(rng.integers(2)))
+            case 2:
+                poses, rapid = np.delete(poses, [at], axis=0), np.delete(rapid, [at])
+            case 3:
+                poses = np.vstack([poses, [[*rng.uniform([0, 0, -8], [60, 40, 4]), *UP]]])
+                rapid = np.append(rapid, False)
+            case 4:  # several places at once, the number of rows unchanged
+                for k in rng.integers(1, n, 3):
+                    rapid[k] = ~rapid[k]
+        edited = busy_program(poses, rapid, tool)
+        again = kept.run(edited)
+        assert state(again) == state(riffler.verify(edited, stock, part, fixtures))
+    other = tool.with_holder([(14, 8, 40, 11)])
+    edited = busy_program(poses, rapid, other)
+    assert state(kept.run(edited)) == state(riffler.verify(edited, stock, part, fixtures))
+
+
+def raster(width, over, z, step=1.0):
+    tips = []
+    for k, y in enumerate(np.arange(0, width + 1e-9, over)):
+        tips += list(line_of_moves([0, y, z], [width, y, z], step)[:: 1 if k % 2 == 0 else -1])
+    return np.array(tips)
+
+
+def test_an_edit_costs_what_it_touches():
+    tips = raster(100, 1, -2, step=0.25)
+    tool = held()
+    stock = riffler.Volume.block([0, 0, -20], [100, 100, 0], 0.25)
+    kept = riffler.Verification(stock)
+    first = kept.run(program(path(tips), tool)).stats
+    same = kept.run(program(path(tips), tool)).stats
+    assert same["moves"] == 0 and same["slabs_kept"] == 49 and first["slabs_kept"] == 0
+    tips[len(tips) // 2, 2] -= 0.5
+    report = kept.run(program(path(tips), tool))
+    assert report.stats["moves"] < 0.2 * first["moves"] and report.stats["slabs_kept"] >= 45
+    assert state(report) == state(riffler.verify(program(path(tips), tool), stock))
+    # At the end of the program the snapshots help too.
+    tips[-200, 2] -= 0.5
+    report = kept.run(program(path(tips), tool))
+    assert report.stats["snapshots_used"] > 0 and report.stats["moves"] < 0.02 * first["moves"]
+    assert state(report) == state(riffler.verify(program(path(tips), tool), stock))
+
+
+def test_holders_above_the_stock_cost_nothing():
+    tips = raster(100, 2, -2)
+    stock = riffler.Volume.block([0, 0, -10], [100, 100, 0], 0.25)
+    assert riffler.verify(program(path(tips), held()), stock).stats["probes"] == 0
+
+
+# --- bad input -----------------------------------------------------------------------------------------------------
+
+
+def test_bad_input_is_one_clear_error_and_changes_nothing():
+    stock = riffler.Volume.block([0, 0, -10], [20, 20, 0], 0.5)
+    before = stock.to_bytes()
+    good = program(path([[-10, 10, 5], [-10, 10, -1], [30, 10, -1]]), riffler.Tool.ball(6, 30))
+    unknown = program(path([[-10, 10, 5], [-10, 10, -1], [30, 10, -1]]), None, tool=[3, 3, 3])
+    part = box_mesh([0, 0, -10], [20, 20, -1])
+    cases = [
+        (lambda: riffler.verify(unknown, stock), "tool 3 (row 1, line 101)"),
+        (lambda: riffler.verify(unknown, stock, tools={3: "ball"}), "tools must be a dict"),
+        (lambda: riffler.verify(good, stock, tolerance=0), "tolerance must be a positive length"),
+        (lambda: riffler.verify(good, stock, gouge_tolerance=float("nan")), "gouge_tolerance"),
+        (lambda: riffler.verify(good, stock, part, rest_tolerance=-1), "rest_tolerance"),
+        (lambda: riffler.verify(good, stock, rest_tolerance=0.1), "no part to compare"),
+        (lambda: riffler.verify(good, stock, rapid_feed=0), "rapid_feed"),
+        (lambda: riffler.verify(good, stock, part_mesh=stock), "part_mesh"),
+        (lambda: riffler.verify(good, stock, fixtures=[part, 3]), "fixtures, number 1"),
+        (lambda: riffler.verify(good, stock, fixtures=part), "fixtures must be a list"),
+        (lambda: riffler.verify(3, stock), "iterable of Programs"),
+        (lambda: riffler.verify([good, 3], stock), "iterable of Programs"),
+        (lambda: riffler.verify([good, good], stock), "a chunk must begin with the row"),
+        (
+            lambda: riffler.verify(
+                program(np.vstack([path([[0, 0, 5]]), path([[9, 0, 5]], [0, 0, -1])]), held()), stock
+            ),
+            "row 1: the axis is exactly opposite",
+        ),
+        (
+            lambda: riffler.verify(program(path([[0, 0, 5], [9, 0, 5]]), held(), tool=[0, 0]), stock),
+            "before any tool is called (row 1, line 101)",
+        ),
+    ]
+    for call, message in cases:
+        with pytest.raises(ValueError) as caught:
+            call()
+        assert message in str(caught.value)
+    assert stock.to_bytes() == before
+    with pytest.raises(TypeError):
+        riffler.verify(good, None)
+
+
+def test_a_cancelled_run_leaves_the_verification_usable():
+    poses, rapid, tool, stock, part, fixtures = busy_scene()
+    kept = riffler.Verification(stock, part, fixtures)
+    whole = busy_program(poses, rapid, tool)
+    kept.run(whole)
+    poses[300, 2] -= 1
+    edited = busy_program(poses, rapid, tool)
+    with pytest.raises(riffler.Cancelled):
+        kept.run(edited, progress=lambda share: share < 0.3)
+    shares = []
+    report = kept.run(edited, progress=shares.append)
+    assert state(report) == state(riffler.verify(edited, stock, part, fixtures))
+    assert shares == sorted(shares) and shares[0] >= 0 and shares[-1] <= 1
+    with pytest.raises(riffler.Cancelled):
+        riffler.verify(whole, stock, part, fixtures, progress=lambda share: False)
+
+
+def test_empty_programs_pass():
+    stock = riffler.Volume.block([0, 0, -10], [20, 20, 0], 0.5)
+    for rows_ in (0, 1):
+        report = riffler.verify(program(path(np.zeros((rows_, 3)))), stock)
+        assert report.passed and len(report.removed) == rows_ and report.volume.to_bytes() == stock.to_bytes()
+    kept = riffler.Verification(stock)
+    cut = program(path([[10, 10, 5], [10, 10, -5]]), held())
+    for one in (program(path(np.zeros((0, 3)))), cut, program(path(np.zeros((0, 3)))), cut):
+        assert state(kept.run(one)) == state(riffler.verify(one, stock))
+    assert riffler.verify([], stock).passed
