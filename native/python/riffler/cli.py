@@ -13,10 +13,10 @@ import traceback
 from typing import NoReturn
 
 from . import Cancelled, __version__
-from .command import audit, bench, carve, convert, doctor, mesh, pencil
+from .command import audit, bench, carve, convert, doctor, mesh, pencil, verify
 from .command.console import Console
 
-COMMANDS = (carve, convert, mesh, pencil, audit, doctor, bench)
+COMMANDS = (carve, verify, convert, mesh, pencil, audit, doctor, bench)
 EPILOG = "lengths in mm, angles on the command line in degrees; exit status 0, 1 (a check failed) or 2 (bad input)"
 
 
