@@ -34,7 +34,7 @@ ProgramEdit edit_between(const RunRows& before, const RunRows& now) {
 }
 
 void for_moves_of(const RunRows& program, std::span<const std::int64_t> rows, std::span<const ToolShapes> shapes,
-                  const std::function<void(const Moves&)>& f) {
+                  double top, const std::function<void(const Moves&)>& f) {
   constexpr std::size_t kStretch = 1 << 16;
   for (std::size_t begin = 0; begin < rows.size(); begin += kStretch) {
     const std::span<const std::int64_t> some = rows.subspan(begin, std::min(kStretch, rows.size() - begin));
@@ -43,7 +43,7 @@ void for_moves_of(const RunRows& program, std::span<const std::int64_t> rows, st
       const auto at = static_cast<std::size_t>(row);
       pairs.push_back(program.poses[at - 1]), pairs.push_back(program.poses[at]);
     }
-    Moves moves(pairs, 2, shapes);
+    Moves moves(pairs, 2, shapes, top);
     for (const std::int64_t row : some) {
       const auto at = static_cast<std::size_t>(row);
       moves.add(row, program.tool[at], program.rapid[at] != 0);

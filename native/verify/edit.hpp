@@ -26,8 +26,8 @@ struct ProgramEdit {
 /// Rows at the same place, counted from the start or, if there are more or fewer of them now, from both ends.
 ProgramEdit edit_between(const RunRows& before, const RunRows& now);
 
-/// Calls f(moves) with the moves of `rows` in stretches that take little memory.
+/// Calls f(moves) with the moves of `rows` in stretches that take little memory. `shapes` and `top` as for Moves.
 void for_moves_of(const RunRows& program, std::span<const std::int64_t> rows, std::span<const ToolShapes> shapes,
-                  const std::function<void(const Moves&)>& f);
+                  double top, const std::function<void(const Moves&)>& f);
 
 }  // namespace riffler

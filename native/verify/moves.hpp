@@ -17,8 +17,8 @@ inline constexpr std::uint32_t kNoTool = ~0U;
 class Moves {
  public:
   /// `stride` 1: poses of a path, move i from poses[i] to poses[i + 1]; 2: pairs of poses, moves that need not join.
-  /// `tool` are places in `shapes`, or kNoTool. Arguments must outlive this.
-  Moves(std::span<const Pose> poses, std::uint32_t stride, std::span<const ToolShapes> shapes);
+  /// `tool` are places in `shapes`, or kNoTool. Arguments must outlive this. There is no material above z = `top`.
+  Moves(std::span<const Pose> poses, std::uint32_t stride, std::span<const ToolShapes> shapes, double top);
   void add(std::int64_t row, std::uint32_t tool, bool rapid) {
     row_.push_back(row), tool_.push_back(tool), rapid_.push_back(rapid);
   }
@@ -34,6 +34,7 @@ class Moves {
   std::uint32_t tool(std::size_t i) const { return tool_[i]; }
   bool rapid(std::size_t i) const { return rapid_[i] != 0; }
   const ToolShapes& shapes(std::size_t i) const { return shapes_[tool_[i]]; }
+  Box3 swept(const Rod& rod, std::size_t i) const { return rod.swept(from(i), to(i), top_); }
 
   /// What of the tool could touch a box.
   enum Touch : unsigned char { None = 0, Cutter = 1, Probes = 2, Whole = 3 };
@@ -56,6 +57,7 @@ class Moves {
   std::span<const Pose> poses_;
   std::uint32_t stride_;
   std::span<const ToolShapes> shapes_;
+  double top_;
   std::vector<std::int64_t> row_;
   std::vector<std::uint32_t> tool_;
   std::vector<std::uint8_t> rapid_;

@@ -41,13 +41,21 @@ void Rod::add(const Rod& other) {
   low = std::min(low, other.low), high = std::max(high, other.high), radius = std::max(radius, other.radius);
 }
 
-Box3 Rod::swept(const Pose& from, const Pose& to) const {
+Box3 Rod::swept(const Pose& from, const Pose& to, double top) const {
   Box3 box;
+  double end = high;
+  // The axis' z is a concave function of the time where it is positive, so it never falls below the lesser of its ends;
+  // nor does the tip's.
+  if (const double rise = std::min(from.axis.z, to.axis.z); rise > 0) {
+    const double least = std::min(from.tip.z, to.tip.z);
+    end = std::min(high, (top - least + radius) / rise);
+    if (end < low) return box;
+  }
   for (const Pose* pose : {&from, &to}) {
     const Vec3& o = pose->axis;
     const Vec3 disc(std::sqrt(std::max(0.0, 1 - o.x * o.x)), std::sqrt(std::max(0.0, 1 - o.y * o.y)),
                     std::sqrt(std::max(0.0, 1 - o.z * o.z)));
-    for (const double z : {low, high}) {
+    for (const double z : {low, end}) {
       const Vec3 centre = pose->tip + z * o;
       box.add({centre - radius * disc, centre + radius * disc});
     }
@@ -55,7 +63,8 @@ Box3 Rod::swept(const Pose& from, const Pose& to) const {
   // Every point of the tool stays within lever φ² / 8 of the straight way between its two places: its acceleration
   // beside the tip's is at most lever φ².
   const double chord = glm::length(to.axis - from.axis);
-  const double angle = 2 * std::asin(std::min(1.0, chord / 2)), lever = std::hypot(std::max(-low, high), radius);
+  const double angle = 2 * std::asin(std::min(1.0, chord / 2)),
+               lever = std::hypot(std::max(std::abs(low), std::abs(end)), radius);
   return box.grown(lever * angle * angle / 8 + 1e-9 * (1 + lever));
 }
 

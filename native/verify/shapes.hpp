@@ -19,8 +19,8 @@ struct Rod {
   double low = 0, high = 0, radius = 0;
   bool empty() const { return !(low < high); }
   void add(const Rod& other);
-  /// Box of what it sweeps between two poses; never too small.
-  Box3 swept(const Pose& from, const Pose& to) const;
+  /// Box of what it sweeps between two poses; never too small. What stays above z = `top` may be left out.
+  Box3 swept(const Pose& from, const Pose& to, double top) const;
 };
 
 /// What must not touch material.

@@ -72,7 +72,7 @@ bool SlabSimulation::near_material(std::size_t move) const {
   const Grid& grid = bench_.grid();
   const Slab& slab = bench_.slab();
   for (const Rod& rod : moves_->shapes(move).probe_rods) {
-    const Box3 box = to_local(grid.axis(), rod.swept(moves_->from(move), moves_->to(move)));
+    const Box3 box = to_local(grid.axis(), moves_->swept(rod, move));
     const auto tile = [&](double at, double lower, int low, int high) {
       return static_cast<int>(std::clamp(std::floor((at - lower) / (grid.pitch() * kTileSide)),
                                          static_cast<double>(low), static_cast<double>(high)));

@@ -31,15 +31,20 @@ const VerifyOptions& checked(const VerifyOptions& options) {
   return options;
 }
 
-/// How far a tool of unknown end must go on to leave everything there is: twice the box of stock and fixtures.
-double beyond_all(const Volume& stock, const std::vector<Volume>& fixtures) {
+Box3 box_of_all(const Volume& stock, const std::vector<Volume>& fixtures) {
   Box3 box = stock.frame().box;
   for (const Volume& v : fixtures) box.add(v.frame().box);
-  return 2 * glm::length(box.size());
+  return box;
 }
 
-Moves moves_of(const RunRows& rows, std::size_t begin, std::size_t end, std::span<const ToolShapes> shapes) {
-  Moves moves(std::span(rows.poses).subspan(begin - 1, end - begin + 1), 1, shapes);
+/// How far a tool of unknown end must go on to leave everything there is.
+double beyond(const Box3& all) {
+  return 2 * glm::length(all.size());
+}
+
+Moves moves_of(const RunRows& rows, std::size_t begin, std::size_t end, std::span<const ToolShapes> shapes,
+               double top) {
+  Moves moves(std::span(rows.poses).subspan(begin - 1, end - begin + 1), 1, shapes, top);
   for (std::size_t row = begin; row < end; ++row)
     moves.add(static_cast<std::int64_t>(row), rows.tool[row], rows.rapid[row] != 0);
   moves.finish();
@@ -54,7 +59,8 @@ Verification::Verification(Volume stock, std::shared_ptr<const Mesh> part, std::
       part_(std::move(part)),
       fixtures_(std::move(fixtures)),
       options_(checked(options)),
-      tools_(std::move(tools), options.tolerance, beyond_all(stock_, fixtures_), stock_.frame().pitch) {
+      tools_(std::move(tools), options.tolerance, beyond(box_of_all(stock_, fixtures_)), stock_.frame().pitch),
+      top_(box_of_all(stock_, fixtures_).upper.z) {
   if (options_.rest_tolerance && !part_)
     throw std::invalid_argument("rest_tolerance: there is no part to compare with");
   if (part_) target_ = std::make_unique<Target>(*part_, stock_.frame(), options_.gouge_tolerance, progress);
@@ -110,8 +116,8 @@ std::vector<SlabState> Verification::resume(const RunRows& rows, VerifyStats& st
       });
     });
   };
-  for_moves_of(memory_->rows, edit.before, tools_.shapes(), look);
-  for_moves_of(rows, edit.now, tools_.shapes(), look);
+  for_moves_of(memory_->rows, edit.before, tools_.shapes(), top_, look);
+  for_moves_of(rows, edit.now, tools_.shapes(), top_, look);
   std::vector<SlabState> slabs = memory_->slabs;
   const auto last = static_cast<std::int64_t>(rows.poses.size()) - 1;
   for (std::size_t k = 0; k < slabs.size(); ++k) {
@@ -199,7 +205,7 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
   const Progress work = part(progress, 0, options_.rest_tolerance ? 0.8 : 1);
   for (std::size_t begin = static_cast<std::size_t>(done) + 1; begin < n; begin += kChunk) {
     const std::size_t end = std::min(n, begin + kChunk);
-    const Moves moves = moves_of(rows, begin, end, tools_.shapes());
+    const Moves moves = moves_of(rows, begin, end, tools_.shapes(), top_);
     const auto share = [&](std::size_t row) { return static_cast<double>(row) / static_cast<double>(n); };
     simulate(moves, slabs, true, stats, part(work, share(begin), share(end)));
   }
@@ -245,7 +251,7 @@ void VerifyStream::add(const Program& chunk, const Progress& progress) {
   std::vector<double> removed(n);
   for (std::size_t begin = 1; begin < n; begin += kChunk) {
     const std::size_t end = std::min(n, begin + kChunk);
-    Moves moves(std::span(chunk.poses()).subspan(begin - 1, end - begin + 1), 1, of_.tools_.shapes());
+    Moves moves(std::span(chunk.poses()).subspan(begin - 1, end - begin + 1), 1, of_.tools_.shapes(), of_.top_);
     for (std::size_t row = begin; row < end; ++row)
       moves.add(first_row + static_cast<std::int64_t>(row), places[row], chunk.rapid()[row] != 0);
     moves.finish();

@@ -64,6 +64,7 @@ class Verification {
   std::vector<Volume> fixtures_;
   VerifyOptions options_;
   Toolset tools_;
+  double top_;  ///< z above which there is nothing
   std::unique_ptr<const Target> target_;
   std::vector<SlabJob> jobs_;
   std::vector<Event> missing_;  ///< of the part in the stock
