@@ -20,17 +20,21 @@ struct Event {
   Member member = Member::Cutter;  ///< what of the tool it was
   std::int32_t fixture = -1;       ///< which fixture was met; −1: the stock
   std::int64_t row = 0;
-  double value = 0;  ///< mm³; of gouges mm
+  double value = 0;  ///< mm³, or 0 where it was not measured; of gouges mm
   double worst = 0;  ///< decides between slabs which point is the worst
   Vec3 point{0};     ///< mm, part frame
 
   bool operator==(const Event&) const = default;
 };
 
-/// What the moves did, rows ascending in both; rows that removed nothing are left out of `removed`.
+/// Whether it is one of shank, holder or beyond in the stock.
+bool is_strike(const Event& event);
+
+/// What the moves did; rows that removed nothing are left out of `removed`.
 struct SlabReport {
   std::vector<std::pair<std::int64_t, double>> removed;  ///< mm³ of the rays that define Volume::volume()
   std::vector<Event> events;
+  std::uint64_t strikes = 0;  ///< of shank, holder and beyond, since the program's start
 };
 
 /// Operation counts: what a run did, and what it did not need to do.

@@ -78,17 +78,18 @@ std::vector<Finding> FindingList::take() {
 std::string message_of(const Finding& f) {
   const std::string tool = " of tool " + std::to_string(f.tool);
   const std::string what = f.fixture < 0 ? "material" : "fixture " + std::to_string(f.fixture + 1);
+  const std::string met = f.value > 0 ? number(f.value) + " mm³ of " : "";
   switch (f.kind) {
     case Kind::Rapid:
       return "a rapid takes " + number(f.value) + " mm³ of material: retract higher before it, or make it a feed move";
     case Kind::Spindle:
       return "a feed move takes " + number(f.value) + " mm³ with a spindle that stands: start it (M3 S…) before";
     case Kind::Holder:
-      return "the holder" + tool + " meets " + number(f.value) +
-             " mm³ of material: let the tool stick out further, tilt it, or clear the place before";
+      return "the holder" + tool + " meets " + met +
+             "material: let the tool stick out further, tilt it, or clear the place before";
     case Kind::Shank:
-      return "the shank" + tool + " meets " + number(f.value) +
-             " mm³ of material: take a longer or a thinner tool, tilt it, or clear the place before";
+      return "the shank" + tool + " meets " + met +
+             "material: take a longer or a thinner tool, tilt it, or clear the place before";
     case Kind::Fixture:
       return std::string("the ") + name_of(f.member) + tool + " meets " + number(f.value) + " mm³ of " + what +
              ": move the fixture or lead the tool round it";

@@ -37,9 +37,11 @@ class SlabSimulation {
   bool alarm(Batch batch);
   bool near_material(std::size_t move) const;
   void find_rapids(Batch batch, std::span<const double> taken, SlabTiles before);
-  void find_strikes(std::size_t move);
+  void find_strikes(const Touched& touched);
+  bool measured(std::size_t move) const;
   struct Strike;
-  bool strike(SlabTiles& state, const Probe& probe, std::size_t move, double t0, double t1, int halvings, Strike& out);
+  bool strike(SlabTiles& state, const Probe& probe, const Touched& touched, double t0, double t1, int halvings,
+              Strike& out);
 
   Workbench bench_;
   bool probed_;

@@ -23,6 +23,7 @@ void SlabState::rewind(std::int64_t row) {
   std::erase_if(report.removed, [&](const auto& entry) { return later(entry.first); });
   // What the stock lacks from the start has row 0.
   std::erase_if(report.events, [&](const Event& e) { return later(e.row); });
+  report.strikes = static_cast<std::uint64_t>(std::count_if(report.events.begin(), report.events.end(), is_strike));
 }
 
 void SlabState::renumber(std::int64_t from, std::int64_t shift) {

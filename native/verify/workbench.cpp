@@ -30,9 +30,18 @@ std::vector<double> Workbench::cut(SlabTiles& tiles, std::span<const ConvexGroup
 
 bool Workbench::touches(const SlabTiles& tiles, std::span<const ConvexGroup> shape, std::span<const Pose> poses,
                         std::span<const std::uint32_t> ends) {
-  SlabTiles copy = tiles;
-  const std::vector<double> taken = cut(copy, shape, poses, ends);
-  return std::any_of(taken.begin(), taken.end(), [](double t) { return t > 0; });
+  const auto takes = [&](const SlabTiles& from) {
+    SlabTiles copy = from;
+    cut(copy, shape, poses, ends);
+    const auto changed = std::mismatch(copy.begin(), copy.end(), from.begin());
+    if (changed.first == copy.end()) return false;
+    hint_ = static_cast<std::size_t>(changed.first - copy.begin());
+    return true;
+  };
+  SlabTiles one = nothing_;
+  one[hint_] = tiles[hint_];
+  if (!one[hint_]->spans.empty() && takes(one)) return true;
+  return takes(tiles);
 }
 
 SlabTiles Workbench::after(const SlabTiles& tiles, std::span<const ConvexGroup> shape, const Pose& from,

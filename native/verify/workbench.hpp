@@ -22,7 +22,7 @@ class Workbench {
   /// Cuts `tiles` with moves to poses[ends[k]] from the poses before; returns mm³ per move.
   std::vector<double> cut(SlabTiles& tiles, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
                           std::span<const std::uint32_t> ends);
-  /// Whether the moves would take anything. Nothing is changed.
+  /// Whether the moves would take anything. The tile where the last answer was yes is asked first.
   bool touches(const SlabTiles& tiles, std::span<const ConvexGroup> shape, std::span<const Pose> poses,
                std::span<const std::uint32_t> ends);
   /// What one move would leave.
@@ -33,6 +33,7 @@ class Workbench {
   Slab slab_;
   SlabTiles nothing_;
   double tolerance_;
+  std::size_t hint_ = 0;
   Stats stats_;
 };
 
