@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 
@@ -565,3 +566,20 @@ def test_empty_programs_pass():
     for one in (program(path(np.zeros((0, 3)))), cut, program(path(np.zeros((0, 3)))), cut):
         assert state(kept.run(one)) == state(riffler.verify(one, stock))
     assert riffler.verify([], stock).passed
+
+
+# --- elsewhere -----------------------------------------------------------------------------------------------------
+
+
+def test_slabs_that_went_through_a_pickle_give_the_report_of_a_run():
+    poses, rapid, tool, stock, part, fixtures = busy_scene()
+    whole = busy_program(poses, rapid, tool)
+    verification = riffler.Verification(stock, part, fixtures)
+    tasks = verification.tasks(whole)
+    assert len(tasks) > 4 and all(0 < task.moves < len(poses) for task in tasks)
+    away = [pickle.loads(pickle.dumps(task)).run() for task in reversed(tasks)]
+    report = verification.conclude(whole, [pickle.loads(pickle.dumps(result)) for result in away])
+    assert state(report) == state(riffler.verify(whole, stock, part, fixtures))
+    other = riffler.Verification(riffler.Volume.block([0, 0, 0], [1, 1, 1], 0.5))
+    with pytest.raises(ValueError, match="results"):
+        other.conclude(whole, away)
