@@ -42,6 +42,15 @@ double beyond(const Box3& all) {
   return 2 * glm::length(all.size());
 }
 
+std::unique_ptr<const Target> target_of(const Mesh& part, const Frame& frame, double tolerance,
+                                        const Progress& progress) {
+  try {
+    return std::make_unique<Target>(part, frame, tolerance, progress);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("part_mesh: ") + error.what());
+  }
+}
+
 Moves moves_of(const RunRows& rows, std::size_t begin, std::size_t end, std::span<const ToolShapes> shapes,
                double top) {
   Moves moves(std::span(rows.poses).subspan(begin - 1, end - begin + 1), 1, shapes, top);
@@ -63,7 +72,7 @@ Verification::Verification(Volume stock, std::shared_ptr<const Mesh> part, std::
       top_(box_of_all(stock_, fixtures_).upper.z) {
   if (options_.rest_tolerance && !part_)
     throw std::invalid_argument("rest_tolerance: there is no part to compare with");
-  if (part_) target_ = std::make_unique<Target>(*part_, stock_.frame(), options_.gouge_tolerance, progress);
+  if (part_) target_ = target_of(*part_, stock_.frame(), options_.gouge_tolerance, progress);
   const auto add = [&](const Volume& volume, std::int32_t fixture) {
     const std::vector<Slab> slabs = slabs_of(volume);
     for (std::size_t place = 0; place < slabs.size(); ++place) {
