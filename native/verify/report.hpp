@@ -24,9 +24,10 @@ struct Finding {
   std::int32_t line = 0, last_line = 0;  ///< 1-based; 0: no source
   /// Rapids and spindles that stand: mm³ that all rows took. Shank, holder, fixture, unknown: mm³ in the way of the
   /// worst row. Gouges and rest material: mm under or over the part's surface at the worst point.
+  /// Of a slab that has had many strikes only one in sixteen is measured (simulate.cpp).
   double value = 0;
-  double worst = 0;
-  Vec3 point{0};  ///< the worst, part frame
+  double worst = 0;  ///< what `point` was chosen by
+  Vec3 point{0};     ///< the worst, part frame
   std::string message;
 
   const char* unit() const { return kind == Kind::Gouge || kind == Kind::Rest ? "mm" : "mm³"; }

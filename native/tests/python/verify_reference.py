@@ -1,9 +1,11 @@
-"""What verification is judged by: a height map in numpy, exact under cutters that only move, and dense sampling.
+"""What verification is judged by: a height map, exact under cutters that only move, and dense sampling. And scenes.
 
 Shares nothing with the core but the names of the cutters' sizes.
 """
 
 from __future__ import annotations
+
+import json
 
 import numpy as np
 import riffler
@@ -109,3 +111,71 @@ def in_frusta(points, frusta, pose) -> np.ndarray:
         radius = r0 + (r1 - r0) * (z - z0) / (z1 - z0)
         depth = np.maximum(depth, np.minimum(radius - rho, np.minimum(z - z0, z1 - z)))
     return depth
+
+
+UP = [0.0, 0.0, 1.0]
+
+
+def path(tips, axis=UP):
+    tips = np.asarray(tips, float)
+    return np.column_stack([tips, np.broadcast_to(np.asarray(axis, float), tips.shape)])
+
+
+def program(poses, cutter=None, **columns):
+    columns = {"feed": 1000.0, "spindle": 8000.0, "line": np.arange(len(poses)) + 100} | columns
+    tools = {} if cutter is None else {1: cutter}
+    return riffler.Program(poses, columns.pop("feed"), tools=tools, **columns)
+
+
+def line_of_moves(first, last, step):
+    first, last = np.asarray(first, float), np.asarray(last, float)
+    n = int(np.ceil(np.linalg.norm(last - first) / step))
+    return first + np.linspace(0, 1, n + 1)[:, None] * (last - first)
+
+
+def rows(report, kind):
+    """All rows of the findings of a kind."""
+    return [r for f in report.findings if f.kind == kind for r in range(f.row, f.last_row + 1)]
+
+
+def kinds(report):
+    return sorted({f.kind for f in report.findings})
+
+
+def state(report):
+    """Everything a report says, but how much work it was."""
+    data = report.to_dict()
+    del data["stats"]
+    return (
+        json.dumps(data),
+        np.asarray(report.removed).tobytes(),
+        np.asarray(report.seconds).tobytes(),
+        report.volume.to_bytes(),
+    )
+
+
+def raster(width, over, z, step=1.0):
+    tips = []
+    for k, y in enumerate(np.arange(0, width + 1e-9, over)):
+        tips += list(line_of_moves([0, y, z], [width, y, z], step)[:: 1 if k % 2 == 0 else -1])
+    return np.array(tips)
+
+
+def busy_scene():
+    """A five-axis program with everything going wrong somewhere."""
+    rng = np.random.default_rng(3)
+    n = 600
+    t = np.linspace(0, 1, n)
+    tips = np.column_stack([30 + 24 * np.sin(17 * t), 20 + 16 * np.cos(23 * t), -4 - 4 * np.sin(40 * t)])
+    axes = UP + 0.3 * np.column_stack([np.sin(9 * t), np.cos(7 * t), 0 * t])
+    poses = np.column_stack([tips, axes / np.linalg.norm(axes, axis=1)[:, None]])
+    rapid = rng.random(n) < 0.05
+    tool = riffler.Tool.ball(6, 8).with_shank([(8, 2, 14, 4)]).with_holder([(14, 8, 40, 10)])
+    stock = blocks(0.5, [0, 0, -20], [60, 40, 8], ([0, 0, -20], [60, 40, -4]), ([40, 0, -20], [60, 40, 8]))
+    part = box_mesh([0, 0, -20], [60, 40, -7])
+    fixtures = [box_mesh([-10, 10, -20], [4, 30, 2])]
+    return poses, rapid, tool, stock, part, fixtures
+
+
+def busy_program(poses, rapid, tool):
+    return program(poses, tool, rapid=rapid, feed=np.where(rapid, 0, 1000), line=np.arange(len(poses)))
