@@ -326,7 +326,7 @@ void bind_verify(py::module_& m) {
         R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
 
 ``program``: a Program, or an iterable of Programs, each of which begins with the row at which the one before ended;
-nothing is kept of them but 24 bytes a row. ``part_mesh``: Mesh, for gouges and rest material. ``fixtures``: list of
+nothing is kept of them but 16 bytes a row. ``part_mesh``: Mesh, for gouges and rest material. ``fixtures``: list of
 Volume or Mesh (which becomes a Volume at the stock's pitch). ``tools``: dict of number to Tool, before the program's own.
 
 ``tolerance`` (mm): of cutting, as in Volume.carve; contact that is less deep is none. ``gouge_tolerance`` (mm): what is

@@ -45,6 +45,10 @@ std::shared_ptr<const Tile> deep_rays(const Target& target, const Grid& grid, co
   return builder ? builder->finish() : nullptr;
 }
 
+/// mm: shorter pieces are rounding. A retract on the way of its plunge would gouge what the plunge gouged, by 1e-15 mm.
+/// Not more, as many small bites make a deep gouge.
+constexpr double kBite = 1e-6;
+
 /// The worst of what a slab of the part has lost.
 Target::Deepest deepest_loss(const Target& target, const Workbench& bench, const SlabTiles& before,
                              const SlabTiles& after) {
@@ -52,6 +56,7 @@ Target::Deepest deepest_loss(const Target& target, const Workbench& bench, const
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (before[k] == after[k]) continue;
     for_each_loss(*before[k], *after[k], [&](int r, double near, double far) {
+      if (far - near < kBite) return;
       const Vec3 a = on_ray(bench.grid(), bench.slab(), k, r, near), b = on_ray(bench.grid(), bench.slab(), k, r, far);
       const Target::Deepest found = target.deepest(a, b);
       if (found.depth > worst.depth) worst = found;

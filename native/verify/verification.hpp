@@ -76,7 +76,7 @@ class Verification {
   std::optional<Memory> memory_;
 };
 
-/// A program in chunks, each of which begins with the row at which the one before ended. Keeps 24 bytes a row, and
+/// A program in chunks, each of which begins with the row at which the one before ended. Keeps 16 bytes a row, and
 /// nothing of the chunks.
 class VerifyStream {
  public:

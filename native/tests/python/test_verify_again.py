@@ -8,9 +8,7 @@ import sys
 import numpy as np
 import pytest
 import riffler
-from verify_reference import UP, busy_program, busy_scene, kinds, path, program, raster, state
-
-HELD = riffler.Tool.ball(6, 15).with_shank([(15, 3, 20, 3)]).with_holder([(20, 10, 50, 10)])
+from verify_reference import UP, busy_program, busy_scene, held, kinds, path, program, raster, state
 
 
 def test_chunks_of_any_length_and_a_kept_verification_say_the_same():
@@ -79,7 +77,7 @@ def test_after_any_edit_the_report_is_that_of_a_fresh_run(seed):
 
 def test_an_edit_costs_what_it_touches():
     tips = raster(100, 1, -2, step=0.25)
-    tool = HELD
+    tool = held()
     stock = riffler.Volume.block([0, 0, -20], [100, 100, 0], 0.25)
     kept = riffler.Verification(stock)
     first = kept.run(program(path(tips), tool)).stats
@@ -99,7 +97,7 @@ def test_an_edit_costs_what_it_touches():
 def test_holders_above_the_stock_cost_nothing():
     tips = raster(100, 2, -2)
     stock = riffler.Volume.block([0, 0, -10], [100, 100, 0], 0.25)
-    assert riffler.verify(program(path(tips), HELD), stock).stats["probes"] == 0
+    assert riffler.verify(program(path(tips), held()), stock).stats["probes"] == 0
 
 
 def test_slabs_that_went_through_a_pickle_give_the_report_of_a_run():

@@ -179,3 +179,10 @@ def busy_scene():
 
 def busy_program(poses, rapid, tool):
     return program(poses, tool, rapid=rapid, feed=np.where(rapid, 0, 1000), line=np.arange(len(poses)))
+
+
+HOLDER = [(20, 10, 50, 10)]
+
+
+def held(length=15):
+    return riffler.Tool.ball(6, length).with_shank([(length, 3, 20, 3)]).with_holder(HOLDER)
