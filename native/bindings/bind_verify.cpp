@@ -134,25 +134,6 @@ std::shared_ptr<SharedReport> run(SharedVerification& self, const Program& progr
   return share(std::move(report));
 }
 
-std::vector<SlabTask> tasks(SharedVerification& self, const Program& program) {
-  const std::unique_lock held(self.mutex, std::try_to_lock);
-  if (!held) throw std::runtime_error("the verification is in use by another thread");
-  const NoGil release;
-  return self.verification->tasks(program);
-}
-
-std::shared_ptr<SharedReport> conclude(SharedVerification& self, const Program& program,
-                                       std::vector<SlabResult> results, const py::object& progress) {
-  const Progress listener = to_progress(progress);
-  const std::unique_lock held(self.mutex, std::try_to_lock);
-  if (!held) throw std::runtime_error("the verification is in use by another thread");
-  VerifyReport report = [&] {
-    const NoGil release;
-    return self.verification->conclude(program, std::move(results), listener);
-  }();
-  return share(std::move(report));
-}
-
 py::object deviation(SharedReport& self) {
   if (!self.report.part) return py::none();
   if (self.deviation.is_none()) {
@@ -354,13 +335,7 @@ are. The report is that of a fresh run, bit for bit.)")
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
            py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("progress") = py::none())
       .def("run", &run, py::arg("program"), py::arg("progress") = py::none(),
-           "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.")
-      .def("tasks", &tasks, py::arg("program"),
-           R"(The work on a program as a list of tasks, one for each slab of stock and fixtures that a move can touch.
-
-Tasks and their results can be pickled: ``[task.run() for task in tasks]`` may happen anywhere, in any order.)")
-      .def("conclude", &conclude, py::arg("program"), py::arg("results"), py::arg("progress") = py::none(),
-           "The VerifyReport from the results of ``tasks(program)``, in any order: that of ``run``, bit for bit.");
+           "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
 }
 
 }  // namespace riffler

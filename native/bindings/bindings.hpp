@@ -24,7 +24,6 @@ void bind_tool(py::module_& m);
 void bind_volume(py::module_& m);
 void bind_mesher(py::module_& m);
 void bind_program(py::module_& m);
-void bind_slab_task(py::module_& m);
 void bind_verify(py::module_& m);
 void bind_journal(py::module_& m);
 void bind_collide(py::module_& m);

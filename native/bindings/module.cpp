@@ -21,7 +21,6 @@ PYBIND11_MODULE(_core, m) {
   bind_volume(m);
   bind_mesher(m);
   bind_program(m);
-  bind_slab_task(m);
   bind_verify(m);
   bind_journal(m);
   bind_collide(m);

@@ -68,10 +68,10 @@ Target::Deepest deepest_loss(const Target& target, const Workbench& bench, const
 }  // namespace
 
 Target::Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress)
-    : Target(part, from_mesh(part, frame, progress), tolerance) {}
-
-Target::Target(const Mesh& part, Volume volume, double tolerance)
-    : volume_(std::move(volume)), surface_(part, true), tolerance_(tolerance), bounds_(riffler::bounds(part)) {}
+    : volume_(from_mesh(part, frame, progress)),
+      surface_(part, true),
+      tolerance_(tolerance),
+      bounds_(riffler::bounds(part)) {}
 
 bool Target::deep(const Vec3& near, const Vec3& far) const {
   const Vec3 middle = (near + far) / 2.0;

@@ -16,9 +16,6 @@ class Target {
   /// is none to make a volume of.
   Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress = {});
 
-  /// With the part's volume at hand, all of it or that of one slab.
-  Target(const Mesh& part, Volume volume, double tolerance);
-
   const Volume& volume() const { return volume_; }
   /// With sides.
   const Closest& surface() const { return surface_; }

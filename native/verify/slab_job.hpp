@@ -12,7 +12,6 @@ namespace riffler {
 /// A slab of the stock, or of a fixture.
 struct SlabJob {
   std::int32_t fixture = -1;  ///< −1: the stock
-  std::size_t place = 0;      ///< in slabs_of its volume
   Slab slab;
   bool probed = false;  ///< of the grid that shank and holder are tried on and that volumes are taken from
   Box3 material;        ///< before the first move

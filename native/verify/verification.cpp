@@ -74,13 +74,11 @@ Verification::Verification(Volume stock, std::shared_ptr<const Mesh> part, std::
     throw std::invalid_argument("rest_tolerance: there is no part to compare with");
   if (part_) target_ = target_of(*part_, stock_.frame(), options_.gouge_tolerance, progress);
   const auto add = [&](const Volume& volume, std::int32_t fixture) {
-    const std::vector<Slab> slabs = slabs_of(volume);
-    for (std::size_t place = 0; place < slabs.size(); ++place) {
-      const Slab& slab = slabs[place];
+    for (const Slab& slab : slabs_of(volume)) {
       const Grid& grid = volume.grids()[slab.grid];
       const bool probed = &grid == &volume.reference();
       if (fixture >= 0 && !probed) continue;
-      jobs_.push_back({fixture, place, slab, probed, material_box(grid, slab, tiles_of(grid, slab))});
+      jobs_.push_back({fixture, slab, probed, material_box(grid, slab, tiles_of(grid, slab))});
     }
   };
   add(stock_, -1);
@@ -221,15 +219,6 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
     simulate(moves, slabs, true, stats, part(work, share(begin), share(end)));
   }
 
-  VerifyReport report = report_on(program, rows.tool, slabs, part(progress, 0.8, 1));
-  report.stats = stats;
-  memory_ = Memory{std::move(rows), std::move(slabs)};
-  return report;
-}
-
-VerifyReport Verification::report_on(const Program& program, const std::vector<std::uint32_t>& places,
-                                     std::vector<SlabState>& slabs, const Progress& progress) const {
-  const std::size_t n = program.size();
   std::vector<double> removed(n), seconds(n);
   std::vector<Event> events = missing_;
   if (n == 0) events.clear();
@@ -242,74 +231,16 @@ VerifyReport Verification::report_on(const Program& program, const std::vector<s
   bool without_tool = false;
   for (std::size_t row = 1; row < n; ++row) {
     seconds[row] = seconds_of(program.poses()[row - 1], program, row, options_.rapid_feed);
-    if (places[row] == kNoTool)
+    if (rows.tool[row] == kNoTool)
       without_tool = true;
     else
-      tools.insert(places[row]);
+      tools.insert(rows.tool[row]);
   }
   FindingList findings;
   findings.add(std::move(events), program, 0);
-  VerifyReport report = conclude(slabs, findings, tools, without_tool, progress);
-  report.removed = std::move(removed), report.seconds = std::move(seconds);
-  return report;
-}
-
-std::vector<SlabTask> Verification::tasks(const Program& program) {
-  check_path(program.poses());
-  const RunRows rows{program.poses(), tools_.places(program, 0), program.rapid()};
-  std::vector<SlabTask> out;
-  if (rows.poses.size() < 2) return out;
-  const Moves moves = moves_of(rows, 1, rows.poses.size(), tools_.shapes(), top_);
-  for (std::size_t k = 0; k < jobs_.size(); ++k) {
-    const SlabJob& job = jobs_[k];
-    if (job.material.empty()) continue;
-    const Volume& whole = job.fixture < 0 ? stock_ : fixtures_[static_cast<std::size_t>(job.fixture)];
-    SlabTask task{.fixture = job.fixture,
-                  .slab = job.place,
-                  .material = part_of(whole, job.slab),
-                  .poses = {},
-                  .rows = {},
-                  .tool = {},
-                  .rapid = {},
-                  .tools = tools_.tools(),
-                  .part = nullptr,
-                  .target = {}};
-    moves.for_each(0, job.material, [&](std::size_t i, Moves::Touch touch) {
-      if (!job.probed && !(touch & Moves::Cutter)) return;
-      task.poses.push_back(moves.from(i)), task.poses.push_back(moves.to(i));
-      task.rows.push_back(moves.row(i)), task.tool.push_back(moves.tool(i)), task.rapid.push_back(moves.rapid(i));
-    });
-    if (task.rows.empty()) continue;
-    task.tolerance = options_.tolerance, task.gouge_tolerance = options_.gouge_tolerance;
-    task.beyond = tools_.beyond(), task.pitch = stock_.frame().pitch, task.top = top_;
-    if (target_ && job.fixture < 0) task.part = part_, task.target = part_of(target_->volume(), job.slab);
-    task.job = k;
-    out.push_back(std::move(task));
-  }
-  return out;
-}
-
-VerifyReport Verification::conclude(const Program& program, std::vector<SlabResult> results, const Progress& progress) {
-  std::vector<SlabState> slabs = fresh();
-  VerifyStats stats;
-  for (SlabResult& result : results) {
-    const auto beyond = [&](std::int64_t row) { return row < 0 || row >= static_cast<std::int64_t>(program.size()); };
-    const SlabReport& found = result.report;
-    if (result.job >= jobs_.size() ||
-        std::any_of(found.removed.begin(), found.removed.end(), [&](const auto& r) { return beyond(r.first); }) ||
-        std::any_of(found.events.begin(), found.events.end(), [&](const Event& e) { return beyond(e.row); }))
-      throw std::invalid_argument("results: not of this verification and this program");
-    const SlabJob& job = jobs_[result.job];
-    SlabState& slab = slabs[result.job];
-    if (job.fixture < 0) {
-      if (!(result.material.frame() == stock_.frame())) throw std::invalid_argument("results: of another stock");
-      slab.tiles = tiles_of(result.material.grids()[job.slab.grid], job.slab);
-    }
-    slab.report = std::move(result.report);
-    stats += result.stats;
-  }
-  VerifyReport report = report_on(program, tools_.places(program, 0), slabs, progress);
-  report.stats = stats;
+  VerifyReport report = conclude(slabs, findings, tools, without_tool, part(progress, 0.8, 1));
+  report.removed = std::move(removed), report.seconds = std::move(seconds), report.stats = stats;
+  memory_ = Memory{std::move(rows), std::move(slabs)};
   return report;
 }
 

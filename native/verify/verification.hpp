@@ -16,7 +16,6 @@
 #include "verify/findings.hpp"
 #include "verify/report.hpp"
 #include "verify/slab_job.hpp"
-#include "verify/task.hpp"
 #include "verify/toolset.hpp"
 
 namespace riffler {
@@ -39,10 +38,8 @@ class Verification {
   /// opposite to the one before. After that, or Cancelled, this is as it was before the call.
   VerifyReport run(const Program& program, const Progress& progress = {});
 
-  /// A program's work in slabs, to be done elsewhere: one task for each that a move can touch. `conclude` makes the
-  /// report of their results, in the same order: that of `run`, bit for bit. Neither touches what `run` remembers.
-  std::vector<SlabTask> tasks(const Program& program);
-  VerifyReport conclude(const Program& program, std::vector<SlabResult> results, const Progress& progress = {});
+  const std::vector<SlabJob>& jobs() const { return jobs_; }
+  const Volume& stock() const { return stock_; }
 
  private:
   friend class VerifyStream;
@@ -59,8 +56,6 @@ class Verification {
                 const Progress& progress) const;
   void add_spindle(const Program& program, std::int64_t first_row, std::span<const double> removed,
                    std::vector<Event>& events) const;
-  VerifyReport report_on(const Program& program, const std::vector<std::uint32_t>& places,
-                         std::vector<SlabState>& slabs, const Progress& progress) const;
   VerifyReport conclude(std::vector<SlabState>& slabs, FindingList& findings, const std::set<std::uint32_t>& tools,
                         bool without_tool, const Progress& progress) const;
 

@@ -1,7 +1,6 @@
 """A verification says the same, byte for byte, however the work is split; what is not needed is not done."""
 
 import os
-import pickle
 import subprocess
 import sys
 
@@ -98,17 +97,3 @@ def test_holders_above_the_stock_cost_nothing():
     tips = raster(100, 2, -2)
     stock = riffler.Volume.block([0, 0, -10], [100, 100, 0], 0.25)
     assert riffler.verify(program(path(tips), held()), stock).stats["probes"] == 0
-
-
-def test_slabs_that_went_through_a_pickle_give_the_report_of_a_run():
-    poses, rapid, tool, stock, part, fixtures = busy_scene()
-    whole = busy_program(poses, rapid, tool)
-    verification = riffler.Verification(stock, part, fixtures)
-    tasks = verification.tasks(whole)
-    assert len(tasks) > 4 and all(0 < task.moves < len(poses) for task in tasks)
-    away = [pickle.loads(pickle.dumps(task)).run() for task in reversed(tasks)]
-    report = verification.conclude(whole, [pickle.loads(pickle.dumps(result)) for result in away])
-    assert state(report) == state(riffler.verify(whole, stock, part, fixtures))
-    other = riffler.Verification(riffler.Volume.block([0, 0, 0], [1, 1, 1], 0.5))
-    with pytest.raises(ValueError, match="results"):
-        other.conclude(whole, away)
