@@ -3,21 +3,14 @@
 #include <mutex>
 
 #include "bindings/bindings.hpp"
-#include "bindings/shared_volume.hpp"
+#include "bindings/shared_report.hpp"
 #include "dexel/from_mesh.hpp"
-#include "verify/verification.hpp"
 
 namespace riffler {
 
 namespace {
 
 using NoGil = py::gil_scoped_release;
-
-/// A report as Python holds it. The maps take as long as the meshes are large, so they are made when first asked for.
-struct SharedReport {
-  VerifyReport report;
-  py::object left, deviation, part_map;  // None until then
-};
 
 /// One call at a time: calls release the GIL.
 struct SharedVerification {
@@ -65,10 +58,12 @@ std::vector<Volume> to_fixtures(const py::object& object, double pitch) {
   return out;
 }
 
-std::unique_ptr<Verification> make(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                                   const py::object& tools, double tolerance, double gouge_tolerance,
-                                   const std::optional<double>& rest_tolerance, double rapid_feed,
-                                   const Progress& progress) {
+}  // namespace
+
+std::unique_ptr<Verification> make_verification(SharedVolume& stock, const py::object& part, const py::object& fixtures,
+                                                const py::object& tools, double tolerance, double gouge_tolerance,
+                                                const std::optional<double>& rest_tolerance, double rapid_feed,
+                                                const Progress& progress) {
   Volume volume = Reading(stock).volume.snapshot();
   std::shared_ptr<const Mesh> mesh;
   if (!part.is_none()) {
@@ -86,6 +81,8 @@ std::unique_ptr<Verification> make(SharedVolume& stock, const py::object& part, 
 std::shared_ptr<SharedReport> share(VerifyReport&& report) {
   return std::make_shared<SharedReport>(SharedReport{std::move(report), py::none(), py::none(), py::none()});
 }
+
+namespace {
 
 /// Chunk by chunk; of how many there are nothing is known, so progress is that of each.
 VerifyReport run_stream(Verification& verification, const py::iterable& chunks, const Progress& progress) {
@@ -118,8 +115,8 @@ std::shared_ptr<SharedReport> verify(const py::object& program, SharedVolume& st
                                      double gouge_tolerance, const std::optional<double>& rest_tolerance,
                                      double rapid_feed, const py::object& progress) {
   const Progress listener = to_progress(progress);
-  const auto verification = make(stock, part_mesh, fixtures, tools, tolerance, gouge_tolerance, rest_tolerance,
-                                 rapid_feed, part(listener, 0, 0.1));
+  const auto verification = make_verification(stock, part_mesh, fixtures, tools, tolerance, gouge_tolerance,
+                                              rest_tolerance, rapid_feed, part(listener, 0, 0.1));
   return share(run_any(*verification, program, part(listener, 0.1, 1)));
 }
 
@@ -328,8 +325,8 @@ are. The report is that of a fresh run, bit for bit.)")
                        const py::object& tools, double tolerance, double gouge_tolerance,
                        const std::optional<double>& rest_tolerance, double rapid_feed, const py::object& progress) {
              const Progress listener = to_progress(progress);
-             return std::make_unique<SharedVerification>(make(stock, part_mesh, fixtures, tools, tolerance,
-                                                              gouge_tolerance, rest_tolerance, rapid_feed, listener));
+             return std::make_unique<SharedVerification>(make_verification(
+                 stock, part_mesh, fixtures, tools, tolerance, gouge_tolerance, rest_tolerance, rapid_feed, listener));
            }),
            py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,

@@ -27,7 +27,7 @@ int thread_count() {
 
 namespace {
 
-/// Whether this thread is one of several that run a parallel_for: all processors are busy then.
+/// Whether all processors are busy: this thread is one of several that run a parallel_for, or a OneThread says so.
 thread_local bool busy = false;
 
 /// The state that the threads of one parallel_for share.
@@ -85,6 +85,12 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
   for (std::thread& t : threads) t.join();
   busy = was_busy;
   if (job.error) std::rethrow_exception(job.error);
+}
+
+OneThread::OneThread() : before_(std::exchange(busy, true)) {}
+
+OneThread::~OneThread() {
+  busy = before_;
 }
 
 }  // namespace riffler

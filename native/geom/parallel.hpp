@@ -19,4 +19,16 @@ int thread_count();
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
                   const Progress& progress = {});
 
+/// As long as it lives, parallel calls of this thread start no others: the caller knows that all processors are busy.
+class OneThread {
+ public:
+  OneThread();
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+  ~OneThread();
+
+ private:
+  bool before_;
+};
+
 }  // namespace riffler

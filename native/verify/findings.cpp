@@ -31,7 +31,8 @@ void take_worse(Finding& finding, const Event& e) {
 
 }  // namespace
 
-void FindingList::add(std::vector<Event> events, const Program& program, std::int64_t first_row) {
+void FindingList::add(std::vector<Event> events, std::span<const std::int32_t> tool, std::span<const std::int32_t> line,
+                      std::int64_t first_row) {
   const auto key = [](const Event& e) { return std::tuple(e.row, e.kind, e.fixture); };
   std::stable_sort(events.begin(), events.end(), [&](const Event& a, const Event& b) { return key(a) < key(b); });
   for (std::size_t begin = 0; begin < events.size();) {
@@ -42,14 +43,13 @@ void FindingList::add(std::vector<Event> events, const Program& program, std::in
       row.value = row.kind == Kind::Gouge ? std::max(row.value, e.value) : row.value + e.value;
       if (e.worst > row.worst) row.worst = e.worst, row.point = e.point, row.member = e.member;
     }
-    add_row(row, program, first_row);
+    const auto at = static_cast<std::size_t>(row.row - first_row);
+    add_row(row, tool[at], line[at]);
     begin = k;
   }
 }
 
-void FindingList::add_row(const Event& e, const Program& program, std::int64_t first_row) {
-  const auto at = static_cast<std::size_t>(e.row - first_row);
-  const std::int32_t tool = program.tool()[at], line = program.line()[at];
+void FindingList::add_row(const Event& e, std::int32_t tool, std::int32_t line) {
   const auto [open, added] = open_.try_emplace({e.kind, e.fixture}, findings_.size());
   // What the stock lacks from the start stands at row 0 and is no move's neighbour.
   if (!added) {

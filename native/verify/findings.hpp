@@ -14,14 +14,15 @@ namespace riffler {
 /// Takes events in stretches of ascending rows.
 class FindingList {
  public:
-  /// `events` of rows of `program`, whose row 0 has the number `first_row`. Of several events of one row and kind, the
+  /// `tool` and `line`: of the program's rows from number `first_row` on. Of several events of one row and kind, the
   /// order does not matter but for sums.
-  void add(std::vector<Event> events, const Program& program, std::int64_t first_row);
+  void add(std::vector<Event> events, std::span<const std::int32_t> tool, std::span<const std::int32_t> line,
+           std::int64_t first_row);
   /// Sorted by rows, with their messages.
   std::vector<Finding> take();
 
  private:
-  void add_row(const Event& event, const Program& program, std::int64_t first_row);
+  void add_row(const Event& event, std::int32_t tool, std::int32_t line);
 
   std::vector<Finding> findings_;
   std::map<std::pair<Kind, std::int32_t>, std::size_t> open_;  // the last one of a kind and a fixture

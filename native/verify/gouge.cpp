@@ -18,7 +18,7 @@ bool surely_shallow(const Grid& grid, const Span& span, double near, double far,
 }
 
 /// The part's material of a tile on the rays that lost some of it deep inside, as far as it was still there before.
-std::shared_ptr<const Tile> deep_rays(const Target& target, const Grid& grid, const Slab& slab, std::size_t k,
+std::shared_ptr<const Tile> deep_rays(const PartSurface& surface, const Grid& grid, const Slab& slab, std::size_t k,
                                       const Tile& part, const Tile& before, const Tile& after) {
   std::optional<TileBuilder> builder;
   for (int r = 0; r < kTileRays; ++r) {
@@ -27,8 +27,8 @@ std::shared_ptr<const Tile> deep_rays(const Target& target, const Grid& grid, co
       for_each_loss_on_ray(before.ray(r), after.ray(r), [&](double near, double far) {
         for (const Span& s : part.ray(r)) {
           const double a = std::max(near, s.near), b = std::min(far, s.far);
-          if (any || !(a < b) || surely_shallow(grid, s, a, b, target.tolerance())) continue;
-          any = target.deep(on_ray(grid, slab, k, r, a), on_ray(grid, slab, k, r, b));
+          if (any || !(a < b) || surely_shallow(grid, s, a, b, surface.tolerance())) continue;
+          any = surface.deep(on_ray(grid, slab, k, r, a), on_ray(grid, slab, k, r, b));
         }
       });
     if (any && !builder) {
@@ -50,15 +50,15 @@ std::shared_ptr<const Tile> deep_rays(const Target& target, const Grid& grid, co
 constexpr double kBite = 1e-6;
 
 /// The worst of what a slab of the part has lost.
-Target::Deepest deepest_loss(const Target& target, const Workbench& bench, const SlabTiles& before,
-                             const SlabTiles& after) {
-  Target::Deepest worst;
+PartSurface::Deepest deepest_loss(const PartSurface& surface, const Workbench& bench, const SlabTiles& before,
+                                  const SlabTiles& after) {
+  PartSurface::Deepest worst;
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (before[k] == after[k]) continue;
     for_each_loss(*before[k], *after[k], [&](int r, double near, double far) {
       if (far - near < kBite) return;
       const Vec3 a = on_ray(bench.grid(), bench.slab(), k, r, near), b = on_ray(bench.grid(), bench.slab(), k, r, far);
-      const Target::Deepest found = target.deepest(a, b);
+      const PartSurface::Deepest found = surface.deepest(a, b);
       if (found.depth > worst.depth) worst = found;
     });
   }
@@ -68,28 +68,27 @@ Target::Deepest deepest_loss(const Target& target, const Workbench& bench, const
 }  // namespace
 
 Target::Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress)
-    : volume_(from_mesh(part, frame, progress)),
-      surface_(part, true),
-      tolerance_(tolerance),
-      bounds_(riffler::bounds(part)) {}
+    : volume_(from_mesh(part, frame, progress)), surface_(part, tolerance), bounds_(riffler::bounds(part)) {}
 
-bool Target::deep(const Vec3& near, const Vec3& far) const {
+PartSurface::PartSurface(const Mesh& part, double tolerance) : closest_(part, true), tolerance_(tolerance) {}
+
+bool PartSurface::deep(const Vec3& near, const Vec3& far) const {
   const Vec3 middle = (near + far) / 2.0;
-  if (!surface_.within(middle, tolerance_)) return true;
-  const double half = glm::length(far - near) / 2, depth = surface_(middle).distance;
+  if (!closest_.within(middle, tolerance_)) return true;
+  const double half = glm::length(far - near) / 2, depth = closest_(middle).distance;
   // The distance falls and rises by no more than the way.
   if (depth + half <= tolerance_) return false;
   if (half < 0.01 * tolerance_) return true;
   return deep(near, middle) || deep(middle, far);
 }
 
-Target::Deepest Target::deepest(const Vec3& near, const Vec3& far) const {
+PartSurface::Deepest PartSurface::deepest(const Vec3& near, const Vec3& far) const {
   struct Stretch {
     Vec3 a, b;
   };
   Deepest best;
   const auto look = [&](const Vec3& p) {
-    const double d = surface_(p).distance;
+    const double d = closest_(p).distance;
     if (d > best.depth) best = {d, p};
     return d;
   };
@@ -107,16 +106,16 @@ Target::Deepest Target::deepest(const Vec3& near, const Vec3& far) const {
   return best;
 }
 
-void find_gouges(const Target& target, Workbench& bench, const SlabTiles& before, const SlabTiles& after,
-                 const Moves& moves, std::span<const std::size_t> cuts, std::vector<Event>& events) {
-  const Grid& part = target.volume().grids()[bench.slab().grid];
+void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
+                 const SlabTiles& after, const Moves& moves, std::span<const std::size_t> cuts,
+                 std::vector<Event>& events) {
   SlabTiles deep(before.size(), std::make_shared<const Tile>());
   bool any = false;
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (before[k] == after[k]) continue;
-    const Tile& tile = part.tile(bench.slab().place(part, k));
+    const Tile& tile = *part[k];
     if (tile.spans.empty() || tile.reach.cut(before[k]->reach).empty()) continue;
-    if (auto spans = deep_rays(target, bench.grid(), bench.slab(), k, tile, *before[k], *after[k]))
+    if (auto spans = deep_rays(surface, bench.grid(), bench.slab(), k, tile, *before[k], *after[k]))
       deep[k] = std::move(spans), any = true;
   }
   if (!any) return;
@@ -125,30 +124,31 @@ void find_gouges(const Target& target, Workbench& bench, const SlabTiles& before
     if (!(moves.touch(i, box) & Moves::Cutter)) continue;
     SlabTiles left = bench.after(deep, moves.shapes(i).cutter, moves.from(i), moves.to(i));
     if (left == deep) continue;
-    const Target::Deepest worst = deepest_loss(target, bench, deep, left);
+    const PartSurface::Deepest worst = deepest_loss(surface, bench, deep, left);
     deep = std::move(left);
-    if (worst.depth > target.tolerance())
+    if (worst.depth > surface.tolerance())
       events.push_back({Kind::Gouge, Member::Cutter, -1, moves.row(i), worst.depth, worst.depth, worst.point});
   }
 }
 
 void find_missing(const Target& target, const Grid& grid, const Slab& slab, const SlabTiles& stock,
                   std::vector<Event>& events) {
-  const Grid& part = target.volume().grids()[slab.grid];
-  Target::Deepest worst;
+  const PartSurface& surface = target.surface();
+  const SlabTiles part = target.tiles(slab);
+  PartSurface::Deepest worst;
   for (std::size_t k = 0; k < stock.size(); ++k) {
-    const Tile& tile = part.tile(slab.place(part, k));
+    const Tile& tile = *part[k];
     if (tile.spans.empty()) continue;
     for (int r = 0; r < kTileRays; ++r)
       for (const Span& s : tile.ray(r))
         for_each_loss_on_ray({&s, 1}, stock[k]->ray(r), [&](double near, double far) {
-          if (surely_shallow(grid, s, near, far, target.tolerance())) return;
+          if (surely_shallow(grid, s, near, far, surface.tolerance())) return;
           const Vec3 a = on_ray(grid, slab, k, r, near), b = on_ray(grid, slab, k, r, far);
-          if (!target.deep(a, b)) return;
-          if (const Target::Deepest found = target.deepest(a, b); found.depth > worst.depth) worst = found;
+          if (!surface.deep(a, b)) return;
+          if (const PartSurface::Deepest found = surface.deepest(a, b); found.depth > worst.depth) worst = found;
         });
   }
-  if (worst.depth > target.tolerance())
+  if (worst.depth > surface.tolerance())
     events.push_back({Kind::Gouge, Member::Cutter, -1, 0, worst.depth, worst.depth, worst.point});
 }
 

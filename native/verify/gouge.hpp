@@ -9,18 +9,15 @@
 
 namespace riffler {
 
-/// The part over a stock's grids. Read by several threads at once.
-class Target {
+/// How deep under the part's surface. Read by several threads at once.
+class PartSurface {
  public:
-  /// `frame` is the stock's; `tolerance`: mm, depth from which on it is a gouge. std::invalid_argument where the mesh
-  /// is none to make a volume of.
-  Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress = {});
+  /// `tolerance`: mm, depth from which on it is a gouge. std::invalid_argument for a mesh that `Closest` does not take.
+  PartSurface(const Mesh& part, double tolerance);
 
-  const Volume& volume() const { return volume_; }
   /// With sides.
-  const Closest& surface() const { return surface_; }
+  const Closest& closest() const { return closest_; }
   double tolerance() const { return tolerance_; }
-  const Box3& bounds() const { return bounds_; }
 
   /// The deepest point under the part's surface of [near, far] on a ray, and how deep it is (to 1 %), mm.
   struct Deepest {
@@ -32,16 +29,35 @@ class Target {
   bool deep(const Vec3& near, const Vec3& far) const;
 
  private:
-  Volume volume_;
-  Closest surface_;
+  Closest closest_;
   double tolerance_;
+};
+
+/// The part over a stock's grids. Read by several threads at once.
+class Target {
+ public:
+  /// `frame` is the stock's; `tolerance` as for PartSurface. std::invalid_argument where the mesh is none to make a
+  /// volume of.
+  Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress = {});
+
+  const Volume& volume() const { return volume_; }
+  const PartSurface& surface() const { return surface_; }
+  const Box3& bounds() const { return bounds_; }
+  /// The part's material in a slab of the stock.
+  SlabTiles tiles(const Slab& slab) const { return tiles_of(volume_.grids()[slab.grid], slab); }
+
+ private:
+  Volume volume_;
+  PartSurface surface_;
   Box3 bounds_;
 };
 
-/// Adds an event for each move that took from the part in this slab. `before` and `after` are the slab's states round
-/// the moves, `cuts` the moves that may have done it (places in `moves`), ascending.
-void find_gouges(const Target& target, Workbench& bench, const SlabTiles& before, const SlabTiles& after,
-                 const Moves& moves, std::span<const std::size_t> cuts, std::vector<Event>& events);
+/// Adds an event for each move that took from the part in this slab, where it has the material `part`. `before` and
+/// `after` are the slab's states round the moves, `cuts` the moves that may have done it (places in `moves`),
+/// ascending.
+void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
+                 const SlabTiles& after, const Moves& moves, std::span<const std::size_t> cuts,
+                 std::vector<Event>& events);
 
 /// Material of the part that the stock lacks from the start: an event of row 0, or nothing.
 void find_missing(const Target& target, const Grid& grid, const Slab& slab, const SlabTiles& stock,

@@ -11,13 +11,14 @@ namespace {
 Rest rest_in_tile(const Target& target, const Grid& grid, std::size_t tile, double tolerance) {
   const int u0 = static_cast<int>(tile) / grid.tiles_v() * kTileSide,
             v0 = static_cast<int>(tile) % grid.tiles_v() * kTileSide;
+  const Closest& closest = target.surface().closest();
   Rest worst;
   for (int r = 0; r < kTileRays; ++r)
     for (const Span& span : grid.tile(tile).ray(r))
       for (const double end : {span.near, span.far}) {
         const Vec3 p = to_world(grid.axis(), Vec3(grid.u(u0 + r / kTileSide), grid.v(v0 + r % kTileSide), end));
-        if (target.surface().within(p, std::max(tolerance, worst.height))) continue;
-        const double height = target.surface().signed_distance(p, target.surface()(p));
+        if (closest.within(p, std::max(tolerance, worst.height))) continue;
+        const double height = closest.signed_distance(p, closest(p));
         if (height > std::max(tolerance, worst.height)) worst = {height, p};
       }
   return worst;

@@ -25,8 +25,13 @@ struct SlabSimulation::Strike {
   Pose from, to;
 };
 
-SlabSimulation::SlabSimulation(const Grid& grid, const Slab& slab, bool probed, double tolerance, const Target* target)
-    : bench_(grid, slab, tolerance), probed_(probed), tolerance_(tolerance), target_(target) {}
+SlabSimulation::SlabSimulation(const Grid& grid, const Slab& slab, bool probed, double tolerance,
+                               const PartSurface* surface, SlabTiles part)
+    : bench_(grid, slab, tolerance),
+      probed_(probed),
+      tolerance_(tolerance),
+      surface_(surface),
+      part_(std::move(part)) {}
 
 void SlabSimulation::run(const Moves& moves, std::size_t first, SlabTiles& state, SlabReport& report,
                          VerifyStats& stats, const Saved& saved) {
@@ -55,7 +60,7 @@ void SlabSimulation::run(const Moves& moves, std::size_t first, SlabTiles& state
     if (saved) saved(moves.row(touched[end - 1].move), state);
     begin = end;
   }
-  if (target_) find_gouges(*target_, bench_, before, state, moves, cuts, report.events);
+  if (surface_) find_gouges(*surface_, part_, bench_, before, state, moves, cuts, report.events);
 }
 
 /// Shank and holder are tried on the material as it is before the batch: what they do not touch now they never do.

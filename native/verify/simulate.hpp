@@ -16,8 +16,9 @@ namespace riffler {
 class SlabSimulation {
  public:
   /// `grid`: of the stock, for its rays. `probed`: whether this is the grid that shank and holder are tried on, and
-  /// that volumes are taken from. `target` may be null.
-  SlabSimulation(const Grid& grid, const Slab& slab, bool probed, double tolerance, const Target* target);
+  /// that volumes are taken from. `surface` may be null; `part`: the part's material in the slab.
+  SlabSimulation(const Grid& grid, const Slab& slab, bool probed, double tolerance, const PartSurface* surface,
+                 SlabTiles part);
 
   /// Runs the moves from place `first` on. `state` is the slab before them, then after them. `saved(row, state)` is
   /// called after each batch that cut.
@@ -46,7 +47,8 @@ class SlabSimulation {
   Workbench bench_;
   bool probed_;
   double tolerance_;
-  const Target* target_;
+  const PartSurface* surface_;
+  SlabTiles part_;
   // Of the run under way.
   const Moves* moves_ = nullptr;
   SlabTiles* state_ = nullptr;

@@ -25,6 +25,9 @@ class Toolset {
   std::vector<std::uint32_t> places(const Program& program, std::int64_t first_row);
 
   const std::vector<ToolShapes>& shapes() const { return shapes_; }
+  /// The tools at those places.
+  const std::vector<Tool>& tools() const { return tools_; }
+  double reach() const { return reach_; }
   /// Sentences on what the descriptions of some tools leave out.
   std::vector<std::string> not_described(const std::set<std::uint32_t>& places) const;
 

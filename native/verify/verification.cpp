@@ -14,9 +14,6 @@ namespace riffler {
 
 namespace {
 
-/// Moves that are sorted into slabs in one go: memory of some 30 MB, and work enough for many threads.
-constexpr std::size_t kChunk = 1 << 17;
-
 void check_length(double value, const char* name) {
   if (!std::isfinite(value) || !(value > 0))
     throw std::invalid_argument(std::string(name) + " must be a positive length in mm");
@@ -160,7 +157,8 @@ void Verification::simulate(const Moves& moves, std::vector<SlabState>& slabs, b
           return;
         }
         SlabSimulation simulation(stock_.grids()[job.slab.grid], job.slab, job.probed, options_.tolerance,
-                                  target_.get());
+                                  target_ ? &target_->surface() : nullptr,
+                                  target_ ? target_->tiles(job.slab) : SlabTiles());
         SlabSimulation::Saved saved;
         if (keep) saved = [&](std::int64_t at, const SlabTiles& tiles) { slab.save(at, tiles); };
         simulation.run(moves, first, slab.tiles, slab.report, counts[k], saved);
@@ -169,13 +167,8 @@ void Verification::simulate(const Moves& moves, std::vector<SlabState>& slabs, b
   for (const VerifyStats& c : counts) stats += c;
 }
 
-void Verification::add_spindle(const Program& program, std::int64_t first_row, std::span<const double> removed,
-                               std::vector<Event>& events) const {
-  const double least = options_.tolerance * stock_.frame().pitch * stock_.frame().pitch;
-  for (std::size_t row = 1; row < program.size(); ++row)
-    if (program.spindle()[row] == 0 && !program.rapid()[row] && removed[row] > least)
-      events.push_back({Kind::Spindle, Member::Cutter, -1, first_row + static_cast<std::int64_t>(row), removed[row],
-                        removed[row], program.poses()[row].tip});
+double Verification::least_cut() const {
+  return options_.tolerance * stock_.frame().pitch * stock_.frame().pitch;
 }
 
 VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& findings,
@@ -212,8 +205,8 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
   auto done = static_cast<std::int64_t>(n);
   for (const SlabState& slab : slabs) done = std::clamp<std::int64_t>(slab.done, 0, done);
   const Progress work = part(progress, 0, options_.rest_tolerance ? 0.8 : 1);
-  for (std::size_t begin = static_cast<std::size_t>(done) + 1; begin < n; begin += kChunk) {
-    const std::size_t end = std::min(n, begin + kChunk);
+  for (std::size_t begin = static_cast<std::size_t>(done) + 1; begin < n; begin += kMovesAtOnce) {
+    const std::size_t end = std::min(n, begin + kMovesAtOnce);
     const Moves moves = moves_of(rows, begin, end, tools_.shapes(), top_);
     const auto share = [&](std::size_t row) { return static_cast<double>(row) / static_cast<double>(n); };
     simulate(moves, slabs, true, stats, part(work, share(begin), share(end)));
@@ -226,7 +219,7 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
     for (const auto& [row, taken] : slab.report.removed) removed[static_cast<std::size_t>(row)] += taken;
     events.insert(events.end(), slab.report.events.begin(), slab.report.events.end());
   }
-  add_spindle(program, 0, removed, events);
+  add_spindle(standing_moves(program, 0), removed, 0, least_cut(), events);
   std::set<std::uint32_t> tools;
   bool without_tool = false;
   for (std::size_t row = 1; row < n; ++row) {
@@ -237,7 +230,7 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
       tools.insert(rows.tool[row]);
   }
   FindingList findings;
-  findings.add(std::move(events), program, 0);
+  findings.add(std::move(events), program.tool(), program.line(), 0);
   VerifyReport report = conclude(slabs, findings, tools, without_tool, part(progress, 0.8, 1));
   report.removed = std::move(removed), report.seconds = std::move(seconds), report.stats = stats;
   memory_ = Memory{std::move(rows), std::move(slabs)};
@@ -246,54 +239,33 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
 
 VerifyStream::VerifyStream(Verification& verification) : of_(verification), slabs_(verification.fresh()) {}
 
-void VerifyStream::add(const Program& chunk, const Progress& progress) {
-  const std::size_t n = chunk.size();
-  if (n == 0) return;
-  if (last_ && (last_->tip != chunk.poses()[0].tip || last_->axis != chunk.poses()[0].axis))
-    throw std::invalid_argument(
-        "program: a chunk must begin with the row at which the one before ended; the one after row " +
-        std::to_string(removed_.size() - 1) + " does not");
-  check_path(chunk.poses());
-  const bool start = !last_;
-  const std::int64_t first_row = start ? 0 : static_cast<std::int64_t>(removed_.size()) - 1;
-  const std::vector<std::uint32_t> places = of_.tools_.places(chunk, first_row);
-  std::vector<double> removed(n);
-  for (std::size_t begin = 1; begin < n; begin += kChunk) {
-    const std::size_t end = std::min(n, begin + kChunk);
-    Moves moves(std::span(chunk.poses()).subspan(begin - 1, end - begin + 1), 1, of_.tools_.shapes(), of_.top_);
-    for (std::size_t row = begin; row < end; ++row)
-      moves.add(first_row + static_cast<std::int64_t>(row), places[row], chunk.rapid()[row] != 0);
-    moves.finish();
-    const auto share = [&](std::size_t row) { return static_cast<double>(row) / static_cast<double>(n); };
-    of_.simulate(moves, slabs_, false, stats_, part(progress, share(begin), share(end)));
+void VerifyStream::add(const Program& program, const Progress& progress) {
+  if (program.empty()) return;
+  const ProgramRows::Chunk chunk = rows_.open(program, of_.tools_);
+  std::vector<double> removed(program.size());
+  chunk.for_moves(of_.tools_.shapes(), of_.top_, progress, [&](const Moves& moves, const Progress& work) {
+    of_.simulate(moves, slabs_, false, stats_, work);
     for (SlabState& slab : slabs_) {
-      for (const auto& [row, taken] : slab.report.removed) removed[static_cast<std::size_t>(row - first_row)] += taken;
+      for (const auto& [row, taken] : slab.report.removed)
+        removed[static_cast<std::size_t>(row - chunk.first_row)] += taken;
       slab.report.removed.clear();
     }
-  }
+  });
   std::vector<Event> events;
-  if (start) events = of_.missing_;
+  if (chunk.start) events = of_.missing_;
   for (SlabState& slab : slabs_) {
     events.insert(events.end(), slab.report.events.begin(), slab.report.events.end());
     slab.report.events.clear();
   }
-  of_.add_spindle(chunk, first_row, removed, events);
-  findings_.add(std::move(events), chunk, first_row);
-  if (start) removed_.push_back(0), seconds_.push_back(0);
-  removed_.insert(removed_.end(), removed.begin() + 1, removed.end());
-  for (std::size_t row = 1; row < n; ++row) {
-    seconds_.push_back(seconds_of(chunk.poses()[row - 1], chunk, row, of_.options_.rapid_feed));
-    if (places[row] == kNoTool)
-      without_tool_ = true;
-    else
-      tools_.insert(places[row]);
-  }
-  last_ = chunk.poses().back();
+  add_spindle(standing_moves(program, chunk.first_row), removed, chunk.first_row, of_.least_cut(), events);
+  findings_.add(std::move(events), program.tool(), program.line(), chunk.first_row);
+  removed_.insert(removed_.end(), removed.begin() + (chunk.start ? 0 : 1), removed.end());
+  rows_.close(chunk, of_.options_.rapid_feed);
 }
 
 VerifyReport VerifyStream::finish(const Progress& progress) {
-  VerifyReport report = of_.conclude(slabs_, findings_, tools_, without_tool_, progress);
-  report.removed = std::move(removed_), report.seconds = std::move(seconds_), report.stats = stats_;
+  VerifyReport report = of_.conclude(slabs_, findings_, rows_.tools(), rows_.without_tool(), progress);
+  report.removed = std::move(removed_), report.seconds = rows_.take_seconds(), report.stats = stats_;
   return report;
 }
 

@@ -14,6 +14,7 @@
 #include "nc/program.hpp"
 #include "verify/edit.hpp"
 #include "verify/findings.hpp"
+#include "verify/program_rows.hpp"
 #include "verify/report.hpp"
 #include "verify/slab_job.hpp"
 #include "verify/toolset.hpp"
@@ -42,6 +43,7 @@ class Verification {
   const Volume& stock() const { return stock_; }
 
  private:
+  friend class VerifyPlan;
   friend class VerifyStream;
   struct Memory {  // of the run before
     RunRows rows;
@@ -54,8 +56,8 @@ class Verification {
   /// Runs rows (done, end) of every slab, and moves `done` on.
   void simulate(const Moves& moves, std::vector<SlabState>& slabs, bool keep, VerifyStats& stats,
                 const Progress& progress) const;
-  void add_spindle(const Program& program, std::int64_t first_row, std::span<const double> removed,
-                   std::vector<Event>& events) const;
+  /// mm³: what is less may be rounding.
+  double least_cut() const;
   VerifyReport conclude(std::vector<SlabState>& slabs, FindingList& findings, const std::set<std::uint32_t>& tools,
                         bool without_tool, const Progress& progress) const;
 
@@ -85,10 +87,8 @@ class VerifyStream {
   Verification& of_;
   std::vector<SlabState> slabs_;
   FindingList findings_;
-  std::vector<double> removed_, seconds_;
-  std::optional<Pose> last_;
-  std::set<std::uint32_t> tools_;
-  bool without_tool_ = false;
+  std::vector<double> removed_;
+  ProgramRows rows_;
   VerifyStats stats_;
 };
 
