@@ -78,7 +78,9 @@ def verify(
             sort_moves(program, plan, spool, told)
             with Slabs(client, plan, spool, told.part(0.15, 0.9)) as slabs:
                 slabs.run()
-    return plan.finish(told.part(0.9, 1))
+    report = plan.finish(told.part(0.9, 1))
+    told(1.0)
+    return report
 
 
 def sort_moves(program: Program | Iterable[Program], plan: VerifyPlan, spool: Spool, told: _Told) -> None:
@@ -142,22 +144,20 @@ def _client(scheduler: str | Client) -> Iterator[Client]:
 
 
 def check_versions(client: Client) -> None:
-    """RuntimeError naming the first worker without this version of riffler; ConnectionError where there is none."""
+    """RuntimeError naming the first machine without this version of riffler: the scheduler takes tasks apart and needs
+    it too. ConnectionError where there is no worker."""
     address = client.scheduler.address
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except TimeoutError:
         raise ConnectionError(f"{address} has no workers (start one: dask worker {address} --nthreads 1)") from None
-    found = {
-        **client.run(eval, VERSION_OF, on_error="return"),
-        "the scheduler": client.run_on_scheduler(_version_or_error),
-    }
+    found = client.run(eval, VERSION_OF, on_error="return")
+    try:
+        found[f"the scheduler {address}"] = client.run_on_scheduler(eval, VERSION_OF)
+    except ImportError as error:
+        found[f"the scheduler {address}"] = error
     for worker, version in found.items():
         _check_version(worker, version)
-
-
-def _version_or_error() -> str | Exception:
-    return __version__
 
 
 def _check_version(worker: str, version: str | Exception) -> None:
