@@ -3,7 +3,7 @@
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """
 
-from . import plan
+from . import cluster, plan
 from ._core import (
     Cancelled,
     Collider,
@@ -46,6 +46,7 @@ __all__ = [
     "VerifyReport",
     "Volume",
     "__version__",
+    "cluster",
     "machines",
     "plan",
     "verify",

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import Finding, Mesh, Program, Tool, VerifyReport, Volume, verify
+from .. import Finding, Mesh, Program, Tool, VerifyReport, Volume, cluster, verify
 from . import tools
 from .arguments import (
     MESHES,
@@ -67,6 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--gouge", default="0.05", metavar="MM", help="depth of a gouge in the part (default 0.05)")
     parser.add_argument("--rest", metavar="MM", help="height of rest material that is a finding (default: none is)")
     parser.add_argument("--rapid-feed", default="10000", metavar="MM/MIN", help="for the time (default 10000)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="run it on a Dask cluster: tcp://host:8786")
     parser.add_argument("--out", metavar="FILE", help="what is left: .stl, .obj, .ply, .3mf or .rvol")
     parser.add_argument("--map", metavar="FILE", help=f".ply of what is left, coloured: {LEGEND}")
     parser.add_argument("--map-scale", default="0.5", metavar="MM", help="distance of the full colours (default 0.5)")
@@ -97,7 +98,11 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         part = None if arguments.part is None else Mesh.read(input_file(arguments.part, MESHES))
         fixtures = [fixture(name) for name in arguments.fixture]
     with console.step("verify") as progress:
-        report = verify(program, volume, part, fixtures, tools=by_number, progress=progress, **limits)
+        options = {"tools": by_number, "progress": progress, **limits}
+        if arguments.scheduler is None:
+            report = verify(program, volume, part, fixtures, **options)
+        else:
+            report = cluster.verify(program, volume, part, fixtures, scheduler=arguments.scheduler, **options)
     if out is not None:
         if out.suffix.lower() in VOLUMES:
             write_volume(report.volume, out, console)
