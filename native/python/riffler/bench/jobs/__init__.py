@@ -3,6 +3,7 @@
 from . import (
     b5x,
     b200,
+    cluster,
     col,
     decimate,
     drop,
@@ -36,4 +37,5 @@ JOBS = {
     "drop": drop,
     "gouge": gouge,
     "threads": threads,
+    "cluster": cluster,
 }
