@@ -40,6 +40,7 @@ def contents(found: VerifyReport) -> tuple[bytes, ...]:
 
 def on_workers(client: Any, program: Program, stock: Volume) -> tuple[VerifyReport, dict[str, Any]]:
     """As ``cluster.verify``, with its steps timed and its bytes counted."""
+    before, mine = sum(client.run(time.process_time).values()), time.process_time()
     start = time.perf_counter()
     plan = VerifyPlan(stock)
     with cluster.Spool() as spool:
@@ -54,6 +55,8 @@ def on_workers(client: Any, program: Program, stock: Volume) -> tuple[VerifyRepo
     traffic = slabs.traffic
     return found, {
         "wall_s": wall,
+        "client_cpu_s": time.process_time() - mine,
+        "workers_cpu_s": sum(client.run(time.process_time).values()) - before,
         "sort_s": sorted_s,
         "slabs": traffic.slabs,
         "moves": spool.total,
@@ -74,6 +77,8 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         Column("seconds", "wall_s", report.three),
         Column("rows a second", "rate", report.mega),
         Column("speed-up", "speedup", report.ratio),
+        Column("processor time, client", "client_cpu_s", report.micro),
+        Column("and workers", "workers_cpu_s", report.micro),
         Column("the same bytes", "same", lambda good: "yes" if good else "NO"),
     )
     cost = out.section(
@@ -101,13 +106,14 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         alone: dict[int, float] = {}
         for count in (1, 2):
             with threads(count):
-                start = time.perf_counter()
+                start, before = time.perf_counter(), time.process_time()
                 found = verify(program, stock)
-                alone[count] = time.perf_counter() - start
+                alone[count], used = time.perf_counter() - start, time.process_time() - before
             expected = contents(found)
             speed.row(
                 program=name, rows=len(program), who=f"no cluster, {count} thread{'s' * (count > 1)}",
                 wall_s=alone[count], rate=len(program) / alone[count], speedup=alone[1] / alone[count], same=True,
+                client_cpu_s=used,
             )  # fmt: skip
         for count in (1, 2):
             with (
@@ -122,10 +128,11 @@ def run(settings: Settings, progress: Progress = None) -> Report:
                 found, figures = on_workers(client, program, stock)
             same = contents(found) == expected
             out.check(same, f"{name}, {count} workers: other bytes")
-            wall = figures.pop("wall_s")
+            wall, *used = (figures.pop(key) for key in ("wall_s", "client_cpu_s", "workers_cpu_s"))
             speed.row(
                 program=name, rows=len(program), who=f"{count} worker{'s' * (count > 1)}", wall_s=wall,
                 rate=len(program) / wall, speedup=alone[1] / wall, same=same,
+                client_cpu_s=used[0], workers_cpu_s=used[1],
             )  # fmt: skip
             more = (wall - alone[1]) / figures["slabs"] if count == 1 else None
             cost.row(program=name, workers=count, **figures, overhead_s=more)
