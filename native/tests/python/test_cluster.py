@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import riffler
 from riffler import _core, cluster
-from test_verify import state
+from verify_reference import state
 
 distributed = pytest.importorskip("distributed", reason="no clusters: distributed is not installed")
 
