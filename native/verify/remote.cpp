@@ -1,5 +1,10 @@
 #include "verify/remote.hpp"
 
+#include <stdlib.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -8,7 +13,21 @@
 
 namespace riffler {
 
+namespace {
+
+/// Dask starts its workers with MALLOC_TRIM_THRESHOLD_ set, and glibc then no longer learns how large arrays are that
+/// come and go: each one over 128 kB is mapped and faulted in anew, which takes as long as the simulation. 32 MB is
+/// what it would learn at most (man 3 mallopt).
+void reuse_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+#endif
+}
+
+}  // namespace
+
 SlabWorker::SlabWorker(std::span<const std::uint8_t> context) : context_(context_of(context)) {
+  reuse_freed_memory();
   if (context_.frames.empty()) throw std::invalid_argument("context: there is no stock");
   for (const Tool& tool : context_.tools)
     shapes_.emplace_back(tool, context_.tolerance, context_.reach, context_.frames[0].pitch);
