@@ -15,12 +15,13 @@ namespace riffler {
 
 namespace {
 
-/// Dask starts its workers with MALLOC_TRIM_THRESHOLD_ set, and glibc then no longer learns how large arrays are that
-/// come and go: each one over 128 kB is mapped and faulted in anew, which takes as long as the simulation. 32 MB is
-/// what it would learn at most (man 3 mallopt).
+/// Dask starts its workers with MALLOC_TRIM_THRESHOLD_=65536: freed memory goes back to the system at once, and glibc
+/// no longer learns how large arrays are that come and go, so each one over 128 kB is mapped anew. The page faults take
+/// as long as the simulation. These are the limits that glibc would learn at most (man 3 mallopt).
 void reuse_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
 #endif
 }
 
