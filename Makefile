@@ -92,7 +92,7 @@ docs:  ## Check links and examples, collect the documents and the API reference:
 
 gallery:  ## Plan and render the pictures of planning: docs/images/gallery
 	@$(ready) demo
-	for script in mouse mouse_fixtures sole; do $(python) docs/gallery/$$script.py || exit 1; done
+	for script in mouse mouse_fixtures sole verify_map; do $(python) docs/gallery/$$script.py || exit 1; done
 
 package:  ## Make the wheel and the Blender extension: dist
 	@$(ready)

@@ -22,6 +22,8 @@ PYBIND11_MODULE(_core, m) {
   bind_mesher(m);
   bind_program(m);
   bind_program_file(m);
+  bind_verify(m);
+  bind_cluster(m);
   bind_journal(m);
   bind_collide(m);
   bind_path(m);

@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace riffler {
@@ -25,6 +26,9 @@ int thread_count() {
 }
 
 namespace {
+
+/// Whether all processors are busy: this thread is one of several that run a parallel_for, or a OneThread says so.
+thread_local bool busy = false;
 
 /// The state that the threads of one parallel_for share.
 struct Job {
@@ -63,11 +67,13 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
   grain = std::max<std::size_t>(1, grain);
   Job job{n, grain, body, {}, {}, {}, {}};
   const std::size_t chunks = (n + grain - 1) / grain;
-  const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(thread_count()), chunks) - 1;
+  const std::size_t helpers = busy ? 0 : std::min<std::size_t>(static_cast<std::size_t>(thread_count()), chunks) - 1;
+  const bool was_busy = std::exchange(busy, busy || helpers > 0);
   std::vector<std::thread> threads;
   threads.reserve(helpers);
   for (std::size_t i = 0; i < helpers; ++i)
     threads.emplace_back([&job] {
+      busy = true;
       while (job.step()) {
       }
     });
@@ -77,7 +83,14 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
     job.fail(std::current_exception());
   }
   for (std::thread& t : threads) t.join();
+  busy = was_busy;
   if (job.error) std::rethrow_exception(job.error);
+}
+
+OneThread::OneThread() : before_(std::exchange(busy, true)) {}
+
+OneThread::~OneThread() {
+  busy = before_;
 }
 
 }  // namespace riffler

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -23,21 +25,6 @@ constexpr double kSerialRays = 1e5;
 
 std::string row(std::size_t i) {
   return "poses, row " + std::to_string(i) + ": ";
-}
-
-void check(std::span<const Pose> poses) {
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Pose& p = poses[i];
-    if (!finite(p.tip) || !finite(p.axis)) throw std::invalid_argument(row(i) + "not finite");
-    const double length = glm::length(p.axis);
-    if (!(std::abs(length - 1) < 1e-6))
-      throw std::invalid_argument(row(i) + "the axis must be a unit vector; its length is " + std::to_string(length));
-    if (i == 0) continue;
-    const Vec3 axis = p.axis / length, before = glm::normalize(poses[i - 1].axis);
-    if (glm::dot(before, axis) < 0 && glm::length(glm::cross(before, axis)) < 1e-14)
-      throw std::invalid_argument(row(i) + "the axis is exactly opposite to that of the row before, so the way it " +
-                                  "turns is undefined; put a pose between");
-  }
 }
 
 void check(const CarveOptions& options, std::size_t moves) {
@@ -84,15 +71,22 @@ class Rollback {
 /// Cuts one grid, batch by batch.
 class GridCarver {
  public:
-  GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback& rollback)
+  /// `rollback` may be null.
+  GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback* rollback)
       : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback) {}
 
-  /// Holds no more of the program than one batch, so its length costs no memory here.
-  void run(const Tool& tool, std::span<const Pose> poses, const std::function<void(std::size_t)>& moves_done) {
-    const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
-    Pose from = poses.empty() ? Pose{} : local(poses[0]);
-    for (std::size_t m = 0; m + 1 < poses.size(); ++m) {
-      const Pose to = local(poses[m + 1]);
+  /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds no more of the program than one batch, so
+  /// its length costs no memory here.
+  template <class End, class Done>
+  void run(std::span<const ConvexGroup> cutter, std::span<const Pose> poses, std::size_t moves, const End& end,
+           const Done& moves_done) {
+    Pose from;
+    std::size_t last = 0;
+    for (std::size_t m = 0; m < moves; ++m) {
+      const std::size_t e = end(m);
+      if (m == 0 || last != e - 1) from = local(poses[e - 1]);
+      last = e;
+      const Pose to = local(poses[e]);
       const Motion& motion = motions_.emplace_back(from, to);
       for_each_step(cutter, motion, static_cast<std::uint32_t>(m), grid_.box(), options_.tolerance,
                     [&](Step&& step) { steps_.push_back(std::move(step)); });
@@ -138,6 +132,7 @@ class GridCarver {
   /// Tiles of the batch with the steps that may touch them, both in ascending order.
   std::vector<Work> assign() {
     pairs_.clear();
+    std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
     for (std::size_t k = 0; k < steps_.size(); ++k) {
       const Footprint& footprint = steps_[k].footprint;
       const auto [u0, u1] = ray_indices(footprint.rows(), grid_.box().lower.x, grid_.pitch(), grid_.nu());
@@ -145,14 +140,32 @@ class GridCarver {
       if (u0 > u1 || v0 > v1) continue;
       for (int a = u0 / kTileSide; a <= u1 / kTileSide; ++a)
         for (int b = v0 / kTileSide; b <= v1 / kTileSide; ++b) pairs_.emplace_back(grid_.tile_index(a, b), k);
+      first = std::min(first, grid_.tile_index(u0 / kTileSide, v0 / kTileSide));
+      last = std::max(last, grid_.tile_index(u1 / kTileSide, v1 / kTileSide));
     }
-    std::sort(pairs_.begin(), pairs_.end());
+    sort_pairs(first, last);
     std::vector<Work> work;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       if (work.empty() || work.back().tile != pairs_[k].first) work.push_back({pairs_[k].first, k, k, {}});
       work.back().end = k + 1;
     }
     return work;
+  }
+
+  /// By tiles, all of them from `first` to `last`; steps ascend already. They are counted where they are many for that
+  /// range: short moves pass the same few tiles again and again.
+  void sort_pairs(std::size_t first, std::size_t last) {
+    if (pairs_.empty()) return;
+    if (last - first > 2 * pairs_.size()) {
+      std::sort(pairs_.begin(), pairs_.end());
+      return;
+    }
+    starts_.assign(last - first + 2, 0);
+    for (const auto& pair : pairs_) ++starts_[pair.first - first + 1];
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    sorted_.resize(pairs_.size());
+    for (const auto& pair : pairs_) sorted_[starts_[pair.first - first]++] = pair;
+    pairs_.swap(sorted_);
   }
 
   /// Cuts one tile with its steps of the batch.
@@ -178,7 +191,7 @@ class GridCarver {
       cut_.torque[s.move] += to_world(grid_.axis(), s.torque);
     }
     if (!w.done.tile) return;
-    rollback_.keep(grid_, w.tile);
+    if (rollback_) rollback_->keep(grid_, w.tile);
     grid_.set_tile(w.tile, std::move(w.done.tile));
   }
 
@@ -186,29 +199,47 @@ class GridCarver {
   bool measured_;
   const CarveOptions& options_;
   Cut& cut_;
-  Rollback& rollback_;
+  Rollback* rollback_;
   std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   std::vector<Step> steps_;
-  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // (tile, step)
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
+  std::vector<std::uint32_t> starts_;
   Stats stats_;
 };
 
 }  // namespace
 
+void check_path(std::span<const Pose> poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose& p = poses[i];
+    if (!finite(p.tip) || !finite(p.axis)) throw std::invalid_argument(row(i) + "not finite");
+    const double length = glm::length(p.axis);
+    if (!(std::abs(length - 1) < 1e-6))
+      throw std::invalid_argument(row(i) + "the axis must be a unit vector; its length is " + std::to_string(length));
+    if (i == 0) continue;
+    const Vec3 axis = p.axis / length, before = glm::normalize(poses[i - 1].axis);
+    if (glm::dot(before, axis) < 0 && glm::length(glm::cross(before, axis)) < 1e-14)
+      throw std::invalid_argument(row(i) + "the axis is exactly opposite to that of the row before, so the way it " +
+                                  "turns is undefined; put a pose between");
+  }
+}
+
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options) {
   const std::size_t moves = poses.empty() ? 0 : poses.size() - 1;
-  check(poses);
+  check_path(poses);
   check(options, moves);
   check_memory(moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
+  const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
   Rollback rollback;
   Stats stats;
   stats.moves = moves;
   const std::size_t grids = volume.grids().size();
   for (std::size_t g = 0; g < grids; ++g) {
     Grid& grid = volume.grids()[g];
-    GridCarver carver(grid, &grid == &volume.reference(), options, cut, rollback);
-    carver.run(tool, poses, [&](std::size_t done) {
+    GridCarver carver(grid, &grid == &volume.reference(), options, cut, &rollback);
+    const auto next = [](std::size_t m) { return m + 1; };
+    carver.run(cutter, poses, moves, next, [&](std::size_t done) {
       report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
                                    static_cast<double>(grids));
     });
@@ -218,6 +249,18 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   if (rollback.commit()) volume.touch();
   volume.count(stats);
   return cut;
+}
+
+std::vector<double> carve_moves(Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+                                std::span<const std::uint32_t> ends, double tolerance, Stats& stats) {
+  CarveOptions options;
+  options.tolerance = tolerance;
+  Cut cut{std::vector<double>(ends.size()), std::vector<Vec3>(ends.size()), std::vector<Vec3>(ends.size())};
+  GridCarver carver(grid, true, options, cut, nullptr);
+  carver.run(cutter, poses, ends.size(), [&](std::size_t m) { return ends[m]; }, [](std::size_t) {});
+  stats += carver.stats();
+  stats.moves += ends.size();
+  return std::move(cut.removed);
 }
 
 }  // namespace riffler

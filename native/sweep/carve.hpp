@@ -7,6 +7,7 @@
 #include "dexel/volume.hpp"
 #include "geom/pose.hpp"
 #include "geom/progress.hpp"
+#include "sweep/convex_group.hpp"
 #include "tool/tool.hpp"
 
 namespace riffler {
@@ -34,5 +35,14 @@ struct Cut {
 /// std::invalid_argument naming the row for poses that are not finite, axes whose length differs from 1 by 1e-6 or
 /// more, exactly opposite axes, a tolerance or dt that is not positive. Cancelled leaves the volume unchanged.
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options = {});
+
+/// Throws as `carve` does for poses that make no path.
+void check_path(std::span<const Pose> poses);
+
+/// Single moves on one grid, for those who simulate parts of a volume by themselves: move k goes from
+/// poses[ends[k] − 1] to poses[ends[k]]. What is left is, bit for bit, what `carve` leaves of the same moves. Returns
+/// mm³ of this grid's rays per move. The caller has called check_path, and gives the volume a fresh revision.
+std::vector<double> carve_moves(Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+                                std::span<const std::uint32_t> ends, double tolerance, Stats& stats);
 
 }  // namespace riffler

@@ -26,7 +26,13 @@ Footprint::Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> 
       else
         add(bottom(piece)), add(top(piece));
     }
-    add_sides(hull);
+    // Seen along an upright axis the flank is where the ball below it is.
+    const Hull* below = count_ > 1 ? &hulls_[count_ - 2] : nullptr;
+    if (below && below->thickness == hull.thickness && below->corners == hull.corners &&
+        std::equal(hull.corner, hull.corner + hull.corners, below->corner))
+      hull = {}, --count_;
+    else
+      add_sides(hull);
   }
 }
 

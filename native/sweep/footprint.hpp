@@ -37,7 +37,7 @@ class Footprint {
     double from, to, x, y, slope;
   };
   struct Hull {
-    double thickness;
+    double thickness = 0;
     int corners = 0, sides = 0;
     Vec2 corner[4];
     Side side[12];

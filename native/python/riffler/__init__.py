@@ -3,12 +3,13 @@
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """
 
-from . import plan
+from . import cluster, plan
 from ._core import (
     Cancelled,
     Collider,
     Contact,
     Cut,
+    Finding,
     FormatError,
     Journal,
     JournalStroke,
@@ -18,9 +19,12 @@ from ._core import (
     Program,
     Snapshot,
     Tool,
+    Verification,
+    VerifyReport,
     Volume,
     __version__,
     machines,
+    verify,
 )
 
 __all__ = [
@@ -28,6 +32,7 @@ __all__ = [
     "Collider",
     "Contact",
     "Cut",
+    "Finding",
     "FormatError",
     "Journal",
     "JournalStroke",
@@ -37,8 +42,12 @@ __all__ = [
     "Program",
     "Snapshot",
     "Tool",
+    "Verification",
+    "VerifyReport",
     "Volume",
     "__version__",
+    "cluster",
     "machines",
     "plan",
+    "verify",
 ]

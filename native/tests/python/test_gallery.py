@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 GALLERY = Path(__file__).parents[3] / "docs" / "gallery"
-SCRIPTS = ["mouse", "mouse_fixtures", "sole"]
+SCRIPTS = ["mouse", "mouse_fixtures", "sole", "verify_map"]
 
 
 @pytest.mark.parametrize("script", SCRIPTS)

@@ -6,6 +6,7 @@ import argparse
 import math
 import os
 from pathlib import Path
+from typing import Any
 
 MESHES = (".stl", ".obj", ".ply", ".3mf")
 VOLUMES = (".rvol",)
@@ -92,3 +93,24 @@ def output_file(text: str, suffixes: tuple[str, ...]) -> Path:
     if not os.access(path.parent, os.W_OK):
         raise ValueError(f"--out {text}: the folder {str(path.parent)!r} cannot be written")
     return path
+
+
+def machine_options(texts: list[str], flag: str) -> dict[str, Any]:
+    """``key=value``: a number, a list of them as in 0,0,-40, true or false, or a word."""
+    found: dict[str, Any] = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not (key and equals and value):
+            raise ValueError(f"{flag} {text}: KEY=VALUE expected")
+        if key in found:
+            raise ValueError(f"{flag} {text}: {key} was given before")
+        found[key] = option_value(value, f"{flag} {text}")
+    return found
+
+
+def option_value(value: str, what: str) -> Any:
+    if value in ("true", "false"):
+        return value == "true"
+    if "," in value:
+        return [finite(part, f"{what}: an entry") for part in value.split(",")]
+    return finite(value, what) if value[0] in "+-.0123456789" else value

@@ -16,7 +16,7 @@ import numpy as np
 
 from .. import Collider, Journal, Mesh, Program, Tool, plan
 from . import tools
-from .arguments import MESHES, finite, input_file, length, output_file
+from .arguments import MESHES, finite, input_file, length, machine_options, output_file
 from .console import Console, number, times
 
 HELP = "write NC code for a machine"
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "axis_tolerance": AXIS_TOLERANCE
         if arguments.axis_tolerance is None
         else math.radians(length(arguments.axis_tolerance, "--axis-tolerance")),
-        "options": options(arguments.option, "--option"),
+        "options": machine_options(arguments.option, "--option"),
     }
     program, notes = read(arguments, console)
     if not len(program):
@@ -82,27 +82,6 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 # ---- what is asked for
-
-
-def options(texts: list[str], flag: str) -> dict[str, Any]:
-    """``key=value``: a number, a list of them as in 0,0,-40, true or false, or a word."""
-    found: dict[str, Any] = {}
-    for text in texts:
-        key, equals, value = text.partition("=")
-        if not (key and equals and value):
-            raise ValueError(f"{flag} {text}: KEY=VALUE expected")
-        if key in found:
-            raise ValueError(f"{flag} {text}: {key} was given before")
-        found[key] = option(value, f"{flag} {text}")
-    return found
-
-
-def option(value: str, what: str) -> Any:
-    if value in ("true", "false"):
-        return value == "true"
-    if "," in value:
-        return [finite(part, f"{what}: an entry") for part in value.split(",")]
-    return finite(value, what) if value[0] in "+-.0123456789" else value
 
 
 def vector(text: str, what: str) -> np.ndarray:
@@ -136,8 +115,8 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
         elif kind in PROGRAMS:
             program = Program.load(path)
         else:
-            machine_options = options(arguments.machine_option, "--machine-option")
-            program = Program.read(path, machine=arguments.machine, options=machine_options)
+            how = machine_options(arguments.machine_option, "--machine-option")
+            program = Program.read(path, machine=arguments.machine, options=how)
     if kind in PLANS:
         return from_plan(planned, path.name, arguments, console)
     return changed(program, arguments), notes

@@ -3,6 +3,7 @@
 from . import (
     b5x,
     b200,
+    cluster,
     col,
     decimate,
     drop,
@@ -38,4 +39,5 @@ JOBS = {
     "gouge": gouge,
     "nc": nc,
     "threads": threads,
+    "cluster": cluster,
 }

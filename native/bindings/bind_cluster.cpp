@@ -1,0 +1,124 @@
+// The two ends of a verification on a cluster. Not public: riffler.cluster is.
+#include <mutex>
+
+#include "bindings/bindings.hpp"
+#include "bindings/shared_report.hpp"
+#include "verify/remote.hpp"
+#include "verify/verify_plan.hpp"
+
+namespace riffler {
+
+namespace {
+
+using NoGil = py::gil_scoped_release;
+
+py::bytes to_python(const std::vector<std::uint8_t>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The bytes stay the Python object's, which the caller holds.
+std::span<const std::uint8_t> to_span(const py::bytes& bytes) {
+  const std::string_view view = bytes;
+  return {reinterpret_cast<const std::uint8_t*>(view.data()), view.size()};
+}
+
+/// One call at a time: calls release the GIL.
+class SharedPlan {
+ public:
+  explicit SharedPlan(std::unique_ptr<Verification> v) : verification_(std::move(v)), plan_(*verification_) {}
+
+  /// f(plan) without the GIL.
+  template <class F>
+  auto run(const F& f) {
+    const std::unique_lock held(mutex_, std::try_to_lock);
+    if (!held) throw std::runtime_error("the plan is in use by another thread");
+    const NoGil release;
+    return f(plan_);
+  }
+
+ private:
+  std::unique_ptr<Verification> verification_;
+  VerifyPlan plan_;
+  std::mutex mutex_;
+};
+
+py::list add(SharedPlan& self, const Program& chunk, const py::object& progress) {
+  const Progress listener = to_progress(progress);
+  std::vector<VerifyPlan::Share> shares = self.run([&](VerifyPlan& plan) { return plan.add(chunk, listener); });
+  py::list out;
+  for (VerifyPlan::Share& share : shares) {
+    out.append(py::make_tuple(share.slab, share.moves, to_python(share.packet)));
+    share.packet = {};
+  }
+  return out;
+}
+
+void bind_worker(py::module_& m) {
+  py::class_<SlabWorker>(m, "SlabWorker", "Simulates slabs of a VerifyPlan: made from its ``context``.")
+      .def(py::init([](const py::bytes& context) {
+             const std::span<const std::uint8_t> bytes = to_span(context);
+             const NoGil release;
+             return std::make_unique<SlabWorker>(bytes);
+           }),
+           py::arg("context"))
+      .def(
+          "run",
+          [](const SlabWorker& self, const py::bytes& task, const std::vector<py::bytes>& moves) {
+            const std::span<const std::uint8_t> slab = to_span(task);
+            std::vector<std::span<const std::uint8_t>> packets;
+            for (const py::bytes& packet : moves) packets.push_back(to_span(packet));
+            std::vector<std::uint8_t> result;
+            {
+              const NoGil release;
+              result = self.run(slab, packets);
+            }
+            return to_python(result);
+          },
+          py::arg("task"), py::arg("moves"), "What VerifyPlan.accept takes. FormatError for damaged bytes.");
+}
+
+}  // namespace
+
+void bind_cluster(py::module_& m) {
+  bind_worker(m);
+  py::class_<SharedPlan>(m, "VerifyPlan", "A verification whose slabs run elsewhere; arguments as of riffler.verify.")
+      .def(py::init([](SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
+                       const py::object& tools, double tolerance, double gouge_tolerance,
+                       const std::optional<double>& rest_tolerance, double rapid_feed, const py::object& progress) {
+             const Progress listener = to_progress(progress);
+             return std::make_unique<SharedPlan>(make_verification(
+                 stock, part_mesh, fixtures, tools, tolerance, gouge_tolerance, rest_tolerance, rapid_feed, listener));
+           }),
+           py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
+           py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
+           py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("progress") = py::none())
+      .def("add", &add, py::arg("program"), py::arg("progress") = py::none(),
+           "List of (slab, number of moves, bytes) of the chunk: what can touch each slab.")
+      .def(
+          "context",
+          [](SharedPlan& self) { return to_python(self.run([](VerifyPlan& plan) { return plan.context(); })); },
+          "What SlabWorker is made of, after the last chunk.")
+      .def(
+          "task",
+          [](SharedPlan& self, std::size_t slab) {
+            return to_python(self.run([&](VerifyPlan& plan) { return plan.task(slab); }));
+          },
+          py::arg("slab"), "The slab as it stands.")
+      .def(
+          "accept",
+          [](SharedPlan& self, std::size_t slab, const py::bytes& result, bool last) {
+            const std::span<const std::uint8_t> bytes = to_span(result);
+            self.run([&](VerifyPlan& plan) { plan.accept(slab, bytes, last); });
+          },
+          py::arg("slab"), py::arg("result"), py::arg("last"),
+          "A result of SlabWorker.run; ``last``: the slab has no more moves. FormatError for damaged bytes.")
+      .def(
+          "finish",
+          [](SharedPlan& self, const py::object& progress) {
+            const Progress listener = to_progress(progress);
+            return share(self.run([&](VerifyPlan& plan) { return plan.finish(listener); }));
+          },
+          py::arg("progress") = py::none(), "The VerifyReport, once all slabs are there.");
+}
+
+}  // namespace riffler

@@ -1,0 +1,377 @@
+"""Verification on a Dask cluster: slabs of the stock are simulated wherever a worker is free.
+
+The report is that of ``riffler.verify``, the same bytes. The cluster's machines need the same version of riffler, and
+nothing else of the job: each slab travels with its material, its share of the part and the moves that can touch it.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import tempfile
+import time
+import uuid
+from array import array
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from ._core import (
+    Cancelled,
+    FormatError,
+    Mesh,
+    Program,
+    SlabWorker,
+    Tool,
+    VerifyPlan,
+    VerifyReport,
+    Volume,
+    __version__,
+)
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+MOVES = 1 << 18  # of a task, about: 60 MB on the worker; a slab with more of them is run piece by piece
+PER_THREAD = 2  # slabs under way: one that runs and one that waits beside it
+AHEAD = 8  # times as many slabs may be done while one before them is not: what they took is kept in memory
+PATIENCE = 5.0  # s: for the scheduler, and for a first worker
+WITHOUT_WORKERS = 60.0  # s: workers that die may be started again
+RETRIES = 2  # of a slab whose worker fails; a worker that dies is Dask's own to deal with
+# A function of the standard library, so that a worker without riffler can say so.
+VERSION_OF = "__import__('riffler').__version__"
+
+
+def verify(
+    program: Program | Iterable[Program],
+    stock_volume: Volume,
+    part_mesh: Mesh | None = None,
+    fixtures: Iterable[Volume | Mesh] = (),
+    *,
+    scheduler: str | Client,
+    tools: dict[int, Tool] | None = None,
+    tolerance: float = 0.01,
+    gouge_tolerance: float = 0.05,
+    rest_tolerance: float | None = None,
+    rapid_feed: float = 10000.0,
+    progress: Callable[[float], Any] | None = None,
+) -> VerifyReport:
+    """``riffler.verify`` on a cluster: same arguments, same report, same bytes.
+
+    ``scheduler``: the address of a Dask scheduler ("tcp://host:8786") or a ``distributed.Client``. Moves wait in a
+    temporary file (TMPDIR); of the program 24 bytes a row are kept. A worker that dies costs the slabs it was at: Dask
+    gives them to another one. After an error, Ctrl-C, or a ``progress`` that raises or returns False (Cancelled),
+    nothing is left on the cluster.
+
+    ConnectionError where there is no scheduler, or no worker; RuntimeError naming the worker that has another riffler,
+    or none; ValueError as ``riffler.verify``, and where the package distributed is missing.
+    """
+    told = _Told(progress)
+    with _client(scheduler) as client:
+        check_versions(client)
+        plan = VerifyPlan(
+            stock_volume, part_mesh, fixtures, tools=tools, tolerance=tolerance, gouge_tolerance=gouge_tolerance,
+            rest_tolerance=rest_tolerance, rapid_feed=rapid_feed, progress=told.part(0, 0.05),
+        )  # fmt: skip
+        with Spool() as spool:
+            sort_moves(program, plan, spool, told)
+            with Slabs(client, plan, spool, told.part(0.15, 0.9)) as slabs:
+                slabs.run()
+    report = plan.finish(told.part(0.9, 1))
+    told(1.0)
+    return report
+
+
+def sort_moves(program: Program | Iterable[Program], plan: VerifyPlan, spool: Spool, told: _Told) -> None:
+    """All chunks into the spool. Of how many there are nothing is known, so each brings half of what is left."""
+    if not isinstance(program, Program) and not isinstance(program, Iterable):
+        raise ValueError("program must be a Program or an iterable of Programs")
+    begin, end = 0.05, 0.15
+    for chunk in [program] if isinstance(program, Program) else program:
+        if not isinstance(chunk, Program):
+            raise ValueError("program must be a Program or an iterable of Programs")
+        middle = end if chunk is program else (begin + end) / 2
+        for slab, moves, packet in plan.add(chunk, told.part(begin, middle)):
+            spool.add(slab, moves, packet)
+        begin = middle
+
+
+class _Told:
+    """The caller's progress: its share never falls."""
+
+    def __init__(self, progress: Callable[[float], Any] | None) -> None:
+        self.progress, self.most = progress, 0.0
+
+    def __call__(self, share: float) -> None:
+        self.most = max(self.most, share)
+        if self.progress is not None and self.progress(self.most) is False:
+            raise Cancelled("cancelled")
+
+    def part(self, begin: float, end: float) -> Callable[[float], None]:
+        return lambda share: self(begin + share * (end - begin))
+
+
+# --- the cluster ---------------------------------------------------------------------------------------------------
+
+
+def library() -> Any:
+    """distributed, or ValueError where it is missing."""
+    try:
+        import distributed
+    except ImportError as error:
+        raise ValueError("a cluster needs the package distributed (pip install riffler[cluster])") from error
+    return distributed
+
+
+@contextmanager
+def _client(scheduler: str | Client) -> Iterator[Client]:
+    """A client that is given stays open."""
+    distributed = library()
+    if isinstance(scheduler, distributed.Client):
+        if scheduler.asynchronous:
+            raise ValueError("scheduler: an asynchronous Client; give one that waits, or an address")
+        yield scheduler
+        return
+    if not isinstance(scheduler, str):
+        raise ValueError('scheduler must be an address ("tcp://host:8786") or a distributed.Client')
+    try:
+        client = distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False, name="riffler")
+    except (OSError, ValueError) as error:
+        raise ConnectionError(f"no Dask scheduler answers at {scheduler} (start one: dask scheduler)") from error
+    with client:
+        yield client
+
+
+def check_versions(client: Client) -> None:
+    """RuntimeError naming the first machine without this version of riffler: the scheduler takes tasks apart and needs
+    it too. ConnectionError where there is no worker."""
+    address = client.scheduler.address
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError:
+        raise ConnectionError(f"{address} has no workers (start one: dask worker {address} --nthreads 1)") from None
+    found = client.run(eval, VERSION_OF, on_error="return")
+    try:
+        found[f"the scheduler {address}"] = client.run_on_scheduler(eval, VERSION_OF)
+    except ImportError as error:
+        found[f"the scheduler {address}"] = error
+    for worker, version in found.items():
+        _check_version(worker, version)
+
+
+def _check_version(worker: str, version: str | Exception) -> None:
+    if isinstance(version, ImportError):
+        raise RuntimeError(f"{worker} has no riffler ({version}): install riffler {__version__} there")
+    if isinstance(version, Exception):
+        raise RuntimeError(f"{worker} cannot run riffler: {version}") from version
+    if version != __version__:
+        raise RuntimeError(f"{worker} has riffler {version}, this is {__version__}: install the same version there")
+
+
+class Context:
+    """What all slabs share. A task of its own makes it, so that Dask can make it again; workers send it to each other
+    as bytes."""
+
+    def __init__(self, version: str, data: bytes) -> None:
+        self.version, self.data = version, data
+        self.worker = SlabWorker(data) if version == __version__ else None
+
+    def __reduce__(self) -> tuple[type, tuple[str, bytes]]:
+        return Context, (self.version, self.data)
+
+
+def simulate(context: Context, task: bytes, moves: list[bytes]) -> bytes:
+    """On a worker: one slab, or some of its moves."""
+    if context.worker is None:  # it came later than `check_versions`
+        from distributed import get_worker
+
+        raise RuntimeError(
+            f"{get_worker().address} has riffler {__version__}, the job is of {context.version}: install the same "
+            "version there"
+        )
+    return context.worker.run(task, moves)
+
+
+# --- the slabs -----------------------------------------------------------------------------------------------------
+
+
+class Spool:
+    """Packets of moves, slab by slab, in a temporary file that is gone with the process."""
+
+    def __init__(self) -> None:
+        self.file = tempfile.TemporaryFile(prefix="riffler-")  # noqa: SIM115
+        self.size = 0
+        self.total = 0  # moves
+        self.places: dict[int, array[int]] = {}  # of a slab: offset, length and moves of each packet
+
+    def __enter__(self) -> Spool:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.file.close()
+
+    def add(self, slab: int, moves: int, packet: bytes) -> None:
+        self.file.seek(0, os.SEEK_END)
+        self.file.write(packet)
+        self.places.setdefault(slab, array("Q")).extend((self.size, len(packet), moves))
+        self.size += len(packet)
+        self.total += moves
+
+    def slabs(self) -> list[int]:
+        return sorted(self.places)
+
+    def pieces(self, slab: int) -> Iterator[tuple[list[bytes], int, bool]]:
+        """Packets of about MOVES moves at a time, how many moves they are, and whether they are the last ones."""
+        places, packets, moves = self.places[slab], [], 0
+        for k in range(0, len(places), 3):
+            self.file.seek(places[k])
+            packets.append(self.file.read(places[k + 1]))
+            moves += places[k + 2]
+            last = k + 3 == len(places)
+            if last or moves + places[k + 5] > MOVES:
+                yield packets, moves, last
+                packets, moves = [], 0
+
+
+@dataclass
+class Traffic:
+    """What a run has moved, bytes."""
+
+    tasks: int = 0
+    slabs: int = 0
+    context: int = 0
+    sent: int = 0
+    received: int = 0
+
+
+@dataclass
+class Slab:
+    """One under way."""
+
+    number: int
+    pieces: Iterator[tuple[list[bytes], int, bool]]
+    future: Future | None = None
+    moves: int = 0
+    last: bool = False
+
+
+@dataclass
+class Slabs:
+    """Runs all slabs of a plan on the cluster; none of them is left there at the end."""
+
+    client: Client
+    plan: VerifyPlan
+    spool: Spool
+    progress: Callable[[float], Any]
+    traffic: Traffic = field(default_factory=Traffic)
+
+    def __enter__(self) -> Slabs:
+        self.name = f"riffler-verify-{uuid.uuid4().hex}"
+        self.arrived: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self.active: dict[str, Slab] = {}
+        self.waiting = self.spool.slabs()
+        self.waiting.reverse()
+        self.finished = 0  # moves
+        self.threads, self.looked, self.seen = 0, 0.0, time.monotonic()
+        self.context: Future | None = None
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        futures = [slab.future for slab in self.active.values() if slab.future is not None]
+        futures += [self.context] if self.context is not None else []
+        self.active, self.context = {}, None
+        if futures and self.client.status == "running":
+            self.client.cancel(futures, force=True)
+
+    def run(self) -> None:
+        if not self.waiting:
+            return
+        data = self.plan.context()
+        self.traffic.context = len(data)
+        with _large_tasks():
+            self.context = self.client.submit(
+                Context, __version__, data, key=f"{self.name}-context", pure=False, retries=RETRIES
+            )
+            del data
+            while self.waiting or self.active:
+                self.look()
+                self.fill()
+                with suppress(queue.Empty):
+                    self.take(self.arrived.get(timeout=0.5))
+                self.progress(self.finished / self.spool.total)
+
+    def look(self) -> None:
+        """How many threads there are now. ConnectionError where scheduler or workers are gone for good."""
+        now = time.monotonic()
+        if now - self.looked < 1:
+            return
+        self.looked = now
+        if self.client.status == "running":
+            try:
+                self.threads = sum(self.client.nthreads().values())
+            except OSError:
+                self.threads = 0
+        else:
+            self.threads = 0
+        if self.threads > 0:
+            self.seen = now
+        elif self.client.status == "closed" or now - self.seen > WITHOUT_WORKERS:
+            raise ConnectionError(f"{self.client.scheduler.address}: the scheduler, or its last worker, is gone")
+
+    def fill(self) -> None:
+        most = max(1, PER_THREAD * self.threads)
+        while self.waiting and len(self.active) < most:
+            first = min((slab.number for slab in self.active.values()), default=self.waiting[-1])
+            if self.waiting[-1] - first > AHEAD * most:
+                return
+            number = self.waiting.pop()
+            self.traffic.slabs += 1
+            self.submit(Slab(number, self.spool.pieces(number)))
+
+    def submit(self, slab: Slab) -> None:
+        packets, slab.moves, slab.last = next(slab.pieces)
+        task = self.plan.task(slab.number)
+        self.traffic.tasks += 1
+        self.traffic.sent += len(task) + sum(map(len, packets))
+        key = f"{self.name}-{slab.number}-{self.traffic.tasks}"
+        slab.future = self.client.submit(
+            simulate, self.context, task, packets, key=key, pure=False, retries=RETRIES, priority=-slab.number
+        )
+        self.active[key] = slab
+        slab.future.add_done_callback(self.arrived.put)
+
+    def take(self, future: Future) -> None:
+        slab = self.active[future.key]
+        result = self.result(future, slab)
+        self.traffic.received += len(result)
+        self.plan.accept(slab.number, result, slab.last)
+        self.finished += slab.moves
+        del self.active[future.key]
+        slab.future = None
+        future.release()
+        if not slab.last:
+            self.submit(slab)
+
+    def result(self, future: Future, slab: Slab) -> bytes:
+        distributed = library()
+        try:
+            return future.result()
+        except distributed.KilledWorker as error:
+            raise RuntimeError(
+                f"slab {slab.number}: one worker after the other dies of it, {error.last_worker.address} as the last; "
+                "their logs say why (memory?)"
+            ) from error
+        except distributed.CancelledError as error:
+            raise ConnectionError(f"{self.client.scheduler.address}: the scheduler has given the work up") from error
+        except FormatError as error:
+            raise RuntimeError(f"slab {slab.number}: damaged on its way ({error})") from error
+
+
+@contextmanager
+def _large_tasks() -> Iterator[None]:
+    """Slabs travel in their tasks, because data that lie on a worker would be lost with it; Dask need not warn."""
+    import dask
+
+    with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1 TB"}):
+        yield

@@ -1,0 +1,204 @@
+"""Run an NC program on its stock and say what goes wrong: rapids in material, holder and fixtures that are hit, gouges.
+
+riffler verify part.ngc --stock 100x60x30 --pitch 0.25 --tool ball:6:30 --holder 30:20:60:20 --part part.stl
+
+Exit status 0: passed, 1: something was found or could not be checked, 2: bad input.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from .. import Finding, Mesh, Program, Tool, VerifyReport, Volume, cluster, verify
+from . import tools
+from .arguments import (
+    MESHES,
+    ORIGINS,
+    VOLUMES,
+    add_directions,
+    add_pitch,
+    finite,
+    input_file,
+    length,
+    machine_options,
+    output_file,
+)
+from .carve import stock
+from .console import Console, number, times
+from .deviation_map import LEGEND, write_map
+from .shapes import write_mesh, write_volume
+
+HELP = "check an NC program by simulation"
+MAPS = (".ply",)
+MOST = 30  # findings in the table
+__doc__ += "\n" + tools.FORMS
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("program", metavar="FILE", help="NC program, RS-274, or .rprog")
+    parser.add_argument(
+        "--stock",
+        required=True,
+        metavar="WxDxH|FILE",
+        help="a block's sizes, or a .stl, .obj, .ply, .3mf or .rvol file",
+    )
+    add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
+    add_directions(parser)
+    parser.add_argument(
+        "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
+    )
+    parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
+    for what in ("shank", "holder"):
+        parser.add_argument(
+            f"--{what}",
+            action="append",
+            default=[],
+            metavar="[N=]Z0:R0:Z1:R1[,…]",
+            help=f"{what} of tool N, or of all: truncated cones, heights from the tip and radii, mm",
+        )
+    parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
+    parser.add_argument(
+        "--machine-option", action="append", default=[], metavar="KEY=VALUE", help="of it; may be repeated"
+    )
+    parser.add_argument("--part", metavar="FILE", help="what it should become: .stl, .obj, .ply or .3mf")
+    parser.add_argument(
+        "--fixture", action="append", default=[], metavar="FILE", help="a mesh or .rvol file; may be repeated"
+    )
+    parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of cutting and of contact (default 0.01)")
+    parser.add_argument("--gouge", default="0.05", metavar="MM", help="depth of a gouge in the part (default 0.05)")
+    parser.add_argument("--rest", metavar="MM", help="height of rest material that is a finding (default: none is)")
+    parser.add_argument("--rapid-feed", default="10000", metavar="MM/MIN", help="for the time (default 10000)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="run it on a Dask cluster: tcp://host:8786")
+    parser.add_argument("--out", metavar="FILE", help="what is left: .stl, .obj, .ply, .3mf or .rvol")
+    parser.add_argument("--map", metavar="FILE", help=f".ply of what is left, coloured: {LEGEND}")
+    parser.add_argument("--map-scale", default="0.5", metavar="MM", help="distance of the full colours (default 0.5)")
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    limits = {
+        "tolerance": length(arguments.tolerance, "--tolerance"),
+        "gouge_tolerance": length(arguments.gouge, "--gouge"),
+        "rest_tolerance": None if arguments.rest is None else length(arguments.rest, "--rest"),
+        "rapid_feed": length(arguments.rapid_feed, "--rapid-feed"),
+    }
+    scale = length(arguments.map_scale, "--map-scale")
+    out = None if arguments.out is None else output_file(arguments.out, MESHES + VOLUMES)
+    coloured = None if arguments.map is None else output_file(arguments.map, MAPS)
+    for option, value in (("--map", arguments.map), ("--rest", arguments.rest)):
+        if value is not None and arguments.part is None:
+            raise ValueError(f"{option} needs --part")
+    wanted = [tools.parse(text) for text in arguments.tool]
+    around = [(what, *cones(text, what)) for what in ("shank", "holder") for text in getattr(arguments, what)]
+    path = Path(arguments.program)
+    how = machine_options(arguments.machine_option, "--machine-option")
+    with console.step("program"):
+        saved = path.suffix.lower() == ".rprog"
+        program = Program.load(path) if saved else Program.read(path, arguments.machine, how)
+    volume = stock(arguments, console)
+    reach = float(np.linalg.norm(volume.upper - volume.lower))
+    by_number = with_holders(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
+    with console.step("read"):
+        part = None if arguments.part is None else Mesh.read(input_file(arguments.part, MESHES))
+        fixtures = [fixture(name) for name in arguments.fixture]
+    with console.step("verify") as progress:
+        options = {"tools": by_number, "progress": progress, **limits}
+        if arguments.scheduler is None:
+            report = verify(program, volume, part, fixtures, **options)
+        else:
+            report = cluster.verify(program, volume, part, fixtures, scheduler=arguments.scheduler, **options)
+    if out is not None:
+        if out.suffix.lower() in VOLUMES:
+            write_volume(report.volume, out, console)
+        else:
+            with console.step("mesh") as progress:
+                mesh = report.volume.to_mesh(progress=progress)
+            write_mesh(mesh, out, console)
+    if coloured is not None:
+        with console.step("map"), console.writing(coloured) as beside:
+            write_map(beside, *report.deviation, scale)
+
+    blocks = [] if saved else path.read_text(encoding="utf-8", errors="replace").splitlines()
+    data = {
+        "program": str(path),
+        **report.to_dict(),
+        "tools": {str(n): tool.to_dict() for n, tool in by_number.items()},
+        "out": None if out is None else str(out),
+        "map": None if coloured is None else str(coloured),
+        "seconds": console.seconds,
+    }
+    for entry in data["findings"]:
+        entry["block"] = block_of(entry["line"], blocks)
+    show(report, data, blocks, console)
+    return 0 if report.passed else 1
+
+
+def cones(text: str, what: str) -> tuple[int | None, list[tuple[float, ...]]]:
+    """``N=Z0:R0:Z1:R1,…`` as a tool number, or None for all, and truncated cones."""
+    before, equals, form = text.rpartition("=")
+    if equals and not before.isdecimal():
+        raise ValueError(f"--{what} {text}: the number before = must be a tool number")
+    out = [tuple(finite(x, f"--{what} {text}: size") for x in cone.split(":")) for cone in form.split(",")]
+    if any(len(cone) != 4 for cone in out):
+        raise ValueError(f"--{what} {text}: Z0:R0:Z1:R1 expected, heights from the tip and radii")
+    return (int(before) if equals else None), out
+
+
+def with_holders(by_number: dict[int, Tool], around: list[tuple]) -> dict[int, Tool]:
+    out = dict(by_number)
+    for what, wanted, pieces in around:
+        if wanted is not None and wanted not in out:
+            raise ValueError(f"--{what} {wanted}=…: the program does not call tool {wanted}")
+        for tool in out if wanted is None else [wanted]:
+            out[tool] = out[tool].with_shank(pieces) if what == "shank" else out[tool].with_holder(pieces)
+    return out
+
+
+def fixture(name: str) -> Volume | Mesh:
+    path = input_file(name, MESHES + VOLUMES)
+    return Volume.load(path) if path.suffix.lower() in VOLUMES else Mesh.read(path)
+
+
+def block_of(line: int, blocks: list[str]) -> str:
+    return blocks[line - 1].strip() if 0 < line <= len(blocks) else ""
+
+
+def lines_of(finding: Finding) -> str:
+    if finding.line == 0:
+        return "-"
+    return str(finding.line) if finding.line == finding.last_line else f"{finding.line}-{finding.last_line}"
+
+
+def show(report: VerifyReport, data: dict, blocks: list[str], console: Console) -> None:
+    found = report.findings
+    if found:
+        heads = ("finding", "lines", "block", "how much", "at", "what to do")
+        shown = (
+            (
+                f.kind,
+                lines_of(f),
+                block_of(f.line, blocks),
+                number(round(f.value, 3), f.unit),
+                ", ".join(f"{x:.2f}" for x in f.point),
+                f.message,
+            )
+            for f in found[:MOST]
+        )
+        notes = [f"and {number(len(found) - MOST)} more: --json lists all"] if len(found) > MOST else []
+        console.table(f"{len(found)} finding{'s' if len(found) > 1 else ''}", heads, shown, notes)
+    minutes, seconds = divmod(round(data["time"]), 60)
+    rows = [
+        ("moves", number(max(0, data["rows"] - 1))),
+        ("tools", ", ".join(f"T{n} {tool['name']}" for n, tool in data["tools"].items())),
+        ("removed", number(data["removed"], "mm³")),
+        ("left", number(data["volume"], "mm³")),
+        ("machining", f"{number(minutes)} min {seconds:02d} s, without tool changes and acceleration"),
+        *(("not checked", sentence) for sentence in report.not_checked),
+    ]
+    if data["map"] is not None:
+        rows.append(("map", f"{data['map']}: {LEGEND}"))
+    rows.append(("times", times(data["seconds"])))
+    name = Path(data["program"]).name
+    console.result(data, f"{name}: {'passed' if report.passed else 'NOT passed'}", rows)

@@ -1,0 +1,97 @@
+"""``riffler verify`` as a shell sees it."""
+
+import json
+import struct
+
+import numpy as np
+import pytest
+import riffler
+from riffler.cli import main
+from verify_reference import box_mesh
+
+CODE = """G21 G90 G94
+T1 M6
+M3 S8000
+G0 X-10 Y10 Z25
+G1 Z17 F500
+X50
+G0 X50 Y15 Z{height}
+X20
+G0 Z40
+M30
+"""
+WORDS = ["--stock", "40x30x20", "--pitch", "0.5", "--tool", "ball:6:30", "--holder", "30:20:60:20"]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, height in (("bad", 17), ("good", 20.5)):
+        (tmp_path / f"{name}.ngc").write_text(CODE.format(height=height))
+    box_mesh([0, 0, 0], [40, 30, 17]).write("part.stl")
+    box_mesh([30, 6, 0], [38, 14, 18]).write("clamp.stl")
+    return tmp_path
+
+
+def run(capsys, *words):
+    status = main(["verify", *words, "--json"])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def test_a_good_program_passes_and_a_bad_one_names_the_block(folder, capsys):
+    status, data = run(capsys, "good.ngc", *WORDS)
+    assert status == 0 and data["passed"] and data["findings"] == []
+    status, data = run(capsys, "bad.ngc", *WORDS)
+    (found,) = data["findings"]
+    assert status == 1 and (found["kind"], found["line"], found["block"]) == ("rapid", 8, "X20")
+    assert main(["verify", "bad.ngc", *WORDS]) == 1
+    said = capsys.readouterr().out
+    assert "NOT passed" in said and "retract higher" in said and "fixtures: none were given" in said
+
+
+def test_parts_fixtures_and_holders_are_checked(folder, capsys):
+    status, data = run(capsys, "good.ngc", *WORDS, "--part", "part.stl", "--fixture", "clamp.stl")
+    assert status == 1 and [f["kind"] for f in data["findings"]] == ["fixture"] and data["findings"][0]["line"] == 6
+    status, data = run(capsys, "good.ngc", *WORDS, "--part", "part.stl", "--rest", "0.2")
+    assert status == 1 and [f["kind"] for f in data["findings"]] == ["rest"]
+    low = [*WORDS[:-1], "1=2.5:20:60:20", "--shank", "1=2:2:2.5:2"]
+    status, data = run(capsys, "good.ngc", *low)
+    assert "holder" in {f["kind"] for f in data["findings"]}
+    assert data["tools"]["1"]["holder"] == [[2.5, 20, 60, 20]]
+
+
+def test_what_is_left_and_its_map_are_written(folder, capsys):
+    status, data = run(capsys, "good.ngc", *WORDS, "--part", "part.stl", "--out", "left.rvol", "--map", "map.ply")
+    left = riffler.Volume.load("left.rvol")
+    assert status == 0 and left.volume == pytest.approx(data["volume"])
+    mesh = riffler.Mesh.read("map.ply")
+    assert mesh.audit()["open_edges"] == 0
+    raw = (folder / "map.ply").read_bytes()
+    header, body = raw.split(b"end_header\n", 1)
+    assert b"red is gouged" in header
+    rows = [struct.unpack_from("<3f3Bf", body, 19 * k) for k in range(len(mesh.vertices))]
+    blue = [r for r in rows if r[6] > 0.5]
+    assert blue and all(r[3:6] == (33, 102, 172) for r in blue)
+    assert np.max([abs(r[6]) for r in rows if abs(r[2]) < 1e-3]) < 0.3  # the stock's lower face is the part's
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--part", "nope.stl"], "nope.stl"),
+        (["--holder", "1:2:3"], "Z0:R0:Z1:R1"),
+        (["--holder", "9=1:2:3:4"], "does not call tool 9"),
+        (["--holder", "x=1:2:3:4"], "tool number"),
+        (["--holder", "30:20:20:20"], "z0 must be less"),
+        (["--map", "m.ply"], "--map needs --part"),
+        (["--rest", "0.1"], "--rest needs --part"),
+        (["--gouge", "0"], "--gouge must be positive"),
+        (["--out", "left.txt"], "left.txt"),
+        (["--fixture", "bad.ngc"], "bad.ngc"),
+        (["--machine", "mill"], "mill"),
+    ],
+)
+def test_bad_input_is_one_line_and_writes_nothing(folder, capsys, words, message):
+    before = sorted(p.name for p in folder.iterdir())
+    status, data = run(capsys, "good.ngc", *WORDS, *words)
+    assert status == 2 and message in data["error"] and sorted(p.name for p in folder.iterdir()) == before

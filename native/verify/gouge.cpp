@@ -1,0 +1,155 @@
+#include "verify/gouge.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "dexel/from_mesh.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// Whether the piece [near, far] of a part's span begins at the part's surface and is no longer than the tolerance, so
+/// that none of it is deep. Ends in the box's own faces may be within a part that sticks out of it.
+bool surely_shallow(const Grid& grid, const Span& span, double near, double far, double tolerance) {
+  const bool at_surface =
+      (near == span.near && near > grid.box().lower.z) || (far == span.far && far < grid.box().upper.z);
+  return at_surface && far - near <= tolerance;
+}
+
+/// The part's material of a tile on the rays that lost some of it deep inside, as far as it was still there before.
+std::shared_ptr<const Tile> deep_rays(const PartSurface& surface, const Grid& grid, const Slab& slab, std::size_t k,
+                                      const Tile& part, const Tile& before, const Tile& after) {
+  std::optional<TileBuilder> builder;
+  for (int r = 0; r < kTileRays; ++r) {
+    bool any = false;
+    if (!part.ray(r).empty() && !before.ray(r).empty())
+      for_each_loss_on_ray(before.ray(r), after.ray(r), [&](double near, double far) {
+        for (const Span& s : part.ray(r)) {
+          const double a = std::max(near, s.near), b = std::min(far, s.far);
+          if (any || !(a < b) || surely_shallow(grid, s, a, b, surface.tolerance())) continue;
+          any = surface.deep(on_ray(grid, slab, k, r, a), on_ray(grid, slab, k, r, b));
+        }
+      });
+    if (any && !builder) {
+      builder.emplace(grid.has_normals());
+      while (builder->rays() < r) builder->next_ray();
+    }
+    if (any)
+      for (const Span& s : part.ray(r))
+        for (const Span& b : before.ray(r))
+          if (std::max(s.near, b.near) < std::min(s.far, b.far))
+            builder->add({std::max(s.near, b.near), std::min(s.far, b.far)});
+    if (builder) builder->next_ray();
+  }
+  return builder ? builder->finish() : nullptr;
+}
+
+/// mm: shorter pieces are rounding. A retract on the way of its plunge would gouge what the plunge gouged, by 1e-15 mm.
+/// Not more, as many small bites make a deep gouge.
+constexpr double kBite = 1e-6;
+
+/// The worst of what a slab of the part has lost.
+PartSurface::Deepest deepest_loss(const PartSurface& surface, const Workbench& bench, const SlabTiles& before,
+                                  const SlabTiles& after) {
+  PartSurface::Deepest worst;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    if (before[k] == after[k]) continue;
+    for_each_loss(*before[k], *after[k], [&](int r, double near, double far) {
+      if (far - near < kBite) return;
+      const Vec3 a = on_ray(bench.grid(), bench.slab(), k, r, near), b = on_ray(bench.grid(), bench.slab(), k, r, far);
+      const PartSurface::Deepest found = surface.deepest(a, b);
+      if (found.depth > worst.depth) worst = found;
+    });
+  }
+  return worst;
+}
+
+}  // namespace
+
+Target::Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress)
+    : volume_(from_mesh(part, frame, progress)), surface_(part, tolerance), bounds_(riffler::bounds(part)) {}
+
+PartSurface::PartSurface(const Mesh& part, double tolerance) : closest_(part, true), tolerance_(tolerance) {}
+
+bool PartSurface::deep(const Vec3& near, const Vec3& far) const {
+  const Vec3 middle = (near + far) / 2.0;
+  if (!closest_.within(middle, tolerance_)) return true;
+  const double half = glm::length(far - near) / 2, depth = closest_(middle).distance;
+  // The distance falls and rises by no more than the way.
+  if (depth + half <= tolerance_) return false;
+  if (half < 0.01 * tolerance_) return true;
+  return deep(near, middle) || deep(middle, far);
+}
+
+PartSurface::Deepest PartSurface::deepest(const Vec3& near, const Vec3& far) const {
+  struct Stretch {
+    Vec3 a, b;
+  };
+  Deepest best;
+  const auto look = [&](const Vec3& p) {
+    const double d = closest_(p).distance;
+    if (d > best.depth) best = {d, p};
+    return d;
+  };
+  look(near), look(far);
+  // Branch and bound: no point of a piece is deeper than its middle by more than half its length (1-Lipschitz).
+  std::vector<Stretch> pieces{{near, far}};
+  while (!pieces.empty()) {
+    const Stretch p = pieces.back();
+    pieces.pop_back();
+    const Vec3 middle = (p.a + p.b) / 2.0;
+    const double most = look(middle) + glm::length(p.b - p.a) / 2;
+    if (most <= std::max(1.01 * best.depth, tolerance_)) continue;
+    pieces.push_back({p.a, middle}), pieces.push_back({middle, p.b});
+  }
+  return best;
+}
+
+void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
+                 const SlabTiles& after, const Moves& moves, std::span<const std::size_t> cuts,
+                 std::vector<Event>& events) {
+  SlabTiles deep(before.size(), std::make_shared<const Tile>());
+  bool any = false;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    if (before[k] == after[k]) continue;
+    const Tile& tile = *part[k];
+    if (tile.spans.empty() || tile.reach.cut(before[k]->reach).empty()) continue;
+    if (auto spans = deep_rays(surface, bench.grid(), bench.slab(), k, tile, *before[k], *after[k]))
+      deep[k] = std::move(spans), any = true;
+  }
+  if (!any) return;
+  const Box3 box = material_box(bench.grid(), bench.slab(), deep);
+  for (const std::size_t i : cuts) {
+    if (!(moves.touch(i, box) & Moves::Cutter)) continue;
+    SlabTiles left = bench.after(deep, moves.shapes(i).cutter, moves.from(i), moves.to(i));
+    if (left == deep) continue;
+    const PartSurface::Deepest worst = deepest_loss(surface, bench, deep, left);
+    deep = std::move(left);
+    if (worst.depth > surface.tolerance())
+      events.push_back({Kind::Gouge, Member::Cutter, -1, moves.row(i), worst.depth, worst.depth, worst.point});
+  }
+}
+
+void find_missing(const Target& target, const Grid& grid, const Slab& slab, const SlabTiles& stock,
+                  std::vector<Event>& events) {
+  const PartSurface& surface = target.surface();
+  const SlabTiles part = target.tiles(slab);
+  PartSurface::Deepest worst;
+  for (std::size_t k = 0; k < stock.size(); ++k) {
+    const Tile& tile = *part[k];
+    if (tile.spans.empty()) continue;
+    for (int r = 0; r < kTileRays; ++r)
+      for (const Span& s : tile.ray(r))
+        for_each_loss_on_ray({&s, 1}, stock[k]->ray(r), [&](double near, double far) {
+          if (surely_shallow(grid, s, near, far, surface.tolerance())) return;
+          const Vec3 a = on_ray(grid, slab, k, r, near), b = on_ray(grid, slab, k, r, far);
+          if (!surface.deep(a, b)) return;
+          if (const PartSurface::Deepest found = surface.deepest(a, b); found.depth > worst.depth) worst = found;
+        });
+  }
+  if (worst.depth > surface.tolerance())
+    events.push_back({Kind::Gouge, Member::Cutter, -1, 0, worst.depth, worst.depth, worst.point});
+}
+
+}  // namespace riffler

@@ -1,0 +1,66 @@
+// Gouges: what a program takes from inside the part, deeper under its surface than the tolerance.
+#pragma once
+
+#include "mesh/closest.hpp"
+#include "verify/event.hpp"
+#include "verify/loss.hpp"
+#include "verify/moves.hpp"
+#include "verify/workbench.hpp"
+
+namespace riffler {
+
+/// How deep under the part's surface. Read by several threads at once.
+class PartSurface {
+ public:
+  /// `tolerance`: mm, depth from which on it is a gouge. std::invalid_argument for a mesh that `Closest` does not take.
+  PartSurface(const Mesh& part, double tolerance);
+
+  /// With sides.
+  const Closest& closest() const { return closest_; }
+  double tolerance() const { return tolerance_; }
+
+  /// The deepest point under the part's surface of [near, far] on a ray, and how deep it is (to 1 %), mm.
+  struct Deepest {
+    double depth = 0;
+    Vec3 point{0};
+  };
+  Deepest deepest(const Vec3& near, const Vec3& far) const;
+  /// False where no point of the piece is deeper than the tolerance; true where one is, or nearly.
+  bool deep(const Vec3& near, const Vec3& far) const;
+
+ private:
+  Closest closest_;
+  double tolerance_;
+};
+
+/// The part over a stock's grids. Read by several threads at once.
+class Target {
+ public:
+  /// `frame` is the stock's; `tolerance` as for PartSurface. std::invalid_argument where the mesh is none to make a
+  /// volume of.
+  Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress = {});
+
+  const Volume& volume() const { return volume_; }
+  const PartSurface& surface() const { return surface_; }
+  const Box3& bounds() const { return bounds_; }
+  /// The part's material in a slab of the stock.
+  SlabTiles tiles(const Slab& slab) const { return tiles_of(volume_.grids()[slab.grid], slab); }
+
+ private:
+  Volume volume_;
+  PartSurface surface_;
+  Box3 bounds_;
+};
+
+/// Adds an event for each move that took from the part in this slab, where it has the material `part`. `before` and
+/// `after` are the slab's states round the moves, `cuts` the moves that may have done it (places in `moves`),
+/// ascending.
+void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
+                 const SlabTiles& after, const Moves& moves, std::span<const std::size_t> cuts,
+                 std::vector<Event>& events);
+
+/// Material of the part that the stock lacks from the start: an event of row 0, or nothing.
+void find_missing(const Target& target, const Grid& grid, const Slab& slab, const SlabTiles& stock,
+                  std::vector<Event>& events);
+
+}  // namespace riffler

@@ -1,0 +1,101 @@
+// Bytes that go from one process to another: numbers, arrays and compressed columns under one checksum.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "geom/bytes.hpp"
+#include "dexel/planes.hpp"
+#include "geom/error.hpp"
+
+namespace riffler {
+
+/// What a packet holds; the reader's messages name it.
+enum class PacketKind : std::uint32_t { Context, Task, Moves, Result };
+
+/// "the context of a cluster's slabs", …
+const char* name_of(PacketKind kind);
+
+/// Numbers are little-endian, as they stand in memory. Both ends are the same version of this program, so nothing in a
+/// packet says what it is made of.
+class PacketWriter {
+ public:
+  explicit PacketWriter(PacketKind kind);
+
+  template <class T>
+  void put(const T& value) {
+    riffler::put(bytes_, value);
+  }
+  /// An array: how long it is, then its items.
+  template <class T>
+  void put_all(std::span<const T> items) {
+    static_assert(std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T>,
+                  "bytes between the items would be anything");
+    put_raw(items.data(), items.size(), sizeof(T));
+  }
+  void put_all(std::span<const double> items) { put_raw(items.data(), items.size(), sizeof(double)); }
+  /// Compressed columns, whose lengths the reader knows: f(PlaneWriter&) writes them.
+  template <class F>
+  void columns(const F& f) {
+    const std::size_t at = bytes_.size();
+    put(std::uint64_t{0});
+    {
+      PlaneWriter planes(bytes_);
+      f(planes);
+    }
+    const std::uint64_t length = bytes_.size() - at - sizeof length;
+    std::memcpy(bytes_.data() + at, &length, sizeof length);
+  }
+  /// The packet, with its checksum.
+  std::vector<std::uint8_t> finish();
+
+ private:
+  void put_raw(const void* items, std::size_t n, std::size_t size);
+  Bytes bytes_;
+};
+
+/// Reads what PacketWriter wrote, in the same order. FormatError, naming packet and byte, for everything else.
+class PacketReader {
+ public:
+  /// Checks kind and checksum. `bytes` must outlive this.
+  PacketReader(std::span<const std::uint8_t> bytes, PacketKind kind);
+
+  template <class T>
+  T get() {
+    return riffler::get<T>(take(sizeof(T)), 0);
+  }
+  template <class T>
+  std::vector<T> get_all() {
+    const auto n = get<std::uint64_t>();
+    if (n > bytes_.size() / sizeof(T)) fail("an array that is longer than the packet");
+    const std::span<const std::uint8_t> from = take(n * sizeof(T));
+    std::vector<T> items(n);
+    if (n > 0) std::memcpy(items.data(), from.data(), from.size());
+    return items;
+  }
+  /// A count of things of which each takes some of the packet's bytes; deflated ones too.
+  std::size_t count();
+  /// f(PlaneReader&) reads what `columns` wrote.
+  template <class F>
+  void columns(const F& f) {
+    const auto length = get<std::uint64_t>();
+    const std::size_t start = at_ + sizeof length;
+    PlaneReader planes(take(length), start, name_);
+    f(planes);
+    planes.finish();
+  }
+  /// FormatError unless all of it has been read.
+  void finish() const;
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  std::span<const std::uint8_t> take(std::uint64_t n);
+  std::string name_;
+  std::span<const std::uint8_t> bytes_;  // without the checksum
+  std::size_t at_ = 0;
+};
+
+}  // namespace riffler

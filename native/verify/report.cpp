@@ -1,0 +1,24 @@
+#include "verify/report.hpp"
+
+#include <limits>
+
+#include "marching/to_mesh.hpp"
+#include "mesh/closest.hpp"
+
+namespace riffler {
+
+std::pair<Mesh, std::vector<double>> deviation_of(const Volume& left, const Mesh& part, const Progress& progress) {
+  Mesh mesh = to_mesh(left, riffler::part(progress, 0, 0.5));
+  std::vector<double> distance;
+  if (!mesh.empty()) distance = deviation(mesh, part, true, riffler::part(progress, 0.5, 1));
+  return {std::move(mesh), std::move(distance)};
+}
+
+std::vector<double> part_map_of(const Mesh& left, const Mesh& part, const Progress& progress) {
+  if (left.empty()) return std::vector<double>(part.vertices.size(), -std::numeric_limits<double>::infinity());
+  std::vector<double> distance = deviation(part, left, true, progress);
+  for (double& d : distance) d = 0 - d;  // inside of the material: covered
+  return distance;
+}
+
+}  // namespace riffler

@@ -1,0 +1,86 @@
+#include "verify/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler {
+
+namespace {
+
+Rod rod_round(const Piece& piece) {
+  return {bottom(piece), top(piece), max_radius(piece)};
+}
+
+/// Smaller by `by` on all sides, but never by more than a quarter.
+Frustum shrunk(const Frustum& f, double by) {
+  const double ends = std::min(by, (f.z1 - f.z0) / 4), slope = (f.r1 - f.r0) / (f.z1 - f.z0);
+  const double side = std::min(by * std::sqrt(1 + slope * slope), std::max(f.r0, f.r1) / 4);
+  const auto radius = [&](double z) { return std::max(0.0, f.r0 + slope * (z - f.z0) - side); };
+  return {f.z0 + ends, radius(f.z0 + ends), f.z1 - ends, radius(f.z1 - ends)};
+}
+
+/// Convex by itself: pieces may overlap or leave gaps in any order.
+ConvexGroup alone(const Frustum& f) {
+  const Piece piece = f;
+  return convex_groups(std::span(&piece, 1)).front();
+}
+
+Probe probe_of(Member member, const std::vector<Frustum>& pieces, double tolerance) {
+  Probe probe{member, {}, {}};
+  for (const Frustum& f : pieces) probe.real.push_back(alone(f)), probe.small.push_back(alone(shrunk(f, tolerance)));
+  return probe;
+}
+
+}  // namespace
+
+void Rod::add(const Rod& other) {
+  if (empty()) {
+    *this = other;
+    return;
+  }
+  low = std::min(low, other.low), high = std::max(high, other.high), radius = std::max(radius, other.radius);
+}
+
+Box3 Rod::swept(const Pose& from, const Pose& to, double top) const {
+  Box3 box;
+  double end = high;
+  // The axis' z is a concave function of the time where it is positive, so it never falls below the lesser of its ends;
+  // nor does the tip's.
+  if (const double rise = std::min(from.axis.z, to.axis.z); rise > 0) {
+    const double least = std::min(from.tip.z, to.tip.z);
+    end = std::min(high, (top - least + radius) / rise);
+    if (end < low) return box;
+  }
+  for (const Pose* pose : {&from, &to}) {
+    const Vec3& o = pose->axis;
+    const Vec3 disc(std::sqrt(std::max(0.0, 1 - o.x * o.x)), std::sqrt(std::max(0.0, 1 - o.y * o.y)),
+                    std::sqrt(std::max(0.0, 1 - o.z * o.z)));
+    for (const double z : {low, end}) {
+      const Vec3 centre = pose->tip + z * o;
+      box.add({centre - radius * disc, centre + radius * disc});
+    }
+  }
+  // Every point of the tool stays within lever φ² / 8 of the straight way between its two places: its acceleration
+  // beside the tip's is at most lever φ².
+  const double chord = glm::length(to.axis - from.axis);
+  const double angle = 2 * std::asin(std::min(1.0, chord / 2)),
+               lever = std::hypot(std::max(std::abs(low), std::abs(end)), radius);
+  return box.grown(lever * angle * angle / 8 + 1e-9 * (1 + lever));
+}
+
+ToolShapes::ToolShapes(const Tool& tool, double tolerance, double reach, double pitch)
+    : cutter(convex_groups(tool.cutter())) {
+  for (const Piece& piece : tool.cutter()) cutter_rod.add(rod_round(piece));
+  if (!tool.shank().empty()) probes.push_back(probe_of(Member::Shank, tool.shank(), tolerance));
+  if (!tool.holder().empty()) probes.push_back(probe_of(Member::Holder, tool.holder(), tolerance));
+  whole_rod = cutter_rod;
+  for (const std::vector<Frustum>* pieces : {&tool.shank(), &tool.holder()})
+    for (const Frustum& f : *pieces) probe_rods.push_back(rod_round(f)), whole_rod.add(rod_round(f));
+  // Wider by a pitch: a wall that the cutter has just made stands beside it too, and nobody knows what passes it.
+  const Frustum beyond{whole_rod.high, whole_rod.radius + pitch, whole_rod.high + reach, whole_rod.radius + pitch};
+  probes.push_back(probe_of(Member::Beyond, {beyond}, tolerance));
+  probe_rods.push_back(rod_round(beyond)), whole_rod.add(rod_round(beyond));
+  for (const Probe& probe : probes) small.insert(small.end(), probe.small.begin(), probe.small.end());
+}
+
+}  // namespace riffler

@@ -1,0 +1,42 @@
+// Slabs: rectangles of whole tiles that are simulated by themselves. Columns are independent, so the parts put together
+// are, bit for bit, what the whole would have been.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dexel/volume.hpp"
+
+namespace riffler {
+
+/// Tiles [u0, u1) × [v0, v1) of one of a volume's grids.
+struct Slab {
+  std::size_t grid = 0;
+  int u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+
+  std::size_t tile_count() const { return static_cast<std::size_t>(u1 - u0) * static_cast<std::size_t>(v1 - v0); }
+  /// Place in the grid's tiles of the slab's tile k.
+  std::size_t place(const Grid& g, std::size_t k) const {
+    const auto wide = static_cast<std::size_t>(v1 - v0);
+    return g.tile_index(u0 + static_cast<int>(k / wide), v0 + static_cast<int>(k % wide));
+  }
+};
+
+/// All slabs of a volume, grid by grid. Depends on the frame only: on no number of threads or machines.
+std::vector<Slab> slabs_of(const Volume& volume);
+
+/// A slab's state: pointers to its tiles. A copy is a snapshot.
+using SlabTiles = std::vector<std::shared_ptr<const Tile>>;
+
+SlabTiles tiles_of(const Grid& grid, const Slab& slab);
+void put_tiles(Grid& grid, const Slab& slab, const SlabTiles& tiles);
+
+/// The slab alone: a volume of the same frame, so that rays have the same coordinates, empty everywhere else.
+Volume part_of(const Volume& volume, const Slab& slab);
+/// Puts the slab's tiles of `part` into `whole`. std::invalid_argument where the frames differ.
+void merge(Volume& whole, const Volume& part, const Slab& slab);
+
+/// Box of what a slab holds, world frame: its rays by half a pitch, its spans exactly. Empty without material.
+Box3 material_box(const Grid& grid, const Slab& slab, const SlabTiles& tiles);
+
+}  // namespace riffler

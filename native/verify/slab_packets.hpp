@@ -1,0 +1,58 @@
+// What goes to a worker for a slab, and what comes back, as packets.
+#pragma once
+
+#include "geom/pose.hpp"
+#include "mesh/mesh.hpp"
+#include "tool/tool.hpp"
+#include "verify/packet.hpp"
+#include "verify/slab_job.hpp"
+
+namespace riffler {
+
+/// What all slabs share. Made once on each machine.
+struct SlabContext {
+  std::vector<Frame> frames;  ///< of the stock, then of the fixtures
+  std::vector<Tool> tools;    ///< in the order of their places
+  double reach = 0;           ///< mm: as for ToolShapes
+  double tolerance = 0;       ///< mm
+  double gouge_tolerance = 0;
+  double top = 0;                    ///< mm: as for Moves
+  std::shared_ptr<const Mesh> part;  ///< or null
+};
+std::vector<std::uint8_t> to_packet(const SlabContext& context);
+SlabContext context_of(std::span<const std::uint8_t> packet);
+
+/// One slab as it stands.
+struct SlabTask {
+  std::int32_t fixture = -1;
+  Slab slab;
+  bool probed = false;
+  std::uint64_t strikes = 0;  ///< SlabReport::strikes so far
+  SlabTiles tiles;
+  SlabTiles part;  ///< the part's material; empty without a part, and for fixtures
+};
+std::vector<std::uint8_t> to_packet(const SlabTask& task);
+SlabTask task_of(std::span<const std::uint8_t> packet);
+
+/// Some of the moves that can touch a slab, rows ascending.
+struct SlabMoves {
+  std::vector<std::int64_t> row;
+  std::vector<std::uint32_t> tool;
+  std::vector<std::uint8_t> rapid;
+  std::vector<Pose> poses;  ///< two of each move
+};
+/// The moves `chosen` (places in `moves`). Where one begins at the end of the one before, the pose is stored once.
+std::vector<std::uint8_t> to_packet(const Moves& moves, std::span<const std::uint32_t> chosen);
+/// Appends what the packet holds.
+void add_moves(std::span<const std::uint8_t> packet, SlabMoves& moves);
+
+/// What came out. Tiles that are as they were are null.
+struct SlabResult {
+  SlabTiles tiles;
+  SlabReport report;
+  VerifyStats stats;
+};
+std::vector<std::uint8_t> to_packet(const SlabResult& result);
+SlabResult result_of(std::span<const std::uint8_t> packet);
+
+}  // namespace riffler
