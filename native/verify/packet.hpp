@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "geom/bytes.hpp"
 #include "dexel/planes.hpp"
+#include "geom/bytes.hpp"
 #include "geom/error.hpp"
 
 namespace riffler {
