@@ -1,6 +1,15 @@
 #include "nc/description.hpp"
 
+namespace {
+
+/// toml++ asserts that a key begins like one, and damaged text shows that it need not.
+struct NoKey {};
+
+}  // namespace
+
+#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : throw NoKey())
 #include <toml++/toml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -48,7 +57,23 @@ class Describer {
       return toml::parse(text);
     } catch (const toml::parse_error& e) {
       throw FormatError(file_, "line " + std::to_string(e.source().begin.line), std::string(e.description()));
+    } catch (const NoKey&) {
+      throw FormatError(file_, "line " + std::to_string(line_without_key(text)), "a key is expected");
     }
+  }
+
+  /// The first line up to which the text has that fault.
+  static int line_without_key(std::string_view text) {
+    int line = 1;
+    for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n', end + 1), ++line) {
+      try {
+        static_cast<void>(toml::parse(text.substr(0, end)));
+      } catch (const NoKey&) {
+        break;
+      } catch (const toml::parse_error&) {
+      }
+    }
+    return line;
   }
 
   [[noreturn]] void fail(const toml::node& at, const std::string& what) const {

@@ -104,6 +104,7 @@ TEST(Description, NamesTheLineThatIsWrong) {
   EXPECT_EQ(error(kMill), "");
   EXPECT_TRUE(error(with("\"iso\"", "iso")).starts_with("mill.toml, line 3: ")) << error(with("\"iso\"", "iso"));
   EXPECT_EQ(error(with("\"iso\"", "\"left\"")), "mill.toml, line 3: direction must be one of linuxcnc, iso");
+  EXPECT_EQ(error(with("at = [0, 0, -50]", "a.\xC3\xA4 = 3")).substr(0, 19), "mill.toml, line 27:") << "no key";
   EXPECT_EQ(error(with("words", "word")), "mill.toml, line 2: unknown key word");
   EXPECT_EQ(error(with("description = \"my mill\"", "")), "mill.toml, line 1: description is missing");
   EXPECT_EQ(error(with("[-100, 100]", "[100, -100]")), "mill.toml, line 7: limits must grow");
