@@ -142,8 +142,13 @@ def test_ctrl_c_leaves_nothing_on_the_cluster(workers):
         if share > 0.2:
             signal.raise_signal(signal.SIGINT)
 
-    with pytest.raises(KeyboardInterrupt):
-        cluster.verify(*scene(True, 300), scheduler=workers, progress=interrupt)
+    # A shell's background jobs are started with the signal ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            cluster.verify(*scene(True, 300), scheduler=workers, progress=interrupt)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert tasks_left(workers) == []
 
 
