@@ -53,12 +53,35 @@ class Describer {
 
  private:
   toml::table parse(std::string_view text) const {
+    check_ascii(text);
     try {
       return toml::parse(text);
     } catch (const toml::parse_error& e) {
       throw FormatError(file_, "line " + std::to_string(e.source().begin.line), std::string(e.description()));
     } catch (const NoKey&) {
       throw FormatError(file_, "line " + std::to_string(line_without_key(text)), "a key is expected");
+    }
+  }
+
+  /// Outside comments and strings TOML is ASCII; toml++ 3.3 is undefined for some of what is not.
+  void check_ascii(std::string_view text) const {
+    char quote = 0;
+    bool comment = false;
+    int line = 1;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+      const char c = text[k];
+      if (c == '\n') comment = false, ++line;
+      if (comment) continue;
+      if (quote != 0) {
+        if (c == '\\' && quote == '"') ++k;
+        if (c == quote) quote = 0;
+      } else if (c == '"' || c == '\'') {
+        quote = c;
+      } else if (c == '#') {
+        comment = true;
+      } else if (static_cast<unsigned char>(c) >= 0x80) {
+        throw FormatError(file_, "line " + std::to_string(line), "a character outside ASCII");
+      }
     }
   }
 
