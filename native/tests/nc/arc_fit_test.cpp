@@ -13,9 +13,12 @@
 
 #include "nc/reader.hpp"
 #include "stress/random.hpp"
+#include "support/error_of.hpp"
 
 namespace riffler {
 namespace {
+
+using test::error_of;
 
 using Points = std::vector<Vec3>;
 constexpr double kPi = std::numbers::pi;
@@ -141,15 +144,6 @@ Points placed(const Points& points, Axis normal, const Vec3& shift) {
   Points out;
   for (const Vec3& p : points) out.push_back(to_world(normal, p) + shift);
   return out;
-}
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
 }
 
 TEST(ArcFit, LinesAndArcsOfAFrameAreFoundInEveryPlaneAndDirectionAndFarOut) {

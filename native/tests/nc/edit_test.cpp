@@ -6,10 +6,13 @@
 #include <functional>
 
 #include "nc/cutter_path.hpp"
+#include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
+
+using test::error_of;
 
 Program two_cuts() {
   Program p;
@@ -18,15 +21,6 @@ Program two_cuts() {
   p.tools.emplace(1, cutters::ball(6, 30)), p.tools.emplace(2, cutters::flat(4, 20));
   p.provenance = {{"part", "a"}};
   return p;
-}
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
 }
 
 TEST(Edit, TrimmedKeepsTheRowsAndComesToTheFirstByARapid) {

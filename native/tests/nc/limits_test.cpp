@@ -12,18 +12,16 @@
 #include "nc/rotary.hpp"
 #include "nc/writer.hpp"
 #include "support/nc_blocks.hpp"
+#include "support/tilted.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
 
+using test::tilted;
+
 constexpr double kDegree = 3.141592653589793 / 180;
 constexpr double kAxisTolerance = 0.00175;
-
-Vec3 tilted(double tilt, double around) {
-  return {std::sin(tilt * kDegree) * std::cos(around * kDegree), std::sin(tilt * kDegree) * std::sin(around * kDegree),
-          std::cos(tilt * kDegree)};
-}
 
 std::unique_ptr<Machine> tcp(Options options) {
   OptionReader reader(std::move(options), "machine tcp");

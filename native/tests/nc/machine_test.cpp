@@ -6,9 +6,12 @@
 #include <numbers>
 
 #include "stress/random.hpp"
+#include "support/tilted.hpp"
 
 namespace riffler {
 namespace {
+
+using test::tilted;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -167,12 +170,6 @@ TEST(Machine, RefusesWhatIsNoMachine) {
   EXPECT_THROW(machine({RotaryAxis{'C', {0, 0, 1}, {}, false}, a}), std::invalid_argument) << "a head before a table";
   EXPECT_THROW(machine({c, a}, {10, -10}), std::invalid_argument);
   EXPECT_THROW(machine({c, a}, {-10, 10, 0}), std::invalid_argument);
-}
-
-/// Axis at `tilt` from z towards the azimuth `around`, degrees.
-Vec3 tilted(double tilt, double around) {
-  return {std::sin(tilt * kDegree) * std::cos(around * kDegree), std::sin(tilt * kDegree) * std::sin(around * kDegree),
-          std::cos(tilt * kDegree)};
 }
 
 TEST(Machine, OfOneRotaryAxisHoldsWhatLiesInItsPlane) {

@@ -11,9 +11,12 @@
 #include "nc/machines.hpp"
 #include "nc/subdivider.hpp"
 #include "support/nc_blocks.hpp"
+#include "support/tilted.hpp"
 
 namespace riffler {
 namespace {
+
+using test::tilted;
 
 using test::angle;
 using test::axis_of;
@@ -24,12 +27,6 @@ constexpr double kAxisTolerance = 0.00175;
 std::unique_ptr<Machine> tcp() {
   OptionReader none({}, "machine tcp");
   return make_machine("tcp", none);
-}
-
-/// Axis at `tilt` from z towards the azimuth `around`, degrees.
-Vec3 tilted(double tilt, double around) {
-  return {std::sin(tilt * kDegree) * std::cos(around * kDegree), std::sin(tilt * kDegree) * std::sin(around * kDegree),
-          std::cos(tilt * kDegree)};
 }
 
 Program feeds(const std::vector<Vec3>& axes) {

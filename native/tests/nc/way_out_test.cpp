@@ -5,23 +5,19 @@
 
 #include <cmath>
 
+#include "support/tilted.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
 
-constexpr double kDegree = 3.141592653589793 / 180;
+using test::tilted;
 
 Space space() {
   Space out;
   out.box.add({-50, -40, -30}), out.box.add({50, 40, 20});
   out.top = 60;
   return out;
-}
-
-Vec3 tilted(double tilt, double around) {
-  return {std::sin(tilt * kDegree) * std::cos(around * kDegree), std::sin(tilt * kDegree) * std::sin(around * kDegree),
-          std::cos(tilt * kDegree)};
 }
 
 /// Whether the tool's centre line, of this length, is in the box with its tip here.
