@@ -61,6 +61,7 @@ class Writer {
     for (std::size_t row = 0; row < program_.size(); ++row) {
       set_up(row);
       const Pose& pose = program_.poses()[row];
+      check_range(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
       post_->block({pose, {}, program_.rapid()[row] != 0, false, feed_of(row), 0, true});
     }
     post_->end();
@@ -292,12 +293,17 @@ class Writer {
     }
   }
 
-  void check(std::size_t row, const Joints& joints) const {
+  /// Numbers that the code can hold.
+  void check_range(std::size_t row, const Joints& joints) const {
     for (const char letter : machine_->axes()) {
       const std::size_t k = joint_index(letter);
       if (!(std::abs(joints[k]) <= (k >= 3 ? kMaxAngle : kMaxLength)))
         throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + letter + " is out of range");
     }
+  }
+
+  void check(std::size_t row, const Joints& joints) const {
+    check_range(row, joints);
     // Limits are printable numbers: what is beyond by less than half a step is printed as the limit.
     const std::size_t k = machine_->beyond(joints, 4e-7);
     if (k == joints.size()) return;

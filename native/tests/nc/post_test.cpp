@@ -10,6 +10,7 @@
 #include "nc/cutter_path.hpp"
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
+#include "support/error_of.hpp"
 #include "support/nc_blocks.hpp"
 #include "tool/cutters.hpp"
 
@@ -150,6 +151,14 @@ TEST(HeidenhainPost, HoldsEveryPoseByAnglesAndByVectors) {
       ASSERT_LT(at, poses.size()) << (vectors ? "vectors" : "angles");
     }
   }
+}
+
+TEST(AptPost, RefusesWhatNoCodeCanHold) {
+  Program far;
+  far.append({{{0, 1e15, 0}, {0, 0, 1}}, 1});
+  for (const Options& options : {Options{}, Options{{"vectors", true}}})
+    EXPECT_EQ(test::error_of([&] { text_of(far, options.empty() ? "apt" : "heidenhain", options); }),
+              "poses, row 0: Y is out of range");
 }
 
 TEST(AptPost, SaysEveryRowAsItIs) {
