@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,17 +22,7 @@ __doc__ += "\n" + tools.FORMS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--stock",
-        required=True,
-        metavar="WxDxH|FILE",
-        help="a block's sizes, or a .stl, .obj, .ply, .3mf or .rvol file",
-    )
-    add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
-    add_directions(parser)
-    parser.add_argument(
-        "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
-    )
+    add_stock(parser)
     parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
     parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274, or .rprog")
     parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
@@ -44,8 +35,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     out = output_file(arguments.out, MESHES + VOLUMES)
     wanted = [tools.parse(text) for text in arguments.tool]
     with console.step("program"):
-        saved = arguments.program.lower().endswith(".rprog")
-        program = Program.load(arguments.program) if saved else Program.read(arguments.program, arguments.machine)
+        program = read_program(Path(arguments.program), arguments.machine)
         poses = np.asarray(program.poses)
         called = np.asarray(program.tool)
         rapid = np.asarray(program.rapid)[1:]
@@ -85,6 +75,30 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     }
     console.result(data, f"{out.name} written", table(data))
     return 0
+
+
+def is_saved(path: Path) -> bool:
+    return path.suffix.lower() == ".rprog"
+
+
+def read_program(path: Path, machine: str, options: dict[str, Any] | None = None) -> Program:
+    """A saved program, or NC code for the machine."""
+    return Program.load(path) if is_saved(path) else Program.read(path, machine, options)
+
+
+def add_stock(parser: argparse.ArgumentParser) -> None:
+    """What `stock` reads."""
+    parser.add_argument(
+        "--stock",
+        required=True,
+        metavar="WxDxH|FILE",
+        help="a block's sizes, or a .stl, .obj, .ply, .3mf or .rvol file",
+    )
+    add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
+    add_directions(parser)
+    parser.add_argument(
+        "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
+    )
 
 
 def stock(arguments: argparse.Namespace, console: Console) -> Volume:

@@ -12,21 +12,18 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import Finding, Mesh, Program, Tool, VerifyReport, Volume, cluster, verify
+from .. import Finding, Mesh, Tool, VerifyReport, Volume, cluster, verify
 from . import tools
 from .arguments import (
     MESHES,
-    ORIGINS,
     VOLUMES,
-    add_directions,
-    add_pitch,
     finite,
     input_file,
     length,
     machine_options,
     output_file,
 )
-from .carve import stock
+from .carve import add_stock, is_saved, read_program, stock
 from .console import Console, number, times
 from .deviation_map import LEGEND, write_map
 from .shapes import write_mesh, write_volume
@@ -39,17 +36,7 @@ __doc__ += "\n" + tools.FORMS
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("program", metavar="FILE", help="NC program, RS-274, or .rprog")
-    parser.add_argument(
-        "--stock",
-        required=True,
-        metavar="WxDxH|FILE",
-        help="a block's sizes, or a .stl, .obj, .ply, .3mf or .rvol file",
-    )
-    add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
-    add_directions(parser)
-    parser.add_argument(
-        "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
-    )
+    add_stock(parser)
     parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
     for what in ("shank", "holder"):
         parser.add_argument(
@@ -95,8 +82,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     path = Path(arguments.program)
     how = machine_options(arguments.machine_option, "--machine-option")
     with console.step("program"):
-        saved = path.suffix.lower() == ".rprog"
-        program = Program.load(path) if saved else Program.read(path, arguments.machine, how)
+        program = read_program(path, arguments.machine, how)
     volume = stock(arguments, console)
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = with_holders(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
@@ -120,7 +106,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         with console.step("map"), console.writing(coloured) as beside:
             write_map(beside, *report.deviation, scale)
 
-    blocks = [] if saved else path.read_text(encoding="utf-8", errors="replace").splitlines()
+    blocks = [] if is_saved(path) else path.read_text(encoding="utf-8", errors="replace").splitlines()
     data = {
         "program": str(path),
         **report.to_dict(),
