@@ -84,14 +84,18 @@ void bind_cluster(py::module_& m) {
   py::class_<SharedPlan>(m, "VerifyPlan", "A verification whose slabs run elsewhere; arguments as of riffler.verify.")
       .def(py::init([](SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
                        const py::object& tools, double tolerance, double gouge_tolerance,
-                       const std::optional<double>& rest_tolerance, double rapid_feed, const py::object& progress) {
-             const Progress listener = to_progress(progress);
+                       const std::optional<double>& rest_tolerance, double rapid_feed,
+                       const std::optional<std::string>& machine, const py::object& machine_options,
+                       const py::object& progress) {
              return std::make_unique<SharedPlan>(make_verification(
-                 stock, part_mesh, fixtures, tools, tolerance, gouge_tolerance, rest_tolerance, rapid_feed, listener));
+                 stock, part_mesh, fixtures, tools,
+                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options),
+                 to_progress(progress)));
            }),
            py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
-           py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("progress") = py::none())
+           py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("machine") = py::none(),
+           py::arg("machine_options") = py::none(), py::arg("progress") = py::none())
       .def("add", &add, py::arg("program"), py::arg("progress") = py::none(),
            "List of (slab, number of moves, bytes) of the chunk: what can touch each slab.")
       .def(

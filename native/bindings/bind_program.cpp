@@ -62,29 +62,6 @@ Provenance to_provenance(const py::object& object) {
   return out;
 }
 
-Options to_options(const py::object& object) {
-  Options out;
-  if (object.is_none()) return out;
-  if (!py::isinstance<py::dict>(object)) throw py::value_error("options must be a dict");
-  for (const auto& [key, value] : py::cast<py::dict>(object)) {
-    const std::string name = py::cast<std::string>(py::str(key));
-    if (py::isinstance<py::bool_>(value)) {
-      out[name] = py::cast<bool>(value);
-    } else if (py::isinstance<py::str>(value)) {
-      out[name] = py::cast<std::string>(value);
-    } else {
-      const Doubles array = to_doubles(value, "option " + name);
-      if (array.ndim() > 1)
-        throw py::value_error("option " + name + " must be a number, a list of them, a bool or a str");
-      if (array.ndim() == 0)
-        out[name] = *array.data();
-      else
-        out[name] = std::vector<double>(array.data(), array.data() + array.size());
-    }
-  }
-  return out;
-}
-
 Program make_program(const Doubles& poses, const py::object& feed, const py::object& rapid, const py::object& tool,
                      const py::object& line, const py::object& spindle, const py::object& tools,
                      const py::object& provenance) {
@@ -240,6 +217,29 @@ std::string repr(const Program& program) {
 }
 
 }  // namespace
+
+Options to_options(const py::object& object) {
+  Options out;
+  if (object.is_none()) return out;
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("options must be a dict");
+  for (const auto& [key, value] : py::cast<py::dict>(object)) {
+    const std::string name = py::cast<std::string>(py::str(key));
+    if (py::isinstance<py::bool_>(value)) {
+      out[name] = py::cast<bool>(value);
+    } else if (py::isinstance<py::str>(value)) {
+      out[name] = py::cast<std::string>(value);
+    } else {
+      const Doubles array = to_doubles(value, "option " + name);
+      if (array.ndim() > 1)
+        throw py::value_error("option " + name + " must be a number, a list of them, a bool or a str");
+      if (array.ndim() == 0)
+        out[name] = *array.data();
+      else
+        out[name] = std::vector<double>(array.data(), array.data() + array.size());
+    }
+  }
+  return out;
+}
 
 void bind_program(py::module_& m) {
   m.def("machines", &machine_list,

@@ -60,9 +60,17 @@ std::vector<Volume> to_fixtures(const py::object& object, double pitch) {
 
 }  // namespace
 
+VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const std::optional<double>& rest_tolerance,
+                                double rapid_feed, const std::optional<std::string>& machine,
+                                const py::object& machine_options) {
+  VerifyOptions out{tolerance, gouge_tolerance, rest_tolerance, rapid_feed, {}};
+  if (machine) out.machine = MachineChoice{*machine, to_options(machine_options)};
+  if (!machine && !machine_options.is_none()) throw py::value_error("machine_options: there is no machine");
+  return out;
+}
+
 std::unique_ptr<Verification> make_verification(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                                                const py::object& tools, double tolerance, double gouge_tolerance,
-                                                const std::optional<double>& rest_tolerance, double rapid_feed,
+                                                const py::object& tools, const VerifyOptions& options,
                                                 const Progress& progress) {
   Volume volume = Reading(stock).volume.snapshot();
   std::shared_ptr<const Mesh> mesh;
@@ -72,7 +80,6 @@ std::unique_ptr<Verification> make_verification(SharedVolume& stock, const py::o
   }
   std::vector<Volume> others = to_fixtures(fixtures, volume.frame().pitch);
   std::map<int, Tool> by_number = to_tools(tools);
-  const VerifyOptions options{tolerance, gouge_tolerance, rest_tolerance, rapid_feed};
   const NoGil release;
   return std::make_unique<Verification>(std::move(volume), std::move(mesh), std::move(others), std::move(by_number),
                                         options, progress);
@@ -113,10 +120,12 @@ VerifyReport run_any(Verification& verification, const py::object& program, cons
 std::shared_ptr<SharedReport> verify(const py::object& program, SharedVolume& stock, const py::object& part_mesh,
                                      const py::object& fixtures, const py::object& tools, double tolerance,
                                      double gouge_tolerance, const std::optional<double>& rest_tolerance,
-                                     double rapid_feed, const py::object& progress) {
+                                     double rapid_feed, const std::optional<std::string>& machine,
+                                     const py::object& machine_options, const py::object& progress) {
   const Progress listener = to_progress(progress);
-  const auto verification = make_verification(stock, part_mesh, fixtures, tools, tolerance, gouge_tolerance,
-                                              rest_tolerance, rapid_feed, part(listener, 0, 0.1));
+  const VerifyOptions options =
+      to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options);
+  const auto verification = make_verification(stock, part_mesh, fixtures, tools, options, part(listener, 0, 0.1));
   return share(run_any(*verification, program, part(listener, 0.1, 1)));
 }
 
@@ -220,7 +229,7 @@ void bind_report(py::module_& m) {
       .def_property_readonly(
           "kind", [](const Finding& f) { return name_of(f.kind); },
           R"("rapid", "holder", "shank", "fixture", "gouge", "rest", "spindle" (a feed move into material with a spindle
-that stands) or "unknown" (it could not be checked).)")
+that stands), "machine" (the machine cannot hold the row) or "unknown" (it could not be checked).)")
       .def_readonly("row", &Finding::row, "First row; the move that ends there.")
       .def_readonly("last_row", &Finding::last_row)
       .def_readonly("line", &Finding::line, "Source line of the first row from 1; 0: no source.")
@@ -300,7 +309,7 @@ void bind_verify(py::module_& m) {
   m.def("verify", &verify, py::arg("program"), py::arg("stock_volume"), py::arg("part_mesh") = py::none(),
         py::arg("fixtures") = py::tuple(), py::kw_only(), py::arg("tools") = py::none(), py::arg("tolerance") = 0.01,
         py::arg("gouge_tolerance") = 0.05, py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0,
-        py::arg("progress") = py::none(),
+        py::arg("machine") = py::none(), py::arg("machine_options") = py::none(), py::arg("progress") = py::none(),
         R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
 
 ``program``: a Program, or an iterable of Programs, each of which begins with the row at which the one before ended;
@@ -309,7 +318,9 @@ Volume or Mesh (which becomes a Volume at the stock's pitch). ``tools``: dict of
 
 ``tolerance`` (mm): of cutting, as in Volume.carve; contact that is less deep is none. ``gouge_tolerance`` (mm): what is
 taken from the part deeper under its surface is a gouge. ``rest_tolerance`` (mm): what stands higher on the part is a
-finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time.
+finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time. ``machine``: a name of
+machines() on which it is to run, with ``machine_options``: the first row that its axes or their limits cannot hold is a
+finding "machine".
 
 Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come
 there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
@@ -323,14 +334,18 @@ before the first difference come from snapshots, and parts of the stock that no 
 are. The report is that of a fresh run, bit for bit.)")
       .def(py::init([](SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
                        const py::object& tools, double tolerance, double gouge_tolerance,
-                       const std::optional<double>& rest_tolerance, double rapid_feed, const py::object& progress) {
-             const Progress listener = to_progress(progress);
+                       const std::optional<double>& rest_tolerance, double rapid_feed,
+                       const std::optional<std::string>& machine, const py::object& machine_options,
+                       const py::object& progress) {
              return std::make_unique<SharedVerification>(make_verification(
-                 stock, part_mesh, fixtures, tools, tolerance, gouge_tolerance, rest_tolerance, rapid_feed, listener));
+                 stock, part_mesh, fixtures, tools,
+                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options),
+                 to_progress(progress)));
            }),
            py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
-           py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("progress") = py::none())
+           py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("machine") = py::none(),
+           py::arg("machine_options") = py::none(), py::arg("progress") = py::none())
       .def("run", &run, py::arg("program"), py::arg("progress") = py::none(),
            "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
 }

@@ -13,6 +13,7 @@
 #include "geom/pose.hpp"
 #include "geom/progress.hpp"
 #include "geom/vec.hpp"
+#include "nc/options.hpp"
 #include "plan/orientation.hpp"
 
 namespace riffler {
@@ -77,5 +78,8 @@ py::array_t<T> take(std::vector<V, A>&& values, std::size_t columns = 0) {
 /// A Python callable as Progress, for calls that released the GIL: takes it back, lets Ctrl-C through, and cancels
 /// where the callable returns False (None and anything else go on). Empty for None, but Ctrl-C still works.
 Progress to_progress(const py::object& callable);
+
+/// Of machines and posts, from a dict or None: numbers, lists of them, bools, texts.
+Options to_options(const py::object& object);
 
 }  // namespace riffler

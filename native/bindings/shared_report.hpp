@@ -16,10 +16,13 @@ struct SharedReport {
 };
 std::shared_ptr<SharedReport> share(VerifyReport&& report);
 
+VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const std::optional<double>& rest_tolerance,
+                                double rapid_feed, const std::optional<std::string>& machine,
+                                const py::object& machine_options);
+
 /// From riffler.verify's arguments; ValueError naming the one that is wrong. Called with the GIL, computes without.
 std::unique_ptr<Verification> make_verification(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                                                const py::object& tools, double tolerance, double gouge_tolerance,
-                                                const std::optional<double>& rest_tolerance, double rapid_feed,
+                                                const py::object& tools, const VerifyOptions& options,
                                                 const Progress& progress);
 
 }  // namespace riffler

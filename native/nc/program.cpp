@@ -10,7 +10,7 @@ namespace riffler {
 namespace {
 
 [[noreturn]] void fail(std::string_view name, std::size_t row, const char* what) {
-  throw std::invalid_argument(std::string(name) + ", row " + std::to_string(row) + ": " + what);
+  throw RowError(name, row, what);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,23 @@
 #include "tool/tool.hpp"
 
 namespace riffler {
+
+/// What is wrong with one row: "name, row 3: what".
+class RowError : public std::invalid_argument {
+ public:
+  RowError(std::string_view name, std::size_t row, const std::string& what)
+      : std::invalid_argument(std::string(name) + ", row " + std::to_string(row) + ": " + what),
+        row_(row),
+        reason_(what) {}
+
+  std::size_t row() const { return row_; }
+  /// Without name and row.
+  const std::string& reason() const { return reason_; }
+
+ private:
+  std::size_t row_;
+  std::string reason_;
+};
 
 /// One move end. The motion from the row before is that of geom/pose.hpp: the tip on a line, the axis on a great
 /// circle.

@@ -97,7 +97,7 @@ class Chooser {
     try {
       return machine_.joints(pose, branch, near, free_angle(axis_tolerance_));
     } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + e.what());
+      throw RowError("poses", row, e.what());
     }
   }
 
@@ -198,9 +198,7 @@ class Chooser {
   /// Along the great circle, with as many stops to turn axes back as limits ask for.
   void follow(std::size_t row) {
     const Pose &a = pose(row - 1), &b = pose(row);
-    if (opposite(a, b))
-      throw std::invalid_argument("poses, row " + std::to_string(row) +
-                                  ": the axis is opposite to that of the row before");
+    if (opposite(a, b)) throw RowError("poses", row, "the axis is opposite to that of the row before");
     const auto passes_pole = [&](const Vec3& from) {
       return machine_.branches() > 1 && arc_pole_angle(from, b.axis, machine_.pole()) <= axis_tolerance_ / 4;
     };
@@ -372,8 +370,7 @@ class Chooser {
   }
 
   [[noreturn]] void refuse(std::size_t row, const Pose& pose) const {
-    std::string text =
-        "poses, row " + std::to_string(row) + ": machine " + machine_.name() + " cannot hold it within its limits:";
+    std::string text = "machine " + machine_.name() + " cannot hold it within its limits:";
     for (int b = 0; b < machine_.branches(); ++b) {
       const Joints joints = joints_of(row, pose, b, {});
       if (const std::size_t k = machine_.beyond(joints, kSlack); k < joints.size()) {
@@ -385,7 +382,7 @@ class Chooser {
       }
     }
     if (text.back() == ':') text += " along the great circle from the row before";
-    throw std::invalid_argument(text + "; place the part otherwise or tilt the tool less");
+    throw RowError("poses", row, text + "; place the part otherwise or tilt the tool less");
   }
 
   const Program& program_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "nc/limits.hpp"
+#include "nc/number_text.hpp"
 
 namespace riffler {
 
@@ -42,6 +43,16 @@ void NcRows::row(const Pose& pose, double feed, const NcRowWords& words) {
   pending_.push_back({pose, feed, words.spindle, words.tool, words.line, words.rapid});
 }
 
+void NcRows::check_limits(const Joints& joints) const {
+  if (machine_->limited().empty()) return;
+  const std::size_t k = machine_->beyond(joints, 1e-6);
+  if (k == joints.size()) return;
+  const AxisRange& range = machine_->range(k);
+  place_.fail(std::string(1, kJointLetters[k]) + " would stand at " + number_text(joints[k]) +
+              ", beyond the limits of machine " + machine_->name() + ", " + number_text(range.low) + " to " +
+              number_text(range.high) + ": place the part otherwise, or read it without limits");
+}
+
 /// mm/min of a block whose tip goes `way` mm.
 double NcRows::feed_over(double way, const NcRowWords& words) const {
   if (words.rapid) return 0;
@@ -53,6 +64,7 @@ void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words
   const bool known = first_.has_value();
   begin(from);
   const Joints to = in_part(end);
+  check_limits(to);
   const Pose last = pose(to);
   const bool splits = known && (machine_->joint_words() || (!words.rapid && axis_tolerance_));
   const int parts = splits ? rotary_parts(to, !words.rapid) : 1;
@@ -123,6 +135,7 @@ void NcRows::curve(const Joints& from, int parts, double length, const std::func
   const double feed = feed_over(length, words);
   for (int i = 1; i <= parts; ++i) {
     const Joints to = in_part(at(i < parts ? static_cast<double>(i) / parts : 1));
+    check_limits(to);
     last_ = pose(to), at_ = to;
     row(last_, feed, words);
   }

@@ -65,6 +65,7 @@ class NcRows {
   Pose between(const Joints& to, int i, int parts) const;
   int rotary_parts(const Joints& to, bool feeds) const;
   double feed_over(double way, const NcRowWords& words) const;
+  void check_limits(const Joints& joints) const;
   void row(const Pose& pose, double feed, const NcRowWords& words);
 
   std::unique_ptr<Machine> machine_;

@@ -109,7 +109,7 @@ class Writer {
     try {
       return splitter.split(before_, *stands_, to, joints, free);
     } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument("poses, row " + std::to_string(row) + ": on the way there " + e.what());
+      throw RowError("poses", row, std::string("on the way there ") + e.what());
     }
   }
 
@@ -298,7 +298,7 @@ class Writer {
     for (const char letter : machine_->axes()) {
       const std::size_t k = joint_index(letter);
       if (!(std::abs(joints[k]) <= (k >= 3 ? kMaxAngle : kMaxLength)))
-        throw std::invalid_argument("poses, row " + std::to_string(row) + ": " + letter + " is out of range");
+        throw RowError("poses", row, std::string(1, letter) + " is out of range");
     }
   }
 
@@ -308,10 +308,10 @@ class Writer {
     const std::size_t k = machine_->beyond(joints, 4e-7);
     if (k == joints.size()) return;
     const AxisRange& range = machine_->range(k);
-    throw std::invalid_argument("poses, row " + std::to_string(row) + ": on the way there machine " + machine_->name() +
-                                " would leave the limits of " + kJointLetters[k] + ", " + number_text(range.low) +
-                                " to " + number_text(range.high) + ": " + number_text(joints[k]) +
-                                "; place the part otherwise or put rows closer together");
+    throw RowError("poses", row,
+                   "on the way there machine " + machine_->name() + " would leave the limits of " + kJointLetters[k] +
+                       ", " + number_text(range.low) + " to " + number_text(range.high) + ": " +
+                       number_text(joints[k]) + "; place the part otherwise or put rows closer together");
   }
 
   /// A row in which the tip stands still has no feed of its own: the one before goes on, or the next to come.

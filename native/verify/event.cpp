@@ -3,7 +3,8 @@
 namespace riffler {
 
 const char* name_of(Kind kind) {
-  static constexpr const char* names[] = {"rapid", "holder", "shank", "fixture", "gouge", "rest", "spindle", "unknown"};
+  static constexpr const char* names[] = {"rapid", "holder",  "shank",   "fixture", "gouge",
+                                          "rest",  "spindle", "machine", "unknown"};
   return names[static_cast<int>(kind)];
 }
 

@@ -10,7 +10,7 @@
 
 namespace riffler {
 
-enum class Kind : unsigned char { Rapid, Holder, Shank, Fixture, Gouge, Rest, Spindle, Unknown };
+enum class Kind : unsigned char { Rapid, Holder, Shank, Fixture, Gouge, Rest, Spindle, Machine, Unknown };
 
 /// "rapid", "holder", …
 const char* name_of(Kind kind);

@@ -101,6 +101,8 @@ std::string message_of(const Finding& f) {
              " mm deep: lift the path or take a smaller tool";
     case Kind::Rest:
       return "rest material stands " + number(f.value) + " mm on the part: cut it with another pass or a smaller tool";
+    case Kind::Machine:
+      return f.message;
     case Kind::Unknown:
       break;
   }

@@ -48,7 +48,9 @@ ProgramRows::Chunk ProgramRows::open(const Program& program, Toolset& tools) con
   return {program, first_row, !last_, tools.places(program, first_row)};
 }
 
-void ProgramRows::close(const Chunk& chunk, double rapid_feed) {
+void ProgramRows::close(const Chunk& chunk, double rapid_feed, const MachineChoice* machine) {
+  if (machine)
+    if (auto fault = machine_fault(chunk.program, chunk.first_row, *machine)) faults_.push_back(std::move(*fault));
   if (chunk.start) seconds_.push_back(0);
   for (std::size_t row = 1; row < chunk.program.size(); ++row) {
     seconds_.push_back(seconds_of(chunk.program.poses()[row - 1], chunk.program, row, rapid_feed));

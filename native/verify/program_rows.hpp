@@ -10,6 +10,7 @@
 #include "geom/progress.hpp"
 #include "nc/program.hpp"
 #include "verify/event.hpp"
+#include "verify/machine_check.hpp"
 #include "verify/toolset.hpp"
 
 namespace riffler {
@@ -43,11 +44,13 @@ class ProgramRows {
   /// std::invalid_argument where it begins elsewhere than the one before ended, as Toolset::places, or where its poses
   /// make no path; nothing is changed then.
   Chunk open(const Program& program, Toolset& tools) const;
-  /// Once its rows have been dealt with.
-  void close(const Chunk& chunk, double rapid_feed);
+  /// Once its rows have been dealt with. `machine`: on which it is to run, or null.
+  void close(const Chunk& chunk, double rapid_feed, const MachineChoice* machine);
 
   const std::set<std::uint32_t>& tools() const { return tools_; }
   bool without_tool() const { return without_tool_; }
+  /// What the machine cannot run, one a chunk at most.
+  const std::vector<Finding>& faults() const { return faults_; }
   /// s, one per row.
   std::vector<double> take_seconds() { return std::move(seconds_); }
 
@@ -56,6 +59,7 @@ class ProgramRows {
   std::optional<Pose> last_;
   std::set<std::uint32_t> tools_;
   bool without_tool_ = false;
+  std::vector<Finding> faults_;
 };
 
 }  // namespace riffler

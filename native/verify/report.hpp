@@ -30,7 +30,9 @@ struct Finding {
   Vec3 point{0};     ///< the worst, part frame
   std::string message;
 
-  const char* unit() const { return kind == Kind::Gouge || kind == Kind::Rest ? "mm" : "mm³"; }
+  const char* unit() const {
+    return kind == Kind::Machine ? "" : kind == Kind::Gouge || kind == Kind::Rest ? "mm" : "mm³";
+  }
 };
 
 struct VerifyReport {

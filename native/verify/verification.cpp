@@ -173,12 +173,14 @@ double Verification::least_cut() const {
 
 VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& findings,
                                     const std::set<std::uint32_t>& tools, bool without_tool,
-                                    const Progress& progress) const {
+                                    const std::vector<Finding>& faults, const Progress& progress) const {
   VerifyReport report{{}, {}, {}, {}, stock_, part_, {}};
   for (std::size_t k = 0; k < slabs.size(); ++k)
     if (jobs_[k].fixture < 0) put_tiles(report.volume.grids()[jobs_[k].slab.grid], jobs_[k].slab, slabs[k].tiles);
   report.volume.touch();
   report.findings = findings.take();
+  report.findings.insert(report.findings.end(), faults.begin(), faults.end());
+  std::ranges::stable_sort(report.findings, {}, &Finding::row);
   if (options_.rest_tolerance) {
     const Rest found = rest_on(*target_, report.volume, *options_.rest_tolerance, progress);
     if (found.height > 0) {
@@ -190,6 +192,7 @@ VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& 
   if (!part_) report.not_checked.emplace_back("gouges and rest material: no part was given");
   if (part_ && !options_.rest_tolerance)
     report.not_checked.emplace_back("rest material: mapped, but no rest_tolerance was given to judge it by");
+  if (!options_.machine) report.not_checked.emplace_back("limits and reach: no machine was given");
   if (fixtures_.empty()) report.not_checked.emplace_back("fixtures: none were given");
   for (std::string& sentence : tools_.not_described(tools)) report.not_checked.push_back(std::move(sentence));
   if (without_tool) report.not_checked.emplace_back("rapids before a tool is called: nothing is in the spindle yet");
@@ -229,9 +232,12 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
     else
       tools.insert(rows.tool[row]);
   }
+  std::vector<Finding> faults;
+  if (machine())
+    if (auto fault = machine_fault(program, 0, *machine())) faults.push_back(std::move(*fault));
   FindingList findings;
   findings.add(std::move(events), program.tool(), program.line(), 0);
-  VerifyReport report = conclude(slabs, findings, tools, without_tool, part(progress, 0.8, 1));
+  VerifyReport report = conclude(slabs, findings, tools, without_tool, faults, part(progress, 0.8, 1));
   report.removed = std::move(removed), report.seconds = std::move(seconds), report.stats = stats;
   memory_ = Memory{std::move(rows), std::move(slabs)};
   return report;
@@ -260,11 +266,11 @@ void VerifyStream::add(const Program& program, const Progress& progress) {
   add_spindle(standing_moves(program, chunk.first_row), removed, chunk.first_row, of_.least_cut(), events);
   findings_.add(std::move(events), program.tool(), program.line(), chunk.first_row);
   removed_.insert(removed_.end(), removed.begin() + (chunk.start ? 0 : 1), removed.end());
-  rows_.close(chunk, of_.options_.rapid_feed);
+  rows_.close(chunk, of_.options_.rapid_feed, of_.machine());
 }
 
 VerifyReport VerifyStream::finish(const Progress& progress) {
-  VerifyReport report = of_.conclude(slabs_, findings_, rows_.tools(), rows_.without_tool(), progress);
+  VerifyReport report = of_.conclude(slabs_, findings_, rows_.tools(), rows_.without_tool(), rows_.faults(), progress);
   report.removed = std::move(removed_), report.seconds = rows_.take_seconds(), report.stats = stats_;
   return report;
 }

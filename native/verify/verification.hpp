@@ -14,6 +14,7 @@
 #include "nc/program.hpp"
 #include "verify/edit.hpp"
 #include "verify/findings.hpp"
+#include "verify/machine_check.hpp"
 #include "verify/program_rows.hpp"
 #include "verify/report.hpp"
 #include "verify/slab_job.hpp"
@@ -26,6 +27,8 @@ struct VerifyOptions {
   double gouge_tolerance = 0.05;         ///< mm under the part's surface
   std::optional<double> rest_tolerance;  ///< mm over the part's surface; without it rest material is no fault
   double rapid_feed = 10'000;            ///< mm/min, for the time that rapids take
+  /// On which it is to run; without it limits are not checked. Chunks of a program are checked one by one.
+  std::optional<MachineChoice> machine = {};
 };
 
 class Verification {
@@ -58,8 +61,9 @@ class Verification {
                 const Progress& progress) const;
   /// mm³: what is less may be rounding.
   double least_cut() const;
+  const MachineChoice* machine() const { return options_.machine ? &*options_.machine : nullptr; }
   VerifyReport conclude(std::vector<SlabState>& slabs, FindingList& findings, const std::set<std::uint32_t>& tools,
-                        bool without_tool, const Progress& progress) const;
+                        bool without_tool, const std::vector<Finding>& faults, const Progress& progress) const;
 
   Volume stock_;
   std::shared_ptr<const Mesh> part_;

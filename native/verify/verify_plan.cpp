@@ -43,7 +43,7 @@ std::vector<VerifyPlan::Share> VerifyPlan::add(const Program& program, const Pro
   const auto first = static_cast<std::ptrdiff_t>(chunk.start ? 0 : 1);
   tool_.insert(tool_.end(), program.tool().begin() + first, program.tool().end());
   line_.insert(line_.end(), program.line().begin() + first, program.line().end());
-  rows_.close(chunk, of_.options_.rapid_feed);
+  rows_.close(chunk, of_.options_.rapid_feed, of_.machine());
   return shares;
 }
 
@@ -112,7 +112,7 @@ VerifyReport VerifyPlan::finish(const Progress& progress) {
     add_spindle(standing_, removed_, 0, of_.least_cut(), events);
     findings.add(std::move(events), tool_, line_, 0);
   }
-  VerifyReport report = of_.conclude(slabs_, findings, rows_.tools(), rows_.without_tool(), progress);
+  VerifyReport report = of_.conclude(slabs_, findings, rows_.tools(), rows_.without_tool(), rows_.faults(), progress);
   report.removed = std::move(removed_), report.seconds = rows_.take_seconds(), report.stats = stats_;
   return report;
 }

@@ -55,6 +55,8 @@ def verify(
     gouge_tolerance: float = 0.05,
     rest_tolerance: float | None = None,
     rapid_feed: float = 10000.0,
+    machine: str | None = None,
+    machine_options: dict[str, Any] | None = None,
     progress: Callable[[float], Any] | None = None,
 ) -> VerifyReport:
     """``riffler.verify`` on a cluster: same arguments, same report, same bytes.
@@ -72,7 +74,8 @@ def verify(
         check_versions(client)
         plan = VerifyPlan(
             stock_volume, part_mesh, fixtures, tools=tools, tolerance=tolerance, gouge_tolerance=gouge_tolerance,
-            rest_tolerance=rest_tolerance, rapid_feed=rapid_feed, progress=told.part(0, 0.05),
+            rest_tolerance=rest_tolerance, rapid_feed=rapid_feed, machine=machine,
+            machine_options=machine_options, progress=told.part(0, 0.05),
         )  # fmt: skip
         with Spool() as spool:
             sort_moves(program, plan, spool, told)

@@ -179,6 +179,18 @@ TEST(Header, KeepsCodeFromBeingReadForAnotherMachine) {
   EXPECT_EQ(error("(some other CAM)\nG0 X1\n", "tcp"), "");
 }
 
+TEST(JointWords, AreReadUpToTheLineThatLeavesALimit) {
+  const std::string text = to_nc(swaying(25), to_xyzac());
+  Options narrow = kTable;
+  narrow["limits_a"] = std::vector<double>{-20, 20};
+  try {
+    parse_nc(text, "p.ngc", {"linuxcnc-xyzac", narrow});
+    FAIL();
+  } catch (const FormatError& e) {
+    EXPECT_NE(std::string(e.what()).find("beyond the limits of machine linuxcnc-xyzac, -20 to 20"), std::string::npos);
+  }
+}
+
 TEST(JointWords, ComeFromNowhereInTheirFirstRapid) {
   const Program p = swaying(5);
   const Program back = parse_nc(to_nc(p, to_xyzac()), "p.ngc", {"linuxcnc-xyzac", kTable});

@@ -46,7 +46,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             metavar="[N=]Z0:R0:Z1:R1[,…]",
             help=f"{what} of tool N, or of all: truncated cones, heights from the tip and radii, mm",
         )
-    parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
+    parser.add_argument(
+        "--machine", help='what the program\'s axes mean (default "tcp": tip and axis); its limits are checked'
+    )
     parser.add_argument(
         "--machine-option", action="append", default=[], metavar="KEY=VALUE", help="of it; may be repeated"
     )
@@ -82,7 +84,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     path = Path(arguments.program)
     how = machine_options(arguments.machine_option, "--machine-option")
     with console.step("program"):
-        program = read_program(path, arguments.machine, how)
+        program = read_program(path, arguments.machine or "tcp", how)
     volume = stock(arguments, console)
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = with_holders(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
@@ -90,7 +92,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         part = None if arguments.part is None else Mesh.read(input_file(arguments.part, MESHES))
         fixtures = [fixture(name) for name in arguments.fixture]
     with console.step("verify") as progress:
-        options = {"tools": by_number, "progress": progress, **limits}
+        machine = {"machine": arguments.machine, "machine_options": how} if arguments.machine else {}
+        options = {"tools": by_number, "progress": progress, **limits, **machine}
         if arguments.scheduler is None:
             report = verify(program, volume, part, fixtures, **options)
         else:

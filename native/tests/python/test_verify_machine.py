@@ -1,0 +1,69 @@
+"""Whether the machine can run it: limits of axes as findings of a verification, and as errors of the reader."""
+
+import numpy as np
+import pytest
+import riffler
+
+TABLE = {"rot_point": [0, 0, -60], "limits_a": [-30, 30]}
+
+
+def leaning(rows, tilt):
+    """A level path over the block, the axis leaning by `tilt` degrees (one or one a row)."""
+    t = np.linspace(0, 1, rows)
+    angle = np.radians(np.broadcast_to(tilt, rows))
+    axes = np.column_stack([0 * t, np.sin(angle), np.cos(angle)])
+    poses = np.column_stack([5 + 30 * t, 15 + 0 * t, 9 + 0 * t, axes])
+    tool = riffler.Tool.ball(4, 40)
+    return riffler.Program(poses, 600, spindle=9000, line=np.arange(rows) + 100, tools={1: tool})
+
+
+def stock():
+    return riffler.Volume.block([0, 0, 0], [40, 30, 10], 0.5)
+
+
+def test_the_first_row_beyond_a_limit_is_a_finding_with_its_line():
+    program = leaning(12, np.linspace(0, 55, 12))  # 5 degrees a row: row 7 is the first beyond 30
+    report = riffler.verify(program, stock(), machine="linuxcnc-xyzac", machine_options=TABLE)
+    assert not report.passed and [f.kind for f in report.findings] == ["machine"]
+    found = report.findings[0]
+    assert (found.row, found.line, found.unit, found.tool) == (7, 107, "", 1)
+    assert "A would stand at" in found.message and "tilt the tool less" in found.message
+    assert not any("no machine" in sentence for sentence in report.not_checked)
+
+
+def test_within_limits_it_passes_and_without_a_machine_nobody_looked():
+    program = leaning(12, 20)
+    report = riffler.verify(program, stock(), machine="linuxcnc-xyzac", machine_options=TABLE)
+    assert report.passed
+    alone = riffler.verify(program, stock())
+    assert "limits and reach: no machine was given" in alone.not_checked
+    upright = riffler.verify(program, stock(), machine="3-axis")
+    assert [f.kind for f in upright.findings] == ["machine"] and upright.findings[0].row == 0
+
+
+def test_chunks_and_edits_say_the_same():
+    program = leaning(12, np.linspace(0, 55, 12))
+    how = {"machine": "linuxcnc-xyzac", "machine_options": TABLE}
+    chunks = [program.trimmed(0, 5), riffler.Program(program.poses[4:], 600, spindle=9000, line=program.line[4:],
+                                                     tools=program.tools)]  # fmt: skip
+    report = riffler.verify(chunks, stock(), **how)
+    assert [(f.kind, f.row, f.line) for f in report.findings] == [("machine", 7, 107)]
+    verification = riffler.Verification(stock(), **how)
+    assert [f.row for f in verification.run(program).findings] == [7]
+    assert verification.run(leaning(12, 20)).passed
+
+
+def test_wrong_machines_and_options_are_value_errors():
+    with pytest.raises(ValueError, match="unknown post lathe"):
+        riffler.verify(leaning(3, 0), stock(), machine="lathe")
+    with pytest.raises(ValueError, match="there is no machine"):
+        riffler.verify(leaning(3, 0), stock(), machine_options={"tcp": True})
+
+
+def test_the_reader_names_the_line_at_which_an_axis_would_leave_its_limits(tmp_path):
+    program, file = leaning(12, np.linspace(0, 55, 12)), tmp_path / "p.ngc"
+    table = {"rot_point": [0, 0, -60]}
+    program.write(file, post="linuxcnc-xyzac", options=table)
+    assert len(riffler.Program.read(file, machine="linuxcnc-xyzac", options=table)) >= 12
+    with pytest.raises(riffler.FormatError, match=r"p.ngc, line \d+: A would stand at -?3[0-9.]+, beyond the limits"):
+        riffler.Program.read(file, machine="linuxcnc-xyzac", options=TABLE)

@@ -1,0 +1,23 @@
+// Whether a machine can run a program: its limits and its reach.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "nc/options.hpp"
+#include "nc/program.hpp"
+#include "verify/report.hpp"
+
+namespace riffler {
+
+/// What a program is to run on: a name of machines(), or the path of a description, and its options.
+struct MachineChoice {
+  std::string name;
+  Options options;
+};
+
+/// The first row that cannot be written for the machine, within the limits of its axes, or nothing. `program` begins
+/// with row `first_row`. std::invalid_argument for a machine or an option that is not known.
+std::optional<Finding> machine_fault(const Program& program, std::int64_t first_row, const MachineChoice& machine);
+
+}  // namespace riffler
