@@ -77,14 +77,20 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
       while (job.step()) {
       }
     });
+  bool said_all = false;
   try {
-    while (job.step()) report(progress, static_cast<double>(std::min(job.next.load(), n)) / static_cast<double>(n));
+    while (job.step()) {
+      const std::size_t begun = std::min(job.next.load(), n);
+      report(progress, static_cast<double>(begun) / static_cast<double>(n));
+      said_all = begun == n;
+    }
   } catch (...) {
     job.fail(std::current_exception());
   }
   for (std::thread& t : threads) t.join();
   busy = was_busy;
   if (job.error) std::rethrow_exception(job.error);
+  if (!said_all) report(progress, 1);  // the helpers were quicker: this thread may have run nothing at all
 }
 
 OneThread::OneThread() : before_(std::exchange(busy, true)) {}

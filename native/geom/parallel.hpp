@@ -14,8 +14,8 @@ int thread_count();
 /// Runs body(begin, end) over disjoint chunks of [0, n) of at most `grain` indices, on thread_count() threads, the
 /// caller's among them. Chunks are the same for any number of threads; a body that writes only to places owned by its
 /// indices therefore gives the same bytes for any number. The first exception is rethrown after all threads stopped.
-/// `progress` is called from the calling thread only. Within a body that runs beside others, the call starts no
-/// threads.
+/// `progress` is called from the calling thread only; the last it is told is 1, whichever threads did the work. Within
+/// a body that runs beside others, the call starts no threads.
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
                   const Progress& progress = {});
 

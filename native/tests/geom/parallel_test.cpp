@@ -33,5 +33,32 @@ TEST(Parallel, ACallWithinACallStaysOnItsThread) {
   unsetenv("RIFFLER_THREADS");
 }
 
+TEST(Parallel, TheLastShareToldIsOneEvenWhereHelpersFinishTheWork) {
+  setenv("RIFFLER_THREADS", "2", 1);
+  constexpr int kChunks = 64;
+  for (const bool cancel : {false, true}) {
+    std::atomic<int> done{0};
+    std::atomic<bool> told{false};
+    std::vector<double> shares;
+    const auto body = [&, caller = std::this_thread::get_id()](std::size_t, std::size_t) {
+      while (!told && std::this_thread::get_id() != caller) std::this_thread::yield();
+      ++done;
+    };
+    const auto progress = [&](double share) {
+      shares.push_back(share), told = true;
+      while (done < kChunks) std::this_thread::yield();  // the helper does the rest
+      return !(cancel && share == 1);
+    };
+    if (cancel)
+      EXPECT_THROW(parallel_for(kChunks, 1, body, progress), Cancelled);
+    else
+      parallel_for(kChunks, 1, body, progress);
+    ASSERT_EQ(shares.size(), 2);
+    EXPECT_LT(shares[0], 0.1);
+    EXPECT_EQ(shares[1], 1);
+  }
+  unsetenv("RIFFLER_THREADS");
+}
+
 }  // namespace
 }  // namespace riffler
