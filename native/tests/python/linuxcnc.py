@@ -10,9 +10,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import riffler
 
 FOLDER = Path(__file__).parents[3] / ".envs" / "linuxcnc"
 PROGRAM = FOLDER / "usr" / "bin" / "rs274"
+EXAMPLES = FOLDER / "usr" / "share" / "doc" / "linuxcnc" / "examples"
+DEMOS = EXAMPLES / "sample-configs" / "sim" / "axis" / "vismach" / "5axis" / "table-rotary-tilting"
+FIVE_AXES = {
+    "boat-xyzac": "linuxcnc-xyzac",
+    "impeller-7bl-xyzac": "linuxcnc-xyzac",
+    "boat-xyzbc": "linuxcnc-xyzbc",
+    "xyzac_switchkins": "linuxcnc-xyzac",
+    "xyzbc_switchkins": "linuxcnc-xyzbc",
+    "xyzac_switchkins_test_1": "linuxcnc-xyzac",
+    "xyzac_switchkins_test_2": "linuxcnc-xyzac",
+    "xyzac_switchkins_test_3": "linuxcnc-xyzac",
+}
 CALL = re.compile(r"^\s*\d+ N\S+\s+(\w+)\((.*)\)$")
 
 needed = pytest.mark.skipif(not PROGRAM.exists(), reason="no LinuxCNC interpreter: run `make envs`, or no apt-get here")
@@ -26,6 +39,18 @@ class Moves:
     joints: np.ndarray
     rapid: np.ndarray
     minutes: np.ndarray
+
+
+def demonstration_file(name: str) -> Path:
+    found = sorted(DEMOS.rglob(f"{name}.ngc"))
+    assert found, "the package has moved its demonstrations"
+    return found[0]
+
+
+def demonstration(name: str) -> riffler.Program:
+    """One of FIVE_AXES as riffler reads it."""
+    options = {"subroutines": str(DEMOS / "remap_subs")}
+    return riffler.Program.read(demonstration_file(name), machine=FIVE_AXES[name], options=options)
 
 
 class RefusedError(Exception):

@@ -129,26 +129,9 @@ def test_what_linuxcnc_refuses_is_refused(tmp_path, line):
     assert message.endswith("]") or "has no end" in message
 
 
-EXAMPLES = linuxcnc.FOLDER / "usr" / "share" / "doc" / "linuxcnc" / "examples"
-DEMOS = EXAMPLES / "sample-configs" / "sim" / "axis" / "vismach" / "5axis" / "table-rotary-tilting"
-FIVE_AXES = {
-    "boat-xyzac": "linuxcnc-xyzac",
-    "impeller-7bl-xyzac": "linuxcnc-xyzac",
-    "boat-xyzbc": "linuxcnc-xyzbc",
-    "xyzac_switchkins": "linuxcnc-xyzac",
-    "xyzbc_switchkins": "linuxcnc-xyzbc",
-    "xyzac_switchkins_test_1": "linuxcnc-xyzac",
-    "xyzac_switchkins_test_2": "linuxcnc-xyzac",
-    "xyzac_switchkins_test_3": "linuxcnc-xyzac",
-}
-
-
-@pytest.mark.parametrize("name", FIVE_AXES)
+@pytest.mark.parametrize("name", linuxcnc.FIVE_AXES)
 def test_the_programs_of_linuxcncs_five_axis_simulators_are_read(name):
-    found = sorted(DEMOS.rglob(f"{name}.ngc"))
-    assert found, "the package has moved its demonstrations"
-    options = {"subroutines": str(DEMOS / "remap_subs")}
-    program = riffler.Program.read(found[0], machine=FIVE_AXES[name], options=options)
+    program = linuxcnc.demonstration(name)
     assert len(program) > 50 and ("_test_" in name or np.ptp(program.poses[:, 3:], axis=0).max() > 0.1)
 
 
@@ -156,14 +139,14 @@ def test_the_programs_of_linuxcncs_five_axis_simulators_are_read(name):
 def test_demonstrations_without_switches_go_where_linuxcnc_takes_them(tmp_path, name):
     """With their M428 and M429 taken out, which rs274 alone does not know: X Y Z are the tip."""
     text = "".join(
-        line for line in sorted(DEMOS.rglob(f"{name}.ngc"))[0].read_text().splitlines(True)
+        line for line in linuxcnc.demonstration_file(name).read_text().splitlines(True)
         if not line.lower().lstrip().startswith(("m428", "m429", "m430"))
     )  # fmt: skip
     file = tmp_path / "p.ngc"
     file.write_text(text)
     calls, first = linuxcnc.calls(linuxcnc.output(file, "-b"))
-    tilt = FIVE_AXES[name][-2].upper()
-    program = riffler.Program.read(file, machine=FIVE_AXES[name], options={"tcp": True})
+    tilt = linuxcnc.FIVE_AXES[name][-2].upper()
+    program = riffler.Program.read(file, machine=linuxcnc.FIVE_AXES[name], options={"tcp": True})
     ends = np.array([first.program(call.end) for call in calls if np.abs(call.end - call.start).max() > 1e-3])
     axes = forward(ends, tilting_table(tilt, [0, 0, 0], [0, 0, 0]))[:, 3:]
     row = 0
