@@ -330,7 +330,7 @@ circle. The same program gives the same bytes.
 Options are the machine's (``rot_point``, ``offset``, ``tool_offset`` of LinuxCNC's tables, named as its pins;
 ``pivot_length`` of heads), and of all: ``tcp`` (False: X Y Z are where the axes stand; True: the tip in part
 coordinates), ``direction`` (``"linuxcnc"`` or ``"iso"``, of tables), ``limits_x`` … ``limits_c`` [low, high], ``rate_x`` …
-``rate_c``, ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``arcs``, ``vectors``: docs/machines.md. Where a
+``rate_c``, ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``safe_height``, ``arcs``, ``vectors``: docs/machines.md. Where a
 rotary axis moves beside linear ones that are written as they stand, blocks are under G93, each with F = 1 / minutes: the
 tip's way at the feed, or longer where an axis's rate asks for it.
 

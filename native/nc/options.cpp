@@ -8,7 +8,10 @@
 namespace riffler {
 
 std::optional<OptionValue> OptionReader::take(const std::string& name) {
-  if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
+  if (std::find(known_.begin(), known_.end(), name) != known_.end())
+    throw std::invalid_argument(owner_ + ": option " + name +
+                                " would have two meanings: [options] of the description must use another name");
+  known_.push_back(name);
   auto node = options_.extract(name);
   if (node.empty()) return std::nullopt;
   return std::move(node.mapped());

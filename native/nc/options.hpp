@@ -16,7 +16,8 @@ namespace riffler {
 using OptionValue = std::variant<bool, double, std::string, std::vector<double>>;
 using Options = std::map<std::string, OptionValue>;
 
-/// Takes options out one by one; what is left at the end was not known to anybody.
+/// Takes options out one by one; what is left at the end was not known to anybody. A name that is taken twice has two
+/// meanings, a description's own and everybody's: std::invalid_argument.
 class OptionReader {
  public:
   /// `owner` stands in messages: "machine tcp", "post tcp".

@@ -23,7 +23,8 @@ struct PostOptions {
   bool vectors = false;  ///< Heidenhain: LN blocks with the tool's axis, no rotary words
   /// Machine Z (G53, mm) to which the tool goes before everything, before tool changes and after everything.
   std::optional<double> retract;
-  bool arcs = false;  ///< straight runs with one axis become G2, G3 within the tolerance
+  std::optional<double> safe_height;  ///< mm, z of the tip above everything; not given: as high as the program goes
+  bool arcs = false;                  ///< straight runs with one axis become G2, G3 within the tolerance
 };
 
 PostOptions take_post_options(OptionReader& options);

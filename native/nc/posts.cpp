@@ -15,6 +15,16 @@ constexpr PostLanguage kLanguages[] = {
     {"apt", make_apt},
 };
 
+/// A coordinate in mm, where it is given.
+std::optional<double> place(OptionReader& options, const std::string& name) {
+  const bool given = options.given(name);
+  const double value = options.number(name, 0);
+  if (!given) return std::nullopt;
+  if (!(std::abs(value) <= kMaxLength))
+    throw std::invalid_argument(options.owner() + ": option " + name + " is out of range");
+  return value;
+}
+
 }  // namespace
 
 std::span<const PostLanguage> post_languages() {
@@ -36,13 +46,8 @@ PostOptions take_post_options(OptionReader& options) {
   out.line_numbers = static_cast<int>(step);
   out.coolant = options.word("coolant", {"off", "flood", "mist"}, "off");
   out.vectors = options.flag("vectors", false);
-  const bool retracts = options.given("retract");
-  const double retract = options.number("retract", 0);
-  if (retracts) {
-    out.retract = retract;
-    if (!(std::abs(retract) <= kMaxLength))
-      throw std::invalid_argument(options.owner() + ": option retract is out of range");
-  }
+  out.retract = place(options, "retract");
+  out.safe_height = place(options, "safe_height");
   out.arcs = options.flag("arcs", false);
   return out;
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "geom/directions.hpp"
+#include "nc/number_text.hpp"
 #include "nc/subdivider.hpp"
 
 namespace riffler {
@@ -66,8 +67,8 @@ struct Trace {
 
 class Chooser {
  public:
-  Chooser(const Program& program, const Machine& machine, double axis_tolerance)
-      : program_(program), machine_(machine), axis_tolerance_(axis_tolerance), free_(free_moves(program)) {
+  Chooser(const Program& program, const Machine& machine, double axis_tolerance, const std::vector<bool>& free)
+      : program_(program), machine_(machine), axis_tolerance_(axis_tolerance), free_(free) {
     for (const char letter : machine.axes().substr(3)) rotary_.push_back(joint_index(letter));
   }
 
@@ -388,7 +389,7 @@ class Chooser {
   const Program& program_;
   const Machine& machine_;
   double axis_tolerance_;
-  std::vector<bool> free_;
+  const std::vector<bool>& free_;
   std::vector<std::size_t> rotary_;  // in Joints
   Stands stands_;                    // of the last node
   std::vector<Node> nodes_;
@@ -397,21 +398,29 @@ class Chooser {
 
 }  // namespace
 
-std::vector<bool> free_moves(const Program& program) {
+std::vector<bool> free_moves(const Program& program, std::optional<double> safe_height) {
   double highest = -std::numeric_limits<double>::infinity();
-  for (std::size_t row = 0; row < program.size(); ++row)
-    if (!program.rapid()[row]) highest = std::max(highest, program.poses()[row].tip.z);
-  std::vector<bool> out(program.size());
-  for (std::size_t row = 1; row < program.size(); ++row) {
-    const Pose &a = program.poses()[row - 1], &b = program.poses()[row];
-    out[row] = program.tool()[row] != program.tool()[row - 1] ||
-               (program.rapid()[row] && ((a.tip.z > highest && b.tip.z > highest) || opposite(a, b)));
+  for (std::size_t row = 0; row < program.size(); ++row) {
+    if (program.rapid()[row]) continue;
+    const double z = program.poses()[row].tip.z;
+    if (safe_height && z >= *safe_height)
+      throw RowError("poses", row,
+                     "safe_height " + number_text(*safe_height) + " must be above every feed move: " + number_text(z));
+    highest = std::max(highest, z);
   }
+  const auto safe = [&](std::size_t row) {
+    const double z = program.poses()[row].tip.z;
+    return safe_height ? z >= *safe_height : z > highest;
+  };
+  std::vector<bool> out(program.size());
+  for (std::size_t row = 1; row < program.size(); ++row)
+    out[row] = program.tool()[row] != program.tool()[row - 1] || (program.rapid()[row] && safe(row - 1) && safe(row));
   return out;
 }
 
-std::vector<Waypoint> choose_joints(const Program& program, const Machine& machine, double axis_tolerance) {
-  return Chooser(program, machine, axis_tolerance).run();
+std::vector<Waypoint> choose_joints(const Program& program, const Machine& machine, double axis_tolerance,
+                                    const std::vector<bool>& free) {
+  return Chooser(program, machine, axis_tolerance, free).run();
 }
 
 }  // namespace riffler

@@ -2,6 +2,7 @@
 // limits force the tool out of the material, so that an axis can be turned back.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "nc/machine.hpp"
@@ -19,10 +20,11 @@ struct Waypoint {
   bool rewound = false;
 };
 
-/// Which rows may turn the rotary axes in whatever way: rapids whose both ends lie above the tip of every feed move or
-/// whose axes are opposite, with no great circle between them, and rows with another tool than the row before: nobody
-/// knows from where that one comes. Everywhere else the axes follow the great circle between two rows.
-std::vector<bool> free_moves(const Program& program);
+/// Which rows may turn the rotary axes in whatever way: rapids whose both ends lie at `safe_height` or above it, if
+/// that is given, else above the tip of every feed move, and rows with another tool than the row before: nobody knows
+/// from where that one comes. Everywhere else the axes follow the great circle between two rows. Throws
+/// std::invalid_argument naming the feed move that is not below `safe_height`.
+std::vector<bool> free_moves(const Program& program, std::optional<double> safe_height = {});
 
 /// One waypoint per row of the program, and more where the tool must leave. Of all choices of branches and turns within
 /// the machine's limits those that leave the material least often, and of these the one with the shortest rotary path
@@ -30,8 +32,9 @@ std::vector<bool> free_moves(const Program& program);
 /// Inf. Theory 13, 1967). The tool leaves at the last row that it can reach; within a move only where no row would do.
 /// The branch may change in free rapids and where a move passes the pole within axis_tolerance / 4, nowhere else: in
 /// between the rotary axes can follow the great circle on one branch only. Before the first row that is away from the
-/// pole, the free axis stands where that row has it. Throws std::invalid_argument naming the row that the machine
-/// cannot hold, and a feed move between opposite axes.
-std::vector<Waypoint> choose_joints(const Program& program, const Machine& machine, double axis_tolerance);
+/// pole, the free axis stands where that row has it. `free`: free_moves. Throws std::invalid_argument naming the row
+/// that the machine cannot hold, and a move between opposite axes that is not free.
+std::vector<Waypoint> choose_joints(const Program& program, const Machine& machine, double axis_tolerance,
+                                    const std::vector<bool>& free);
 
 }  // namespace riffler

@@ -38,6 +38,7 @@ class Writer {
     const PostOptions how = take_post_options(taken_);
     post_ = make_post(*machine_, how);
     arcs_ = how.arcs && post_->has_arcs();
+    safe_height_ = how.safe_height;
     taken_.done();
     if (!(options.tolerance >= 2e-5 && options.tolerance <= kMaxLength))
       throw std::invalid_argument("tolerance must be a length of at least 0.00002 mm: lengths have 5 decimals");
@@ -68,8 +69,8 @@ class Writer {
   }
 
   void by_joints() {
-    const std::vector<Waypoint> way = choose_joints(program_, *machine_, options_.axis_tolerance);
-    const std::vector<bool> free = free_moves(program_);
+    const std::vector<bool> free = free_moves(program_, safe_height_);
+    const std::vector<Waypoint> way = choose_joints(program_, *machine_, options_.axis_tolerance, free);
     Subdivider splitter(*machine_, options_.tolerance, options_.axis_tolerance);
     begin();
     before_ = {};
@@ -228,6 +229,7 @@ class Writer {
       box.add(program_.poses()[row].tip);
       if (program_.rapid()[row]) top = std::max(top, program_.poses()[row].tip.z);
     }
+    if (safe_height_) return {box.grown(kClearance), *safe_height_};
     // As high as the program itself goes; one without rapids gets its own height.
     return {box.grown(kClearance), std::max(top, box.upper.z + (top < box.upper.z ? kClearance : 0))};
   }
@@ -337,6 +339,7 @@ class Writer {
   Vec3 tip_{0};                   // there
   Pose before_;                   // of the program, there
   bool arcs_ = false;
+  std::optional<double> safe_height_;
   std::optional<Space> space_;
   std::optional<int> tool_;
   double spindle_ = 0, last_feed_ = 0, slowest_ = 1;

@@ -162,6 +162,21 @@ TEST(Description, AsksForWhatJointsNeed) {
   }
 }
 
+TEST(Description, MayNotGiveEverybodysOptionsAnotherMeaning) {
+  for (const std::string& name : std::vector<std::string>{"limits_a", "arcs", "safe_height", "feed"}) {
+    std::string file = kMill;
+    file.replace(file.find("raised = 5"), 6, name);
+    file.replace(file.find("raised = [0"), 6, name);
+    try {
+      describe(file);
+      FAIL() << name;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("option " + name + " would have two meanings"), std::string::npos)
+          << e.what();
+    }
+  }
+}
+
 /// RIFFLER_MACHINES for the time of a test.
 class OwnFolder {
  public:

@@ -69,8 +69,8 @@ void check(const Program& p, const Machine& machine, const std::vector<Waypoint>
 
 TEST(Limits, AreAsGoodAsNoneWhereTheyAreNotMet) {
   const Program p = program_from_paths(std::vector{round(25, 0.8, 40)}, {});
-  const auto free = choose_joints(p, *tcp({}), kAxisTolerance);
-  const auto bound = choose_joints(p, *tcp(limits(-90, 90, -1000, 1000)), kAxisTolerance);
+  const auto free = choose_joints(p, *tcp({}), kAxisTolerance, free_moves(p));
+  const auto bound = choose_joints(p, *tcp(limits(-90, 90, -1000, 1000)), kAxisTolerance, free_moves(p));
   ASSERT_EQ(free.size(), bound.size());
   for (std::size_t k = 0; k < free.size(); ++k) EXPECT_EQ(free[k].joints, bound[k].joints);
 }
@@ -79,7 +79,7 @@ TEST(Limits, StartWhereTheWholePathFits) {
   // One turn and a half within ±360°: only from one end to the other.
   const Program p = program_from_paths(std::vector{round(25, 1.5, 40)}, {});
   const auto machine = tcp(limits(-90, 90, -360, 360));
-  const auto way = choose_joints(p, *machine, kAxisTolerance);
+  const auto way = choose_joints(p, *machine, kAxisTolerance, free_moves(p));
   EXPECT_EQ(rewinds(way), 0);
   check(p, *machine, way);
 }
@@ -104,7 +104,7 @@ TEST(Limits, MakeTheToolLeaveAsOftenAsTheyMustAndNoMore) {
   for (const double turns : {2.2, 5.0, -3.3}) {
     const Program p = program_from_paths(std::vector{round(25, turns, 40, 7)}, {});
     const auto machine = tcp(limits(-90, 90, -360, 360));
-    const auto way = choose_joints(p, *machine, kAxisTolerance);
+    const auto way = choose_joints(p, *machine, kAxisTolerance, free_moves(p));
     check(p, *machine, way);
     std::vector<double> places;
     const int n = static_cast<int>(std::lround(std::abs(turns) * 40));
@@ -117,7 +117,7 @@ TEST(Limits, AreMetInTheMiddleOfAMoveWhereAPartOfATurnIsAllThereIs) {
   // ±180°: each place is there once (twice on the seam), so the seam must be passed outside, wherever it lies.
   const Program p = program_from_paths(std::vector{round(25, 1.9, 11, 33)}, {});
   const auto machine = tcp(limits(0, 90, -180, 180));
-  const auto way = choose_joints(p, *machine, kAxisTolerance);
+  const auto way = choose_joints(p, *machine, kAxisTolerance, free_moves(p));
   check(p, *machine, way);
   EXPECT_EQ(rewinds(way), 2);
   int inner = 0;
@@ -131,10 +131,10 @@ TEST(Limits, ChangeTheBranchWhereTheTiltingAxisGoesOneWayOnly) {
   for (int k = -10; k <= 10; ++k) path.poses.push_back({{1.0 * k, 0, 0}, tilted(3 * k, 77)});
   const Program p = program_from_paths(std::vector{path}, {});
   const auto machine = tcp(limits(-5, 90, -360, 360));
-  const auto way = choose_joints(p, *machine, kAxisTolerance);
+  const auto way = choose_joints(p, *machine, kAxisTolerance, free_moves(p));
   check(p, *machine, way);
   EXPECT_EQ(rewinds(way), 0) << "at the pole the other branch is reached without leaving";
-  EXPECT_EQ(rewinds(choose_joints(p, *tcp(limits(-90, 90, -360, 360)), kAxisTolerance)), 0);
+  EXPECT_EQ(rewinds(choose_joints(p, *tcp(limits(-90, 90, -360, 360)), kAxisTolerance, free_moves(p))), 0);
 }
 
 TEST(Limits, BesideThePoleTheToolLeavesToChangeTheBranch) {
@@ -143,10 +143,10 @@ TEST(Limits, BesideThePoleTheToolLeavesToChangeTheBranch) {
   const Program p = program_from_paths(std::vector{path}, {});
   // On one branch C goes from 90° to 250°, on the other from −90° to 70°.
   const auto machine = tcp(limits(-90, 90, -50, 50));
-  EXPECT_THROW(choose_joints(p, *machine, kAxisTolerance), std::invalid_argument);
-  EXPECT_EQ(rewinds(choose_joints(p, *tcp(limits(-90, 90, -100, 100)), kAxisTolerance)), 0);
+  EXPECT_THROW(choose_joints(p, *machine, kAxisTolerance, free_moves(p)), std::invalid_argument);
+  EXPECT_EQ(rewinds(choose_joints(p, *tcp(limits(-90, 90, -100, 100)), kAxisTolerance, free_moves(p))), 0);
   const auto wide = tcp(limits(-90, 90, 0, 180));
-  const auto way = choose_joints(p, *wide, kAxisTolerance);
+  const auto way = choose_joints(p, *wide, kAxisTolerance, free_moves(p));
   check(p, *wide, way);
   EXPECT_EQ(rewinds(way), 1);
 }
@@ -197,7 +197,7 @@ TEST(Limits, MakeTheToolLeaveAsSeldomAsTheBestOfAllWays) {
     // Rows of program_from_paths before and after the path stand above it.
     const int least = least_leavings(tilt, around, a_low, 90, c_low, c_high);
     if (least < 0) continue;
-    const auto way = choose_joints(p, *machine, kAxisTolerance);
+    const auto way = choose_joints(p, *machine, kAxisTolerance, free_moves(p));
     check(p, *machine, way);
     EXPECT_EQ(rewinds(way), least) << n;
     ++counts[std::min(least, 3)];
@@ -222,7 +222,7 @@ TEST(Limits, AnyProgramIsHeldWithinThemOrRefusedByRow) {
     const double a = 60 + 30 * unit(random), c = 180 + 200 * unit(random);
     const auto machine = tcp(limits(-a, a, -c, c));
     try {
-      check(p, *machine, choose_joints(p, *machine, kAxisTolerance));
+      check(p, *machine, choose_joints(p, *machine, kAxisTolerance, free_moves(p)));
       ++held;
     } catch (const std::invalid_argument& e) {
       EXPECT_NE(std::string(e.what()).find("poses, row "), std::string::npos);
@@ -237,7 +237,7 @@ TEST(Limits, AreKeptByAnAxisThatIsFreeThroughout) {
   for (int k = 0; k < 5; ++k) path.poses.push_back({{1.0 * k, 0, 0}, {0, 0, 1}});
   const Program p = program_from_paths(std::vector{path}, {});
   const auto machine = tcp(limits(-5, 90, 10, 350));
-  for (const Waypoint& w : choose_joints(p, *machine, kAxisTolerance)) EXPECT_EQ(w.joints[5], 10);
+  for (const Waypoint& w : choose_joints(p, *machine, kAxisTolerance, free_moves(p))) EXPECT_EQ(w.joints[5], 10);
 }
 
 TEST(Limits, LeaveAsSeldomAsAllTurnsOfAWideRangeAllow) {
@@ -250,7 +250,7 @@ TEST(Limits, LeaveAsSeldomAsAllTurnsOfAWideRangeAllow) {
   }
   const Program p = program_from_paths(std::vector{path}, {});
   const auto machine = tcp(limits(0, 90, -720, 720));
-  const auto way = choose_joints(p, *machine, kAxisTolerance);
+  const auto way = choose_joints(p, *machine, kAxisTolerance, free_moves(p));
   check(p, *machine, way);
   EXPECT_EQ(rewinds(way), 0);
 }
@@ -262,7 +262,7 @@ TEST(Limits, ThroughThePoleTheFreeAxisTurnsTheWayThatIsLeft) {
     for (int k = -10; k <= 10; ++k) path.poses.push_back({{1.0 * k, 0, 0}, tilted(3.0 * k, around)});
     const Program p = program_from_paths(std::vector{path}, {});
     const auto machine = tcp(limits(0, 90, -180, 180));
-    const auto way = choose_joints(p, *machine, kAxisTolerance);
+    const auto way = choose_joints(p, *machine, kAxisTolerance, free_moves(p));
     check(p, *machine, way);
     EXPECT_EQ(rewinds(way), 0) << around;
   }
@@ -334,6 +334,32 @@ TEST(Rewinds, GoHigherWhereTheToolHangsBelowItsTip) {
     for (const Pose& pose : q.poses()) highest[known] = std::max(highest[known], pose.tip.z);
   }
   EXPECT_NEAR(highest[1] - highest[0], 50 * std::sin(10 * kDegree) + 3 * std::cos(10 * kDegree), 1e-4);
+}
+
+TEST(Rewinds, GoToTheSafeHeightThatIsAskedForAndRapidsTurnFreelyOnlyThere) {
+  const Program p = program_from_paths(std::vector{round(25, 2.2, 40), round(25, 0.1, 40)}, {});
+  double clear = 0;  // of the program's own rapids
+  for (const Pose& pose : p.poses()) clear = std::max(clear, pose.tip.z);
+  Options options = limits(-90, 90, -360, 360);
+  for (const double safe : {clear, clear + 50}) {
+    options["safe_height"] = safe;
+    WriteReport report;
+    const std::string text = to_nc(p, post("linuxcnc-xyzac", options), &report);
+    EXPECT_EQ(report.rewinds.size(), 1U);
+    const Program q = parse_nc(text, "p.ngc", {"linuxcnc-xyzac", options});
+    double highest = 0;
+    for (const Pose& pose : q.poses()) highest = std::max(highest, pose.tip.z);
+    EXPECT_NEAR(highest, safe, 0.01) << "the tip is held within the tolerance while axes turn";
+    const std::vector<bool> free = free_moves(p, safe);
+    EXPECT_EQ(std::count(free.begin(), free.end(), true) > 0, safe == clear);
+  }
+  options["safe_height"] = 0.0;
+  try {
+    to_nc(p, post("linuxcnc-xyzac", options));
+    FAIL();
+  } catch (const RowError& e) {
+    EXPECT_NE(std::string(e.what()).find("safe_height 0 must be above every feed move"), std::string::npos) << e.what();
+  }
 }
 
 TEST(Rewinds, NameTheAxisThatNoTurnBringsWithinItsLimits) {

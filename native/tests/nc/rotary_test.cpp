@@ -38,7 +38,7 @@ Program feeds(const std::vector<Vec3>& axes) {
 /// The joints at the rows' ends, of a machine without limits.
 std::vector<Joints> choose(const Program& program, const Machine& machine, double axis_tolerance) {
   std::vector<Joints> out;
-  for (const Waypoint& w : choose_joints(program, machine, axis_tolerance)) {
+  for (const Waypoint& w : choose_joints(program, machine, axis_tolerance, free_moves(program))) {
     EXPECT_FALSE(w.rewound);
     EXPECT_EQ(w.row, out.size());
     out.push_back(w.joints);
@@ -220,7 +220,7 @@ TEST(ChooseJoints, NamesTheRowThatCannotBeHeld) {
   const auto upright = make_machine("3-axis", none);
   const auto error = [](const Program& p, const Machine& machine) -> std::string {
     try {
-      choose_joints(p, machine, kAxisTolerance);
+      choose_joints(p, machine, kAxisTolerance, free_moves(p));
     } catch (const std::invalid_argument& e) {
       return e.what();
     }
@@ -230,8 +230,11 @@ TEST(ChooseJoints, NamesTheRowThatCannotBeHeld) {
   EXPECT_EQ(error(feeds({{0, 0, 1}, tilted(3e-5, 0)}), *upright), "");
   EXPECT_NE(error(feeds({{0, 0, 1}, {0, 0, -1}}), *tcp()).find("poses, row 1"), std::string::npos);
   Program rapid = feeds({{0, 0, 1}});
-  rapid.append({{{0, 0, 0}, {0, 0, -1}}, 0, 0, 0, 0, true});
+  rapid.append({{{0, 0, 9}, {0, 0, 1}}, 0, 0, 0, 0, true});
+  rapid.append({{{5, 0, 9}, {0, 0, -1}}, 0, 0, 0, 0, true});
   EXPECT_EQ(error(rapid, *tcp()), "");
+  rapid.append({{{5, 0, 0}, {0, 0, 1}}, 0, 0, 0, 0, true});
+  EXPECT_NE(error(rapid, *tcp()).find("poses, row 3: the axis is opposite"), std::string::npos) << "into the part";
 }
 
 /// A head that nutates by 45° under a fork: the free axis turns with the tilt, too. B goes one way only.
@@ -253,7 +256,7 @@ TEST(ChooseJoints, CountsWholeTurnsAlongTheGreatCircleBesideThePole) {
     const double around = 360 * unit(random);
     const Program p =
         feeds({tilted(5 + 75 * unit(random), around), tilted(5 + 75 * unit(random), around + 165 + 30 * unit(random))});
-    const auto way = choose_joints(p, machine, kAxisTolerance);
+    const auto way = choose_joints(p, machine, kAxisTolerance, free_moves(p));
     ASSERT_EQ(way.size(), 2U);
     beyond_half += std::abs(way[1].joints[5] - way[0].joints[5]) > 180;
     Subdivider splitter(machine, 0.01, kAxisTolerance);
