@@ -16,7 +16,7 @@ Grid::Grid(Axis axis, const Box3& box, double pitch, bool with_normals)
   nv_ = ray_count(box_.size().y, pitch);
   tiles_u_ = (nu_ + kTileSide - 1) / kTileSide;
   tiles_v_ = (nv_ + kTileSide - 1) / kTileSide;
-  const std::shared_ptr<const Tile> empty = std::make_shared<Tile>();
+  const std::shared_ptr<const Tile> empty = make_shared_block<Tile>();
   tiles_.assign(static_cast<std::size_t>(tiles_u_) * tiles_v_, empty);
 }
 
@@ -26,9 +26,9 @@ Tile& Grid::writable(std::size_t index) {
     // The last other holder may have been a reader on another thread: see its reads done before writing.
     std::atomic_thread_fence(std::memory_order_acquire);
   } else {
-    held = std::make_shared<Tile>(*held);
+    held = make_shared_block<Tile>(*held);
   }
-  return const_cast<Tile&>(*held);  // every tile is made by make_shared<Tile>, never as a const object
+  return const_cast<Tile&>(*held);  // every tile is made by make_shared_block<Tile>, never as a const object
 }
 
 double Grid::volume() const {

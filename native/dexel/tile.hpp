@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dexel/span.hpp"
+#include "geom/block_pool.hpp"
 #include "geom/interval.hpp"
 
 namespace riffler {
@@ -47,8 +48,8 @@ class RayOffsets {
 /// border tile that lie beyond the grid are empty.
 struct Tile {
   RayOffsets offset;
-  std::vector<Span> spans;
-  std::vector<SpanNormals> normals;  // as long as `spans`, or empty in a grid that stores none
+  BlockVector<Span> spans;
+  BlockVector<SpanNormals> normals;  // as long as `spans`, or empty in a grid that stores none
   Interval reach;                    // covers every span; may be larger after a cut, never smaller
   std::uint64_t revision = 0;        // changes whenever the content does
 

@@ -36,8 +36,9 @@ struct Cut {
 /// more, exactly opposite axes, a tolerance or dt that is not positive. Cancelled leaves the volume unchanged.
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options = {});
 
-/// Throws as `carve` does for poses that make no path.
+/// Throw as `carve` does for poses that make no path, for options of so many moves.
 void check_path(std::span<const Pose> poses);
+void check_options(const CarveOptions& options, std::size_t moves);
 
 /// Single moves on one grid, for those who simulate parts of a volume by themselves: move k goes from
 /// poses[ends[k] − 1] to poses[ends[k]]. What is left is, bit for bit, what `carve` leaves of the same moves. Returns

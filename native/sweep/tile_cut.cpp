@@ -14,7 +14,7 @@ bool one_each(const std::uint32_t* offset) {
 }
 
 /// Hull of spans that lie within `before`; often the first few reach its ends.
-Interval hull(const std::vector<Span>& spans, const Interval& before) {
+Interval hull(std::span<const Span> spans, const Interval& before) {
   constexpr std::size_t kBlock = 32, kStrands = 4;  // no comparison waits for the one before
   Interval strands[kStrands], out;
   const auto include = [](Interval& to, const Interval& s) {
@@ -30,6 +30,11 @@ Interval hull(const std::vector<Span>& spans, const Interval& before) {
   return out;
 }
 
+TileScratch& scratch_of_thread() {
+  thread_local TileScratch mine;
+  return mine;
+}
+
 }  // namespace
 
 TileCut::TileCut(const Tile& tile, bool with_normals, double thinnest)
@@ -39,12 +44,14 @@ TileCut::TileCut(const Tile& tile, bool with_normals, double thinnest)
       thinnest_(thinnest),
       rays_(tile.spans.data()),
       normals_(tile.normals.data()),
-      many_{} {
+      many_{},
+      scratch_(scratch_of_thread()) {
+  scratch_.pool.clear(), scratch_.pool_normals.clear();
   if (!packed_) unpack();
 }
 
 void TileCut::unpack() {
-  fresh_ = std::make_shared<Tile>();
+  fresh_ = make_shared_block<Tile>();
   fresh_->spans.resize(kTileRays);
   if (with_normals_) fresh_->normals.resize(kTileRays);
   rays_ = fresh_->spans.data(), normals_ = fresh_->normals.data();
@@ -65,7 +72,7 @@ void TileCut::unpack() {
 Span* TileCut::open() {
   changed_ = true;
   if (!fresh_) {
-    fresh_ = std::make_shared<Tile>(tile_);
+    fresh_ = make_shared_block<Tile>(tile_);
     rays_ = fresh_->spans.data(), normals_ = fresh_->normals.data();
   }
   return fresh_->spans.data();
@@ -80,22 +87,23 @@ void TileCut::put(int r, const Span* spans, const SpanNormals* normals, std::uin
   if (n == 1) return;
   packed_ = false;
   if (n == 0) return;
-  if (begin_.empty()) begin_.resize(kTileRays), count_.resize(kTileRays), room_.resize(kTileRays);
-  if (n > room_[r]) {
+  TileScratch& at = scratch_;
+  if (at.pool.empty()) at.begin.resize(kTileRays), at.count.resize(kTileRays), at.room.assign(kTileRays, 0);
+  if (n > at.room[r]) {
     // Twice as much for a ray that grows again, so that all its places together are a few times the last.
-    room_[r] = room_[r] > 0 ? 2 * n : n;
-    begin_[r] = static_cast<std::uint32_t>(pool_.size());
-    pool_.resize(pool_.size() + room_[r]);
-    if (with_normals_) pool_normals_.resize(pool_.size());
+    at.room[r] = at.room[r] > 0 ? 2 * n : n;
+    at.begin[r] = static_cast<std::uint32_t>(at.pool.size());
+    at.pool.resize(at.pool.size() + at.room[r]);
+    if (with_normals_) at.pool_normals.resize(at.pool.size());
   }
-  count_[r] = n;
-  std::copy(spans, spans + n, pool_.begin() + begin_[r]);
-  if (with_normals_) std::copy(normals, normals + n, pool_normals_.begin() + begin_[r]);
+  at.count[r] = n;
+  std::copy(spans, spans + n, at.pool.begin() + at.begin[r]);
+  if (with_normals_) std::copy(normals, normals + n, at.pool_normals.begin() + at.begin[r]);
 }
 
 void TileCut::store(int r) {
   open();
-  put(r, kept_.data(), kept_normals_.data(), static_cast<std::uint32_t>(kept_.size()));
+  put(r, scratch_.kept.data(), scratch_.kept_normals.data(), static_cast<std::uint32_t>(scratch_.kept.size()));
 }
 
 /// No ray holds several spans: drops the empty places.
@@ -120,8 +128,8 @@ void TileCut::pack_all(Tile& tile) const {
   std::uint32_t total = 0;
   for (int r = 0; r < kTileRays; ++r) offset[r] = total, total += count(r);
   offset[kTileRays] = total;
-  std::vector<Span> spans(total);
-  std::vector<SpanNormals> normals(with_normals_ ? total : 0);
+  BlockVector<Span> spans(total);
+  BlockVector<SpanNormals> normals(with_normals_ ? total : 0);
   for (int r = 0; r < kTileRays; ++r)
     for (std::uint32_t k = 0, at = offset[r]; at + k < offset[r + 1]; ++k) {
       spans[at + k] = span(r, k);
@@ -134,7 +142,7 @@ void TileCut::pack_all(Tile& tile) const {
 std::shared_ptr<Tile> TileCut::finish() {
   if (!changed_) return nullptr;
   Tile& tile = *fresh_;
-  if (!pool_.empty())
+  if (!scratch_.pool.empty())
     pack_all(tile);
   else if (!packed_)
     pack_single(tile);

@@ -10,12 +10,21 @@
 
 namespace riffler {
 
+/// What a TileCut writes in while it lives; a thread has one, so that no cut asks for memory that another had.
+struct TileScratch {
+  BlockVector<std::uint32_t> begin, count, room;  // of rays with several spans, in the pool
+  BlockVector<Span> pool;                         // rays that grew lie at the end; their old places are forgotten
+  BlockVector<SpanNormals> pool_normals;
+  BlockVector<Span> kept;
+  BlockVector<SpanNormals> kept_normals;
+};
+
 /// Every ray has one place: its only span (nearly all rays), or the hull of several, which live in a pool. An empty ray
 /// has near > far there, so that no cut touches it. A tile whose rays have one span each is read where it lies, until
 /// something of it is cut: most tiles that a tool passes lose nothing.
 class TileCut {
  public:
-  /// Spans left thinner than `thinnest` vanish. `tile` must outlive this.
+  /// Spans left thinner than `thinnest` vanish. `tile` must outlive this. A thread has one of these at a time.
   TileCut(const Tile& tile, bool with_normals, double thinnest);
 
   const Span* rays() const { return rays_; }
@@ -28,7 +37,7 @@ class TileCut {
   /// wanted; `removed(near, far)` is told every piece of material taken.
   template <class Normal, class Removed>
   void subtract(int r, const Interval& cut, const Normal& normal_at, const Removed& removed) {
-    kept_.clear(), kept_normals_.clear();
+    scratch_.kept.clear(), scratch_.kept_normals.clear();
     const auto end = [&](double s) { return with_normals_ ? normal_at(s) : PackedNormal{}; };
     bool any = false;
     const std::uint32_t n = count(r);
@@ -54,14 +63,16 @@ class TileCut {
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   bool is_many(int r) const { return many_[r / kTileSide] >> (r % kTileSide) & 1U; }
-  std::uint32_t count(int r) const { return is_many(r) ? count_[r] : (rays_[r].near < rays_[r].far ? 1U : 0U); }
-  const Span& span(int r, std::uint32_t k) const { return is_many(r) ? pool_[begin_[r] + k] : rays_[r]; }
+  std::uint32_t count(int r) const { return is_many(r) ? scratch_.count[r] : (rays_[r].near < rays_[r].far ? 1U : 0U); }
+  const Span& span(int r, std::uint32_t k) const {
+    return is_many(r) ? scratch_.pool[scratch_.begin[r] + k] : rays_[r];
+  }
   const SpanNormals& normal(int r, std::uint32_t k) const {
-    return is_many(r) ? pool_normals_[begin_[r] + k] : normals_[r];
+    return is_many(r) ? scratch_.pool_normals[scratch_.begin[r] + k] : normals_[r];
   }
   void keep(const Span& s, const SpanNormals& n) {
-    kept_.push_back(s);
-    if (with_normals_) kept_normals_.push_back(n);
+    scratch_.kept.push_back(s);
+    if (with_normals_) scratch_.kept_normals.push_back(n);
   }
   void put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n);
   void unpack();
@@ -77,11 +88,7 @@ class TileCut {
   const SpanNormals* normals_;   // of the places
   std::shared_ptr<Tile> fresh_;  // once it is opened, holds the places
   std::uint32_t many_[kTileSide];
-  std::vector<std::uint32_t> begin_, count_, room_;  // of rays with several spans, in the pool
-  std::vector<Span> pool_;                           // rays that grew lie at the end; their old places are forgotten
-  std::vector<SpanNormals> pool_normals_;
-  std::vector<Span> kept_;
-  std::vector<SpanNormals> kept_normals_;
+  TileScratch& scratch_;
 };
 
 }  // namespace riffler

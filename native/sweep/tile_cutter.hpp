@@ -23,7 +23,7 @@ struct Share {
 
 struct TileResult {
   std::shared_ptr<Tile> tile;  ///< the new tile, or null if nothing was cut
-  std::vector<Share> shares;
+  BlockVector<Share> shares;
   Stats stats;
 };
 

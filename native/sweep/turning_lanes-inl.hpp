@@ -12,8 +12,8 @@
 #endif
 
 #include <algorithm>
-#include <vector>
 
+#include "geom/block_pool.hpp"
 #include "sweep/certificate_lanes-inl.hpp"
 #include "sweep/cut_lanes-inl.hpp"
 #include "sweep/hit_lanes-inl.hpp"
@@ -239,7 +239,8 @@ class TurningLanes {
 
   /// What was found so far in the lanes of `mask` is complete; from here on, another stretch is.
   void restart(Open& o, const Sample& s, M mask) {
-    each_cut(o.ray, o.found, mask, [&](int place, const RayCut& cut) { earlier_.push_back({place, cut}); });
+    each_cut(o.ray, o.found, mask,
+             [&](int place, const RayCut& cut) { earlier_.push_back({place, earlier_.size(), cut}); });
     o.found.at = {pick(mask, s.hit.near, o.found.at.near), pick(mask, s.hit.far, o.found.at.far)};
     o.found.t_near = pick(mask, s.t, o.found.t_near), o.found.t_far = pick(mask, s.t, o.found.t_far);
   }
@@ -260,7 +261,9 @@ class TurningLanes {
 
   /// Takes from the rays what was found, in their order, so that sums do not depend on who was done first.
   void take() {
-    std::stable_sort(earlier_.begin(), earlier_.end(), [](const Cut& a, const Cut& b) { return a.ray < b.ray; });
+    // Not std::stable_sort, which asks the system for memory.
+    std::sort(earlier_.begin(), earlier_.end(),
+              [](const Cut& a, const Cut& b) { return a.ray != b.ray ? a.ray < b.ray : a.number < b.number; });
     for (const Cut& c : earlier_) {
       const bool thick = c.cut.far - c.cut.near > w_.thinnest;
       if (!thick || c.cut.near >= w_.rays[c.ray].far || c.cut.far <= w_.rays[c.ray].near) continue;
@@ -293,9 +296,10 @@ class TurningLanes {
   double near_[kTileRays + kLanes], far_[kTileRays + kLanes], t_near_[kTileRays + kLanes], t_far_[kTileRays + kLanes];
   struct Cut {
     int ray;
+    std::size_t number;
     RayCut cut;
   };
-  std::vector<Cut> earlier_;  // of rays that are met more than once
+  BlockVector<Cut> earlier_;  // of rays that are met more than once
 };
 
 inline void cut_turning_lanes(const TurningBody& body, RayWindow& window) {

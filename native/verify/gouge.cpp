@@ -109,7 +109,7 @@ PartSurface::Deepest PartSurface::deepest(const Vec3& near, const Vec3& far) con
 void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
                  const SlabTiles& after, const Moves& moves, std::span<const std::size_t> cuts,
                  std::vector<Event>& events) {
-  SlabTiles deep(before.size(), std::make_shared<const Tile>());
+  SlabTiles deep(before.size(), make_shared_block<const Tile>());
   bool any = false;
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (before[k] == after[k]) continue;

@@ -101,7 +101,7 @@ SlabTiles get_tiles(PacketReader& in) {
   for (std::size_t t = 0; t < tiles.size(); ++t) {
     if (states[t] == Null) continue;
     if (states[t] == Empty) {
-      tiles[t] = std::make_shared<const Tile>();
+      tiles[t] = make_shared_block<const Tile>();
       continue;
     }
     if (states[t] == Normals) {

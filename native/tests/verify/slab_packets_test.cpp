@@ -30,7 +30,7 @@ TEST(SlabPackets, TilesArriveAsTheyWere) {
     const Volume volume = cut_block(directions);
     for (const Slab& slab : slabs_of(volume)) {
       SlabTiles tiles = tiles_of(volume.grids()[slab.grid], slab);
-      const SlabTask sent{2, slab, true, 77, tiles, SlabTiles(3, std::make_shared<const Tile>())};
+      const SlabTask sent{2, slab, true, 77, tiles, SlabTiles(3, make_shared_block<const Tile>())};
       const SlabTask came = task_of(to_packet(sent));
       EXPECT_EQ(came.fixture, 2);
       EXPECT_EQ(came.slab.place(volume.grids()[slab.grid], 1), slab.place(volume.grids()[slab.grid], 1));

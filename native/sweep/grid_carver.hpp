@@ -1,0 +1,103 @@
+// Cuts one grid with the moves of a tool, batch by batch.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dexel/grid.hpp"
+#include "dexel/stats.hpp"
+#include "geom/block_pool.hpp"
+#include "sweep/carve.hpp"
+#include "sweep/steps.hpp"
+#include "sweep/tile_cutter.hpp"
+
+namespace riffler {
+
+/// Brings back the tiles that were replaced unless what was begun is committed. Costs what was cut, not what there is.
+class Rollback {
+ public:
+  Rollback() = default;
+  Rollback(const Rollback&) = delete;
+  Rollback& operator=(const Rollback&) = delete;
+  ~Rollback() { undo(); }
+  void undo() {
+    for (auto& [place, tile] : first_) place.first->set_tile(place.second, std::move(tile));
+    first_.clear();
+  }
+  void keep(Grid& grid, std::size_t tile) { first_.try_emplace({&grid, tile}, grid.shared_tile(tile)); }
+  /// The carve ended well. Returns whether anything was replaced.
+  bool commit() {
+    const bool any = !first_.empty();
+    first_.clear();
+    return any;
+  }
+
+ private:
+  using Place = std::pair<Grid*, std::size_t>;
+  using Kept = std::pair<const Place, std::shared_ptr<const Tile>>;
+  std::map<Place, std::shared_ptr<const Tile>, std::less<>, BlockAllocator<Kept>> first_;
+};
+
+class GridCarver {
+ public:
+  /// `measured`: what is taken counts towards `cut`. `rollback` may be null.
+  GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback* rollback)
+      : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback) {}
+
+  /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds no more of the program than one batch, so
+  /// its length costs no memory here.
+  template <class End, class Done>
+  void run(std::span<const ConvexGroup> cutter, std::span<const Pose> poses, std::size_t moves, const End& end,
+           const Done& moves_done) {
+    steps_.clear(), motions_.clear();  // of a run that failed
+    Pose from;
+    std::size_t last = 0;
+    for (std::size_t m = 0; m < moves; ++m) {
+      const std::size_t e = end(m);
+      if (m == 0 || last != e - 1) from = local(poses[e - 1]);
+      last = e;
+      const Pose to = local(poses[e]);
+      add(cutter, from, to, static_cast<std::uint32_t>(m));
+      if (full()) flush(), moves_done(m);
+      from = to;
+    }
+    flush();
+  }
+
+  Stats take_stats() { return std::exchange(stats_, {}); }
+
+ private:
+  struct Work {  // one tile and its steps in the batch
+    std::size_t tile, begin, end;
+    TileResult done;
+  };
+
+  Pose local(const Pose& p) const;
+  void add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move);
+  bool full() const;
+  void flush();
+  void cut_steps();
+  void assign();
+  void sort_pairs(std::size_t first, std::size_t last);
+  void cut_tile(Work& work) const;
+  void collect(Work& w);
+
+  Grid& grid_;
+  bool measured_;
+  const CarveOptions& options_;
+  Cut& cut_;
+  Rollback* rollback_;
+  std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
+  BlockVector<Step> steps_;
+  BlockVector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
+  BlockVector<std::uint32_t> starts_;
+  BlockVector<Work> work_;
+  Stats stats_;
+};
+
+}  // namespace riffler

@@ -1,0 +1,39 @@
+#include "sweep/move_carver.hpp"
+
+#include <array>
+
+namespace riffler {
+
+MoveCarver::MoveCarver(Volume& volume, const Tool& tool, const Options& options)
+    : volume_(volume), cutter_(convex_groups(tool.cutter())), cut_{{0}, {Vec3(0)}, {Vec3(0)}} {
+  options_.tolerance = options.tolerance, options_.removal_constant = options.removal_constant;
+  options_.dt = {1};
+  check_options(options_, 1);
+  carvers_.reserve(volume.grids().size());
+  for (Grid& grid : volume.grids())
+    carvers_.emplace_back(grid, &grid == &volume.reference(), options_, cut_, &rollback_);
+}
+
+MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) {
+  const std::array<Pose, 2> poses{from, to};
+  check_path(poses);
+  options_.dt[0] = dt;
+  check_options(options_, 1);
+  cut_.removed[0] = 0, cut_.force[0] = cut_.torque[0] = Vec3(0);
+  Stats stats;
+  stats.moves = 1;
+  try {
+    for (GridCarver& carver : carvers_) {
+      carver.run(cutter_, poses, 1, [](std::size_t) { return std::size_t{1}; }, [](std::size_t) {});
+      stats += carver.take_stats();
+    }
+  } catch (...) {
+    rollback_.undo();
+    throw;
+  }
+  if (rollback_.commit()) volume_.touch();
+  volume_.count(stats);
+  return {cut_.removed[0], cut_.force[0], cut_.torque[0]};
+}
+
+}  // namespace riffler

@@ -1,0 +1,97 @@
+// Moves one by one, as a pen makes them: the same as `carve`, without asking the system for memory.
+#include "sweep/move_carver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "support/allocations.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler {
+namespace {
+
+/// A spiral at cutting depth whose turns overlap, 0.5 mm a step; with `lean`, the axis wobbles.
+Pose on_spiral(int k, double lean) {
+  const double way = 0.5 * k, radius = 16 - 0.02 * way, angle = way / 14;
+  const double tilt = lean * std::sin(0.07 * k);
+  return {{30 + radius * std::cos(angle), 30 + radius * std::sin(angle), 12 + 2 * std::sin(0.05 * k)},
+          {std::sin(tilt), 0, std::cos(tilt)}};
+}
+
+const Box3 kBox{{0, 0, 0}, {60, 60, 20}};
+
+bool same(const Volume& a, const Volume& b) {
+  for (std::size_t g = 0; g < a.grids().size(); ++g)
+    for (std::size_t t = 0; t < a.grids()[g].tile_count(); ++t) {
+      const Tile &x = a.grids()[g].tile(t), &y = b.grids()[g].tile(t);
+      if (!(x.offset == y.offset) || x.spans != y.spans || x.normals != y.normals) return false;
+    }
+  return true;
+}
+
+TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
+  for (const char* directions : {"z", "xyz"})
+    for (const double lean : {0.0, 0.6})
+      for (const Tool& tool : {cutters::ball(20, 40), cutters::fillet(12, 2, 40), cutters::flat(10, 30)}) {
+        Volume by_moves = Volume::block({kBox, 0.5, directions}), by_calls = by_moves;
+        MoveCarver carver(by_moves, tool, {});
+        for (int k = 0; k < 40; ++k) {
+          const std::vector<Pose> poses{on_spiral(3 * k, lean), on_spiral(3 * k + 3, lean)};
+          const MoveCarver::Taken taken = carver.move(poses[0], poses[1], 0.001);
+          const Cut cut = carve(by_calls, tool, poses, {.tolerance = 0.01, .dt = {0.001}, .progress = {}});
+          ASSERT_EQ(taken.removed, cut.removed[0]);
+          ASSERT_EQ(taken.force, cut.force[0]);
+          ASSERT_EQ(taken.torque, cut.torque[0]);
+        }
+        EXPECT_TRUE(same(by_moves, by_calls)) << directions << lean << tool.kind();
+        EXPECT_LT(by_moves.volume(), kBox.size().x * kBox.size().y * kBox.size().z - 1000);
+      }
+}
+
+/// Calls of operator new in moves from `warm` on. Between them another thread does what a display does every fifty
+/// milliseconds: it looks at a snapshot, and makes memory ready for tiles that are cut for the first time.
+std::uint64_t allocations(Volume& volume, double lean, int moves, int warm) {
+  MoveCarver carver(volume, cutters::ball(20, 40), {});
+  std::uint64_t count = 0;
+  for (int k = 0; k < moves; ++k) {
+    if (k % 50 == 0)
+      std::thread([seen = volume.snapshot()] {
+        EXPECT_GT(seen.volume(), 0);
+        keep_blocks_ready(1 << 15, 128);
+      }).join();
+    const std::uint64_t before = test::allocations();
+    carver.move(on_spiral(k, lean), on_spiral(k + 1, lean), 0.001);
+    if (k >= warm) count += test::allocations() - before;
+  }
+  return count;
+}
+
+TEST(MoveCarver, AsksForNoMemoryOnceItIsWarm) {
+  for (const char* directions : {"z", "xyz"})
+    for (const double lean : {0.0, 0.6}) {
+      Volume volume = Volume::block({kBox, directions[1] ? 0.4 : 0.1, directions});
+      const double before = volume.volume();
+      EXPECT_EQ(allocations(volume, lean, 400, 100), 0U) << directions << ' ' << lean;
+      EXPECT_LT(volume.volume(), before - 1000);
+    }
+}
+
+TEST(MoveCarver, BadInputChangesNothing) {
+  Volume volume = Volume::block({kBox, 0.5, "z"});
+  EXPECT_THROW(MoveCarver(volume, cutters::ball(20, 40), {.tolerance = 0}), std::invalid_argument);
+  MoveCarver carver(volume, cutters::ball(20, 40), {});
+  const Pose good = on_spiral(0, 0);
+  EXPECT_THROW(carver.move(good, good, 0), std::invalid_argument);
+  EXPECT_THROW(carver.move(good, {{std::nan(""), 0, 0}, {0, 0, 1}}, 0.001), std::invalid_argument);
+  EXPECT_THROW(carver.move(good, {good.tip, {0, 0, -1}}, 0.001), std::invalid_argument);
+  EXPECT_EQ(volume.volume(), 60 * 60 * 20);
+  EXPECT_GT(carver.move(good, good, 0.001).removed, 0);
+  EXPECT_EQ(carver.move(good, good, 0.001).removed, 0);
+}
+
+}  // namespace
+}  // namespace riffler
