@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from .. import Mesh, Tool, Volume, plan
-from . import scenes
+from .. import Mesh, Tool, Verification, Volume, plan, verify
+from . import scenes, waves
 from .rivals import clock
 
 
@@ -119,6 +119,61 @@ def s500k(moves: int, ramping: bool) -> dict[str, Any]:
     return {"wall_s": wall, "cpu_s": cpu, "removed": removed, "lost": before - volume.volume, "rays": volume.rays}
 
 
+def verified(
+    rows: int, lines: int, tilted: bool, pitch: float, repeats: int = 1, cells: int = 0, tops: str = ""
+) -> dict[str, Any]:
+    """The waves verified, against a part of cells² squares if there are any: median times, what was found, and the
+    memory before and at the peak; the tops of the rays as a file."""
+    program, stock = waves.program(rows, lines, tilted), waves.stock(pitch)
+    part = waves.part(cells) if cells else None
+    rest = waves.REST if cells else None
+    before = clock.peak_bytes()
+    found, times = clock.timed(lambda: verify(program, stock, part, rest_tolerance=rest), repeats)
+    out = {
+        **times,
+        "before_bytes": before,
+        "verify_bytes": clock.peak_bytes(),
+        "removed": float(found.removed.sum()),
+        "passed": found.passed,
+        "probes": found.stats["probes"],
+    }
+    if part:
+        start = time.perf_counter()
+        distance = found.deviation[1]
+        out |= {"map_s": time.perf_counter() - start, "lowest_mm": float(distance.min())}
+        out["triangles"] = len(part.triangles)
+    if tops:
+        np.save(tops, waves.tops(found.volume))
+    return out
+
+
+def verified_stream(rows: int, lines: int, pitch: float, chunk: int) -> dict[str, Any]:
+    """The waves on three axes, verified as they are made, `chunk` rows at a time; 0: made first, and in one piece."""
+    stock, before = waves.stock(pitch), clock.peak_bytes()
+    start = time.perf_counter()
+    program = waves.chunks(rows, lines, False, chunk) if chunk else waves.program(rows, lines, False)
+    found = verify(program, stock)
+    wall = time.perf_counter() - start
+    return {"wall_s": wall, "before_bytes": before, "removed": float(found.removed.sum()), "passed": found.passed}
+
+
+def edited(rows: int, lines: int, pitch: float) -> dict[str, Any]:
+    """The waves verified, one row moved up by 0.1 mm, and verified again, as often as there are places to do so."""
+    poses, stock = waves.poses(rows, lines, False), waves.stock(pitch)
+    kept = Verification(stock)
+    begun = time.perf_counter()
+    whole = kept.run(waves.as_program(poses))
+    whole_s, edits = time.perf_counter() - begun, []
+    for name, row in {"the first row": 0, "a row in the middle": rows // 2, "the last row": rows - 1}.items():
+        poses[row, 2] += 0.1
+        program = waves.as_program(poses)
+        start = time.perf_counter()
+        found = kept.run(program)
+        edits.append({"edit": name, "wall_s": time.perf_counter() - start, **found.stats})
+        edits[-1]["same"] = waves.contents(found) == waves.contents(verify(program, stock))
+    return {"whole_s": whole_s, "slabs": whole.stats["slabs"], "moves": whole.stats["moves"], "edits": edits}
+
+
 def files(folder: str) -> dict[str, Any]:
     """Writes what must not depend on the number of threads: forces, a volume, its mesh, a volume of that mesh."""
     poses = scenes.upright(scenes.cutters()[0].path(turning=False)[:, :3])
@@ -145,6 +200,9 @@ WORK = {
     "drop": drop,
     "s500k": s500k,
     "streamed": streamed,
+    "verified": verified,
+    "verified_stream": verified_stream,
+    "edited": edited,
     "files": files,
 }
 

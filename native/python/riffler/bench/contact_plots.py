@@ -12,7 +12,6 @@ from .plotting import (
     Data,
     colours,
     column,
-    grouped,
     logarithmic,
     pick,
     rows,
@@ -20,6 +19,7 @@ from .plotting import (
     title,
     values,
 )
+from .report import grouped
 
 
 def col(data: Data) -> Figure:

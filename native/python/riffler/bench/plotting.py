@@ -50,11 +50,6 @@ def column(rows: Iterable[Data], key: str, factor: float = 1.0) -> np.ndarray:
     return np.array([row[key] for row in rows], float) * factor
 
 
-def grouped(count: int) -> str:
-    """A large number in groups of three digits."""
-    return f"{count:,}".replace(",", " ")
-
-
 def colours(names: Iterable[Any]) -> dict[Any, tuple[str, str]]:
     """A colour and a mark for each name."""
     return {name: (COLOURS[k % len(COLOURS)], MARKS[k % len(MARKS)]) for k, name in enumerate(names)}

@@ -159,5 +159,10 @@ def megabytes(count: float) -> str:
     return f"{three(count / 1e6)} MB"
 
 
+def grouped(count: float) -> str:
+    """A large number in groups of three digits."""
+    return f"{count:,.0f}".replace(",", " ")
+
+
 def pitch(value: float) -> str:
     return f"{value:g}"

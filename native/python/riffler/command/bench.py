@@ -19,7 +19,7 @@ from .console import Console
 HELP = "measure run time, error and memory"
 NAMES = (
     *("b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "follow", "random", "stl", "decimate"),
-    *("col", "pencil", "drop", "gouge", "nc", "threads", "cluster"),
+    *("col", "pencil", "drop", "gouge", "nc", "threads", "verify", "cluster"),
 )
 
 

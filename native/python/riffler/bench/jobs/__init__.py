@@ -19,6 +19,7 @@ from . import (
     s500k,
     stl,
     threads,
+    verify,
 )  # fmt: skip
 
 JOBS = {
@@ -39,5 +40,6 @@ JOBS = {
     "gouge": gouge,
     "nc": nc,
     "threads": threads,
+    "verify": verify,
     "cluster": cluster,
 }

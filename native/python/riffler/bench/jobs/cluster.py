@@ -6,36 +6,13 @@ from __future__ import annotations
 import time
 from typing import Any
 
-import numpy as np
-
-from ... import Program, Tool, VerifyReport, Volume, cluster, verify
+from ... import Program, VerifyReport, Volume, cluster, verify
 from ..._core import VerifyPlan
-from .. import report
+from .. import report, waves
 from ..measure import Progress, Settings, threads, watched
 from ..report import Column, Report
 
-
-def scene(settings: Settings, tilted: bool) -> tuple[Program, Volume]:
-    """Lines of a ball over waves, 100 × 100 mm, five axes on request; one roughing depth, no part."""
-    rows = (4_000 if settings.quick else 200_000) if tilted else (20_000 if settings.quick else 1_000_000)
-    tool = Tool.ball(6, 25).with_shank([(25, 3, 40, 3)]).with_holder([(40, 12, 90, 20)])
-    lines, k = 250, np.arange(rows)
-    along, line = k / rows * lines % 1, np.floor(k / rows * lines)
-    along = np.where(line % 2, 1 - along, along)
-    x, y = 2 + 96 * along, 2 + 96 * line / (lines - 1)
-    tips = np.column_stack([x, y, -3 + 1.5 * np.sin(x / 9) * np.cos(y / 7)])
-    axes = np.column_stack([0.4 * np.sin(x / 30), 0.4 * np.cos(y / 25), np.ones(rows)]) if tilted else [[0.0, 0, 1]]
-    poses = np.hstack([tips, np.broadcast_to(axes / np.linalg.norm(axes, axis=1)[:, None], (rows, 3))])
-    program = Program(poses, 3000.0, spindle=12000.0, tools={1: tool}, line=k + 1)
-    pitch = 0.5 if settings.quick else 0.1
-    return program, Volume.block([0, 0, -20], [100, 100, 0], pitch, "z")
-
-
-def contents(found: VerifyReport) -> tuple[bytes, ...]:
-    """What must not depend on who did it."""
-    data = found.to_dict()
-    del data["stats"]
-    return repr(data).encode(), np.asarray(found.removed).tobytes(), found.volume.to_bytes()
+LINES = 250
 
 
 def on_workers(client: Any, program: Program, stock: Volume) -> tuple[VerifyReport, dict[str, Any]]:
@@ -102,14 +79,15 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         return out
     for tilted in watched((False, True), progress):
         name = "five axes" if tilted else "three axes"
-        program, stock = scene(settings, tilted)
+        rows = (4_000 if settings.quick else 200_000) if tilted else (20_000 if settings.quick else 1_000_000)
+        program, stock = waves.program(rows, LINES, tilted), waves.stock(0.5 if settings.quick else 0.1)
         alone: dict[int, float] = {}
         for count in (1, 2):
             with threads(count):
                 start, before = time.perf_counter(), time.process_time()
                 found = verify(program, stock)
                 alone[count], used = time.perf_counter() - start, time.process_time() - before
-            expected = contents(found)
+            expected = waves.contents(found)
             speed.row(
                 program=name, rows=len(program), who=f"no cluster, {count} thread{'s' * (count > 1)}",
                 wall_s=alone[count], rate=len(program) / alone[count], speedup=alone[1] / alone[count], same=True,
@@ -126,7 +104,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
                 client.wait_for_workers(count, timeout=60)
                 client.run(eval, cluster.VERSION_OF)  # so that nobody waits for an import
                 found, figures = on_workers(client, program, stock)
-            same = contents(found) == expected
+            same = waves.contents(found) == expected
             out.check(same, f"{name}, {count} workers: other bytes")
             wall, *used = (figures.pop(key) for key in ("wall_s", "client_cpu_s", "workers_cpu_s"))
             speed.row(
