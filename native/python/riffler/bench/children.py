@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import Mesh, Tool, Verification, Volume, plan, verify
+from .. import Mesh, Tool, Verification, VerifyReport, Volume, plan, verify
 from . import scenes, waves
 from .rivals import clock
 
@@ -150,28 +150,32 @@ def verified(
 def verified_stream(rows: int, lines: int, pitch: float, chunk: int) -> dict[str, Any]:
     """The waves on three axes, verified as they are made, `chunk` rows at a time; 0: made first, and in one piece."""
     stock, before = waves.stock(pitch), clock.peak_bytes()
-    start = time.perf_counter()
-    program = waves.chunks(rows, lines, False, chunk) if chunk else waves.program(rows, lines, False)
-    found = verify(program, stock)
-    wall = time.perf_counter() - start
-    return {"wall_s": wall, "before_bytes": before, "removed": float(found.removed.sum()), "passed": found.passed}
+
+    def work() -> VerifyReport:
+        return verify(waves.chunks(rows, lines, False, chunk) if chunk else waves.program(rows, lines, False), stock)
+
+    found, times = clock.timed(work, 1)
+    peak = clock.peak_bytes()  # before `found.removed`, a copy
+    lost = stock.volume - found.volume.volume
+    off = abs(float(found.removed.sum()) - lost) / lost
+    return {**times, "before_bytes": before, "verify_bytes": peak, "passed": found.passed, "off": off}
 
 
 def edited(rows: int, lines: int, pitch: float) -> dict[str, Any]:
-    """The waves verified, one row moved up by 0.1 mm, and verified again, as often as there are places to do so."""
+    """The waves verified, and again after one row was moved up by 0.1 mm: the first, one in the middle, the last."""
     poses, stock = waves.poses(rows, lines, False), waves.stock(pitch)
     kept = Verification(stock)
-    begun = time.perf_counter()
-    whole = kept.run(waves.as_program(poses))
-    whole_s, edits = time.perf_counter() - begun, []
+    program = waves.as_program(poses)
+    whole, times = clock.timed(lambda: kept.run(program), 1)
+    out = {"whole_s": times["cpu_s"], "whole_bytes": clock.peak_bytes(), **whole.stats}
+    edits = []
     for name, row in {"the first row": 0, "a row in the middle": rows // 2, "the last row": rows - 1}.items():
         poses[row, 2] += 0.1
         program = waves.as_program(poses)
-        start = time.perf_counter()
-        found = kept.run(program)
-        edits.append({"edit": name, "wall_s": time.perf_counter() - start, **found.stats})
-        edits[-1]["same"] = waves.contents(found) == waves.contents(verify(program, stock))
-    return {"whole_s": whole_s, "slabs": whole.stats["slabs"], "moves": whole.stats["moves"], "edits": edits}
+        found, times = clock.timed(lambda program=program: kept.run(program), 1)
+        same = waves.contents(found) == waves.contents(verify(program, stock))
+        edits.append({"edit": name, **times, **found.stats, "same": same})
+    return {**out, "edits": edits}
 
 
 def files(folder: str) -> dict[str, Any]:
