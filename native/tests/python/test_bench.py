@@ -27,16 +27,19 @@ from riffler.bench import (
     scenes,
     swept,
     valleys,
+    waves,
 )
 from riffler.bench.jobs import JOBS, b5x, force, gouge, nc
 from riffler.bench.jobs import pencil as pen
+from riffler.bench.jobs import verify as verifying
 from riffler.command import bench as command
+from verify_reference import HeightMap
 
 PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
 PLOTS = {
     *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh"),
-    *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge", "nc"),
+    *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge", "nc", "verify"),
 }
 
 
@@ -326,6 +329,75 @@ def test_the_judge_of_code_sees_blocks_that_are_wrong(tmp_path, post):
     other = {"linuxcnc-xyzac": "linuxcnc-xyzbc", "linuxcnc-xyzbc": "tcp", "tcp": "linuxcnc-xyzac"}[post]
     with pytest.raises(ValueError, match="no block ends at row"):
         nc_judge.between(joints, poses, nc.KINEMATICS[other])
+
+
+def test_verification_is_measured_beside_its_error(quick):
+    for program in ("three axes", "five axes"):
+        coarse, fine = (row for row in rows(quick, "verify", "pitch") if row["program"] == program)
+        assert coarse["pitch"] == 2 * fine["pitch"] and 0 < coarse["verify_bytes"] < fine["verify_bytes"]
+        assert 0 < fine["rms_mm"] < coarse["rms_mm"] / 2 and fine["max_mm"] < coarse["max_mm"]
+        for row in (coarse, fine):
+            assert row["at_rays_mm"] < (0.01 if program == "five axes" else 1e-8) and row["cpu_s"] > 0
+            assert abs(row["removed_over"]) < 1e-3 and 0 < row["uncertain"] < 1e-3
+    for row in rows(quick, "verify", "gouges"):
+        assert row["found"] == row["gouges"] == 3 and row["error_mm"] < row["sag_mm"] + 0.01 * verifying.DIP
+    table = rows(quick, "verify", "speed")
+    assert [row["threads"] for row in table] == [1, 2] * 4 + [1, 1] and all(row["rate"] > 100 for row in table)
+    held = rows(quick, "verify", "holder")
+    assert [row["hits"] > 0 for row in held] == [False, False, True] and held[2]["hits"] >= held[2]["rows"] - 1
+    edits = rows(quick, "verify", "edit")
+    assert len(edits) == 4 and all(row["same"] and row["moves"] < edits[0]["moves"] / 5 for row in edits[1:])
+    short, long = (row for row in rows(quick, "verify", "memory") if row["given"] == "as a stream")
+    # 16 bytes a block, and the volume that is cut in both.
+    assert long["verify_bytes"] - short["verify_bytes"] < 60 * (long["rows"] - short["rows"]) + 4e6
+
+
+def test_what_a_ball_leaves_is_what_a_height_map_says():
+    rng = np.random.default_rng(2)
+    tips = np.column_stack([rng.uniform(-4, 34, (40, 2)), rng.uniform(-9, 1, 40)])
+    tips[10:14, :2] = tips[10, :2]  # plunges and retracts
+    heights = HeightMap([0, 0, -waves.DEEP], [30, 20, 0], 0.5)
+    for a, b in itertools.pairwise(tips):
+        heights.cut((waves.RADIUS, waves.RADIUS), a, b)
+    points = np.stack(np.broadcast_arrays(heights.x, heights.y), -1).reshape(-1, 2)
+    left = waves.left(scenes.upright(tips), points).reshape(heights.z.shape)
+    np.testing.assert_allclose(left, heights.z, atol=1e-7)
+    # Turning about a tip that moves: balls at very many places of the way.
+    turning = np.array([[10.0, 8, -4, *scenes.unit([0.5, -0.2, 1])], [14.0, 11, -5, 0, 0, 1]])
+    centres = (poses := swept.dense(turning, 1e-3, 1e-3)[0])[:, :3] + waves.RADIUS * poses[:, 3:]
+    near = points[np.linalg.norm(points - [12, 9.5], axis=1) < 4]
+    square = waves.RADIUS**2 - ((near[:, None] - centres[:, :2]) ** 2).sum(-1)
+    low = np.where(square >= 0, centres[:, 2] - np.sqrt(np.maximum(square, 0)), 0).min(1)
+    np.testing.assert_allclose(waves.left(turning, near), np.minimum(low, 0), atol=3e-3)
+    deep = square.max(1) > 1  # where the ball is not steep
+    np.testing.assert_allclose(waves.left(turning, near)[deep], low[deep], atol=2e-6)
+
+
+def test_the_volume_over_what_a_ball_leaves_is_known():
+    groove = scenes.upright(np.array([[-9.0, 50.3, -3], [109.0, 50.3, -3]]))
+    exact = waves.Exact.of(groove, 150)
+    assert exact.removed == pytest.approx(np.pi * 9 / 2 * waves.SIZE, abs=4 * exact.uncertain)
+    assert 0 < exact.uncertain < 2
+    # A surface that is bilinear already has no error; one that is too high has that.
+    flat = waves.Exact(exact.points, exact.points @ [0.1, -0.2], 0, 0)
+    at = (np.arange(50) + 0.5) * 2
+    plane = 0.1 * at[:, None] - 0.2 * at[None] + 0.25
+    np.testing.assert_allclose(flat.between(plane, 2.0), 0.25, atol=1e-12)
+
+
+def test_waves_are_the_same_in_pieces_and_their_part_is_closed():
+    whole = waves.poses(700, 20, True)
+    pieces = [program.poses for program in waves.chunks(700, 20, True, 100)]
+    assert all(np.array_equal(a[-1], b[0]) for a, b in itertools.pairwise(pieces))
+    np.testing.assert_array_equal(np.concatenate([pieces[0], *(p[1:] for p in pieces[1:])]), whole)
+    np.testing.assert_allclose(
+        whole[:, :3] + waves.RADIUS * whole[:, 3:],
+        waves.poses(700, 20, False)[:, :3] + [0, 0, waves.RADIUS],
+        atol=1e-12,
+    )
+    audit = waves.part(40).audit()
+    assert audit["components"] == 1 and audit["volume"] > 0
+    assert not any(audit[name] for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds"))
 
 
 def test_haptic_work_does_not_follow_the_grid(quick):
