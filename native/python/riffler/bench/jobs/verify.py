@@ -166,13 +166,13 @@ def speed(out: Report, settings: Settings, progress: Progress) -> None:
         out.check(figures["passed"], f"speed, {name}: something was found")
     for figures in (carving(straight, pitch), stamping(straight, pitch, 500 if settings.quick else 3_000)):
         table.row(threads=1, rate=figures["rows"] / figures["cpu_s"], **figures)
-    loop = Yardstick(0.5 if settings.quick else 0.1, settings.quick).alone()
+    loop = Yardstick(pitch, settings.quick).alone()
     table.notes.append(
-        "Rows as far apart as the moves are long. Memory is a whole process with Python, numpy and the program. "
-        "Cores: processor time that two threads of hashing got a second, just before. The "
-        "last two rows calibrate: cutting alone, and the same capsules on a plain height map in numpy, which asks "
+        "Lines are as far apart as moves are long: 0.1 mm on three axes, 0.3 mm on five. Memory is a whole process's, "
+        "with Python, numpy and the program. Cores: processor time a second that two threads of hashing got just before. "
+        "The last two rows calibrate: cutting alone, and the same capsules on a plain height map in numpy, which asks "
         f"nothing about shank, holder or part. B200's yardstick took {report.micro(loop / scenes.MOVES)} a move of "
-        f"0.4 mm at h = {0.5 if settings.quick else 0.1:g} just then."
+        f"0.4 mm at h = {pitch:g} just then."
     )
 
 
@@ -311,5 +311,6 @@ def memory(out: Report, settings: Settings, progress: Progress) -> None:
         out.check(figures["passed"], f"{what}: something was found")
         out.check(figures["off"] < 1e-9, f"{what}: removed is {figures['off']} off what the volume lost")
     table.notes.append(
-        "Of a stream its removed volumes and seconds are kept, 16 bytes a block; the volume comes on top of that."
+        "Of a stream its removed volumes and seconds are kept, 16 bytes a block, and 8 more while one of the two "
+        "arrays is moved to grow; the volume that is cut comes on top of that."
     )
