@@ -169,10 +169,10 @@ def speed(out: Report, settings: Settings, progress: Progress) -> None:
     loop = Yardstick(pitch, settings.quick).alone()
     table.notes.append(
         "Lines are as far apart as moves are long: 0.1 mm on three axes, 0.3 mm on five. Memory is a whole process's, "
-        "with Python, numpy and the program. Cores: processor time a second that two threads of hashing got just before. "
-        "The last two rows calibrate: cutting alone, and the same capsules on a plain height map in numpy, which asks "
-        f"nothing about shank, holder or part. B200's yardstick took {report.micro(loop / scenes.MOVES)} a move of "
-        f"0.4 mm at h = {pitch:g} just then."
+        "with Python, numpy and the program. Cores: processor time a second that two threads of hashing had just "
+        "before. The last two rows calibrate: cutting alone, and the same capsules on a plain height map in numpy, "
+        "which asks nothing about shank, holder or part. B200's yardstick took "
+        f"{report.micro(loop / scenes.MOVES)} a move of 0.4 mm at h = {pitch:g} just then."
     )
 
 
