@@ -1,0 +1,102 @@
+#include "haptics/coupling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "haptics/settings.hpp"
+
+namespace riffler {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// A unit vector square to `a`, from the coordinate axis that is farthest from it.
+Vec3 any_square_to(const Vec3& a) {
+  const Vec3 m = glm::abs(a);
+  const Vec3 far = m.x <= m.y && m.x <= m.z ? Vec3(1, 0, 0) : m.y <= m.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+  return glm::normalize(glm::cross(a, far));
+}
+
+/// Shortest turn from unit vector to unit vector; by atan2, so 1e-12 rad is as good as 3.
+Vec3 turn(const Vec3& from, const Vec3& to) {
+  const Vec3 c = glm::cross(from, to);
+  const double s = glm::length(c), angle = std::atan2(s, glm::dot(from, to));
+  if (s > 0) return angle / s * c;
+  return angle > 1 ? kPi * any_square_to(from) : Vec3(0);
+}
+
+/// Rotation vector of a rotation matrix, by its quaternion, of which the largest component is found first (Shepperd
+/// 1978).
+Vec3 rotation_vector(const Mat3& r) {
+  const double squares[4] = {1 + r[0][0] + r[1][1] + r[2][2], 1 + r[0][0] - r[1][1] - r[2][2],
+                             1 - r[0][0] + r[1][1] - r[2][2], 1 - r[0][0] - r[1][1] + r[2][2]};
+  const auto largest = std::max_element(squares, squares + 4) - squares;
+  const Vec3 odd(r[1][2] - r[2][1], r[2][0] - r[0][2], r[0][1] - r[1][0]);
+  double w = squares[0];
+  Vec3 v = odd;
+  if (largest > 0) {
+    const int i = static_cast<int>(largest) - 1, j = (i + 1) % 3, k = (i + 2) % 3;
+    w = odd[i];
+    v[i] = squares[largest], v[j] = r[i][j] + r[j][i], v[k] = r[i][k] + r[k][i];
+  }
+  if (w < 0) w = -w, v = -v;
+  const double s = glm::length(v);
+  return s > 0 ? 2 * std::atan2(s, w) / s * v : Vec3(0);
+}
+
+/// Spring force over stiffness, and energy over stiffness, at a stretch of `x` that is at most `end`: grows up to
+/// `limit`, stays, and, if `end` is finite, falls again over the last `limit`.
+struct Law {
+  double force, energy;
+};
+Law spring(double x, double limit, double end) {
+  const double fall = std::max(0.0, x - (end - limit)), flat = std::max(0.0, x - limit), rise = std::min(x, limit);
+  return {rise - fall, 0.5 * (rise * rise - fall * fall) + limit * flat};
+}
+
+Vec3 along(const Vec3& v, double length, double x) {
+  return length > 0 ? x / length * v : Vec3(0);
+}
+
+}  // namespace
+
+void CouplingSettings::validate() const {
+  require_not_negative("stiffness", stiffness);
+  require_not_negative("damping", damping);
+  require_not_negative("turn_stiffness", turn_stiffness);
+  require_not_negative("turn_damping", turn_damping);
+  require_positive("max_stretch", max_stretch);
+  require_positive("max_turn", max_turn);
+  require_between("max_turn", max_turn, 0, kPi / 2);
+}
+
+double CouplingSettings::capacity(double longest) const {
+  return stiffness * spring(longest, max_stretch, std::numeric_limits<double>::infinity()).energy +
+         turn_stiffness * spring(kPi, max_turn, kPi).energy;
+}
+
+Stretch stretch(const Pose& device, const Pose& tool) {
+  return {device.tip - tool.tip, turn(tool.axis, device.axis)};
+}
+
+Stretch stretch(const Placement& device, const Placement& tool) {
+  return {device.point - tool.point, rotation_vector(device.axes * glm::transpose(tool.axes))};
+}
+
+CouplingWrenches couple(const CouplingSettings& settings, const Stretch& stretch, const Twist& device,
+                        const Twist& tool) {
+  const double length = glm::length(stretch.translation), angle = std::min(glm::length(stretch.rotation), kPi);
+  const Law pull = spring(length, settings.max_stretch, std::numeric_limits<double>::infinity());
+  const Law turn = spring(angle, settings.max_turn, kPi);
+  const Twist relative = device - tool;
+  // On the tool, towards the device. About the device's point the force has no moment: it points along the line there.
+  const Wrench on_tool{
+      along(stretch.translation, length, settings.stiffness * pull.force) + settings.damping * relative.linear,
+      along(stretch.rotation, angle, settings.turn_stiffness * turn.force) + settings.turn_damping * relative.angular};
+  return {-on_tool, on_tool, settings.stiffness * pull.energy + settings.turn_stiffness * turn.energy};
+}
+
+}  // namespace riffler

@@ -1,0 +1,87 @@
+#include "haptics/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler {
+
+namespace {
+
+/// Largest factor ≤ 1 with factor · value ≤ limit.
+double factor(double value, double limit) {
+  return value <= limit ? 1 : limit / value;
+}
+
+double ramp_down(double speed, double full, double none) {
+  if (speed <= full) return 1;
+  return speed < none ? (none - speed) / (none - full) : 0;  // 0 for NaN
+}
+
+}  // namespace
+
+void LimitSettings::validate() const {
+  require_not_negative("wrench.linear", wrench.linear);
+  require_not_negative("wrench.angular", wrench.angular);
+  require_not_negative("rate.linear", rate.linear);
+  require_not_negative("rate.angular", rate.angular);
+  require_not_negative("power", power);
+  require_not_negative("full_speed.linear", full_speed.linear);
+  require_not_negative("full_speed.angular", full_speed.angular);
+  require_positive("no_force_at.linear", no_force_at.linear);
+  require_positive("no_force_at.angular", no_force_at.angular);
+  if (no_force_at.linear <= full_speed.linear)
+    throw std::invalid_argument("no_force_at.linear must be above full_speed.linear");
+  if (no_force_at.angular <= full_speed.angular)
+    throw std::invalid_argument("no_force_at.angular must be above full_speed.angular");
+}
+
+double speed_gain(const LimitSettings& s, const Twist& grip) {
+  return std::min(ramp_down(glm::length(grip.linear), s.full_speed.linear, s.no_force_at.linear),
+                  ramp_down(glm::length(grip.angular), s.full_speed.angular, s.no_force_at.angular));
+}
+
+double magnitude_gain(const LimitSettings& s, const Actuators& actuators, const Wrench& w) {
+  double gain =
+      std::min(factor(glm::length(w.force), s.wrench.linear), factor(glm::length(w.torque), s.wrench.angular));
+  for (std::size_t i = 0; i < actuators.count; ++i) {
+    double effort = 0;
+    for (int k = 0; k < kCoordinates; ++k) effort += actuators.rows[i][static_cast<std::size_t>(k)] * w[k];
+    gain = std::min(gain, factor(std::abs(effort), actuators.most[i]));
+  }
+  return gain;
+}
+
+Wrench slewed(const LimitSettings& s, const Wrench& previous, const Wrench& wanted, double dt) {
+  const Wrench change = wanted - previous;
+  const double time = dt > 0 ? dt : 0;
+  const double share = std::min(factor(glm::length(change.force), s.rate.linear * time),
+                                factor(glm::length(change.torque), s.rate.angular * time));
+  return share == 1 ? wanted : previous + share * change;
+}
+
+double power_gain(const LimitSettings& s, const Wrench& w, const Twist& grip) {
+  return factor(power(w, grip), s.power);
+}
+
+Wrench limited(const LimitSettings& s, const Capability& device, const Actuators& actuators, const Wrench& previous,
+               const Wrench& wanted, const Twist& grip, double dt, LimitReport* report) {
+  LimitReport r;
+  Wrench w = renderable(device, wanted);
+  r.unrendered = wanted - w;
+  r.speed = speed_gain(s, grip);
+  r.magnitude = magnitude_gain(s, actuators, w);
+  w = r.speed * r.magnitude * w;
+  const Wrench target = w;
+  // Between two wrenches within the limits every one is, as the limits are convex. But the pose has changed since the
+  // previous one, and with it what its actuators bear, what the device can push, and how fast it moves: again.
+  w = renderable(device, slewed(s, previous, target, dt));
+  r.slewed = !(w == target);
+  LimitSettings slow = s;
+  slow.wrench = {r.speed * s.wrench.linear, r.speed * s.wrench.angular};
+  w = magnitude_gain(slow, actuators, w) * w;
+  r.power = power_gain(s, w, grip);
+  if (report) *report = r;
+  return r.power * w;
+}
+
+}  // namespace riffler

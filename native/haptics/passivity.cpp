@@ -1,0 +1,97 @@
+#include "haptics/passivity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler {
+
+namespace {
+
+void require_bounds(const char* linear, const char* angular, const Bounds& b) {
+  require_not_negative(linear, b.linear), require_not_negative(angular, b.angular);
+}
+
+}  // namespace
+
+void PassivitySettings::validate() const {
+  require_positive("period", period);
+  require_between("jitter", jitter, 0, period);
+  require_bounds("acceleration.linear", "acceleration.angular", acceleration);
+  require_bounds("resolution.linear", "resolution.angular", resolution);
+  require_bounds("max_damping.linear", "max_damping.angular", max_damping);
+  require_bounds("device_damping.linear", "device_damping.angular", device_damping);
+  require_bounds("device_friction.linear", "device_friction.angular", device_friction);
+  require_not_negative("reserve", reserve);
+  require_not_negative("storage", storage);
+  if (storage < reserve) throw std::invalid_argument("storage must be at least reserve");
+}
+
+Passivity::Passivity(const PassivitySettings& settings) : settings_(settings) {
+  settings.validate();
+  reset();
+}
+
+void Passivity::reset() {
+  energy_ = settings_.reserve;
+  rate_ = {};
+  last_dt_ = settings_.period;
+  absorbed_ = {};
+  kept_ = 1, damped_ = 0;
+}
+
+/// What the device itself took from the hand, at the least. Damping: among all motions over the displacement the steady
+/// one loses the least (Cauchy and Schwarz). Friction: the way is at least the displacement, which is known to one
+/// step.
+double Passivity::dissipated(const Twist& displacement, double dt) const {
+  double sum = 0;
+  for (int k = 0; k < kCoordinates; ++k) {
+    const double way = std::max(0.0, std::abs(displacement[k]) - settings_.resolution[k]);
+    sum += settings_.device_friction[k] * way + (dt > 0 ? settings_.device_damping[k] * way * way / dt : 0);
+  }
+  return sum;
+}
+
+void Passivity::observe(const Wrench& held, const Twist& displacement, double dt) {
+  if (!finite(held) || !finite(displacement) || !std::isfinite(dt)) {
+    rate_ = {};
+    return;
+  }
+  for (int k = 0; k < kCoordinates; ++k) absorbed_[static_cast<std::size_t>(k)] -= held[k] * displacement[k];
+  energy_ += dissipated(displacement, dt) - power(held, displacement);
+  // Credit is forgotten, debt never is. What is not held by an object was lost for good, to friction or to cutting, and
+  // must not pay for a later fault: no object holds more than `storage`, and none anything where nothing is felt.
+  energy_ = std::min(energy_, held == Wrench{} ? settings_.reserve : settings_.storage);
+  if (dt > 0) rate_ = 1 / dt * displacement, last_dt_ = dt;
+}
+
+Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
+  const double hold = settings_.period, longest = hold + settings_.jitter;
+  // In the device's coordinates, where the damping of one is rendered by that one alone.
+  const auto local = [&](const Vec3& v) { return v * device.axes; };
+  const Wrench force{local(wanted.force), local(wanted.torque)};
+  const Twist rate{local(rate_.linear), local(rate_.angular)};
+
+  // Largest energy that `wanted` can deliver during the next hold, and smallest that full damping takes from the hand.
+  double delivered = 0, taken = 0;
+  Wrench damping;
+  for (int k = 0; k < kCoordinates; ++k) {
+    // From the mean rate of the last tick to that of the next is half of both; and either end of either displacement is
+    // known to half a step.
+    const double unsure = settings_.acceleration[k] * longest * (longest + last_dt_) / 2 +
+                          settings_.resolution[k] * (1 + hold / last_dt_) + settings_.jitter * std::abs(rate[k]);
+    delivered += force[k] * rate[k] * hold + std::abs(force[k]) * unsure;
+    const double sure = std::abs(rate[k]) * hold - unsure;
+    if (!device.push[static_cast<std::size_t>(k)] || sure <= 0) continue;
+    damping[k] = -settings_.max_damping[k] * rate[k];
+    taken += std::abs(damping[k]) * sure;
+  }
+  // The delivery of a sum is at most the sum of deliveries, so kept · delivered − damped · taken bounds it.
+  kept_ = 1, damped_ = 0;
+  if (!(delivered > energy_)) return wanted;
+  if (taken > 0) damped_ = std::min(1.0, (delivered - energy_) / taken);
+  if (delivered > 0) kept_ = std::clamp((energy_ + damped_ * taken) / delivered, 0.0, 1.0);
+  const Wrench injected{device.axes * damping.force, device.axes * damping.torque};
+  return kept_ * wanted + damped_ * injected;
+}
+
+}  // namespace riffler

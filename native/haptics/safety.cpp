@@ -1,0 +1,147 @@
+#include "haptics/safety.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler {
+
+namespace {
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+}  // namespace
+
+void SafetySettings::validate() const {
+  require_positive("ramp", ramp);
+  require_positive("fresh", fresh);
+  require_positive("fade", fade);
+  require_not_negative("rest", rest);
+  require_positive("overspeed.linear", overspeed.linear);
+  require_positive("overspeed.angular", overspeed.angular);
+  require_positive("jump.linear", jump.linear);
+  require_positive("jump.angular", jump.angular);
+  require_positive("redundancy", redundancy);
+  require_positive("wrench_ceiling.linear", wrench_ceiling.linear);
+  require_positive("wrench_ceiling.angular", wrench_ceiling.angular);
+}
+
+Safety::Safety(const SafetySettings& settings) : settings_(settings) {
+  settings.validate();
+}
+
+double Safety::freshness(const Observation& now) const {
+  return std::clamp(1 - (std::max(now.age, now.dt) - settings_.fresh) / settings_.fade, 0.0, 1.0);
+}
+
+/// The first check that fails, in the order of Cause.
+Safety::Finding Safety::check(const Observation& now) const {
+  if (!(now.dt >= 0) || std::isinf(now.dt)) return {Cause::BadTime, now.dt};
+  if (!finite(now.pose.tip) || !finite(now.pose.axis) || !finite(now.twist) || !std::isfinite(now.redundancy) ||
+      !std::isfinite(now.age))
+    return {Cause::NotFinite, 0};
+  if (now.device_fault) return {Cause::DeviceFault, static_cast<double>(now.device_fault)};
+  // Before it is homed a device has no pose that could be checked.
+  if (state_ == ForceState::Homing) return {Cause::None, 0};
+  if (!now.homed) return {Cause::NotHomed, 0};
+  if (std::abs(now.redundancy) > settings_.redundancy) return {Cause::Redundancy, now.redundancy};
+  if (const Finding motion = check_motion(now); motion.cause != Cause::None) return motion;
+  if (freshness(now) > 0) return {Cause::None, 0};
+  return now.dt >= now.age ? Finding{Cause::LateTick, now.dt} : Finding{Cause::Stale, now.age};
+}
+
+Safety::Finding Safety::check_motion(const Observation& now) const {
+  if (placed_) {
+    // After a late tick the hand may have gone further, but not at a speed that the next check refuses.
+    const double way = glm::length(now.pose.tip - last_.tip), turn = angle_between(now.pose.axis, last_.axis);
+    if (way > settings_.jump.linear + settings_.overspeed.linear * now.dt) return {Cause::Jump, way};
+    if (turn > settings_.jump.angular + settings_.overspeed.angular * now.dt) return {Cause::Jump, turn};
+  }
+  const double speed = glm::length(now.twist.linear), spin = glm::length(now.twist.angular);
+  const double share = speed / settings_.overspeed.linear, spin_share = spin / settings_.overspeed.angular;
+  if (!(std::max(share, spin_share) < 1)) return {Cause::Overspeed, share >= spin_share ? speed : spin};
+  return {Cause::None, 0};
+}
+
+ForceState Safety::observe(const Observation& now) {
+  permitted_ = false;
+  const bool forward = now.dt > 0 && std::isfinite(now.dt);
+  if (forward) time_ += now.dt;
+  if (state_ == ForceState::Off) {
+    placed_ = false;
+    return state_;
+  }
+  const Finding finding = check(now);
+  if (finite(now.pose.tip) && finite(now.pose.axis)) last_ = now.pose, placed_ = now.homed;
+  if (finding.cause != Cause::None) {
+    trip(finding);
+    return state_;
+  }
+  if (now.homed) apply(ForceEvent::Homed);
+  rest(now.dt);
+  let_go(now);
+  if (lets_force_through(state_)) {
+    move_gain(now.dt, freshness(now));
+    permitted_ = true;
+  }
+  return state_;
+}
+
+/// Records a finding and takes the force away. While tripped, a finding only begins the rest anew, unless it is graver.
+void Safety::trip(const Finding& finding) {
+  rested_ = 0;
+  const bool news = state_ != ForceState::Tripped || (heals(cause_) && !heals(finding.cause));
+  if (!news) return;
+  log_.add({time_, state_, finding.cause, finding.value});
+  cause_ = finding.cause;
+  apply(ForceEvent::Trip);
+}
+
+void Safety::rest(double dt) {
+  if (state_ != ForceState::Tripped) return;
+  rested_ += dt;
+  if (heals(cause_) && rested_ >= settings_.rest) apply(ForceEvent::Rested);
+}
+
+/// The dead-man switch. Letting go is no fault, so there is no rest to wait for: pressing again begins the ramp.
+void Safety::let_go(const Observation& now) {
+  if (!now.dead_man && lets_force_through(state_)) {
+    log_.add({time_, state_, Cause::NoDeadMan, 0});
+    cause_ = Cause::NoDeadMan;
+  }
+  apply(now.dead_man ? ForceEvent::Press : ForceEvent::Release);
+}
+
+/// Up along the ramp, down at once to what freshness leaves.
+void Safety::move_gain(double dt, double freshness) {
+  cause_ = Cause::None;
+  // A late tick is no reason to climb faster.
+  gain_ = std::min({1.0, gain_ + std::min(dt, settings_.fresh) / settings_.ramp, freshness});
+  if (freshness < 1) apply(ForceEvent::Late);
+  if (gain_ >= 1) apply(ForceEvent::Risen);
+}
+
+void Safety::apply(ForceEvent event) {
+  state_ = next(state_, event);
+  if (!lets_force_through(state_)) gain_ = 0, permitted_ = false;
+  if (state_ == ForceState::Off) cause_ = Cause::None;
+}
+
+SafeWrench Safety::release(const Wrench& wanted) {
+  const bool permitted = permitted_;
+  permitted_ = false;
+  if (!permitted) return {};
+  if (!finite(wanted)) {
+    trip({Cause::BadWrench, 0});
+    return {};
+  }
+  const double force = glm::length(wanted.force), torque = glm::length(wanted.torque);
+  if (!(force <= settings_.wrench_ceiling.linear) || !(torque <= settings_.wrench_ceiling.angular)) {
+    trip({Cause::Excess, force > settings_.wrench_ceiling.linear ? force : torque});
+    return {};
+  }
+  return SafeWrench(gain_ * wanted);
+}
+
+}  // namespace riffler

@@ -1,0 +1,114 @@
+// The gate through which every force goes. A wrench becomes a SafeWrench here or nowhere, and only in a tick in which
+// every check has passed; whoever drives a device takes a SafeWrench and nothing else.
+//
+// One tick, with the parts of this folder:
+//
+//   safety.observe({.dt = dt, .age = age, .pose = grip, .twist = twist, …});   // checks; may trip
+//   passivity.observe(held.wrench(), displacement, dt);                        // what the last hold did
+//   const auto [on_grip, on_tool, energy] = couple(coupling, stretch(grip, tool), twist, tool_twist);
+//   tool = …;                                                                  // follows on_tool, or is held by
+//   contact Wrench w = limited(limits, capability, actuators, held.wrench(), on_grip, twist, dt); w =
+//   passivity.control(w, capability); w = magnitude_gain(limits, actuators, w) * w;                              //
+//   damping was added held = safety.release(w);                                                  // gain of ramp and
+//   fade; the last checks device.write(held);
+//
+// After `control` a wrench may only shrink, as it does in the last two steps: the account that bears a wrench bears
+// any part of it. All wrenches and twists of a tick are about the grip's point.
+#pragma once
+
+#include <array>
+
+#include "geom/pose.hpp"
+#include "haptics/settings.hpp"
+#include "haptics/trip_log.hpp"
+#include "haptics/wrench.hpp"
+
+namespace riffler {
+
+struct SafetySettings {
+  double ramp = 0.5;           ///< s from nothing to all of the force, at the start and after every interruption
+  double fresh = 3e-3;         ///< s: data of this age, and ticks this late, are as good as new
+  double fade = 17e-3;         ///< s: then the force falls on a straight line, to nothing and a trip at fresh + fade
+  double rest = 0.5;           ///< s for which all checks must pass after a trip that heals by itself
+  Bounds overspeed{1000, 20};  ///< mm/s, rad/s
+  Bounds jump{3, 0.1};         ///< mm, rad from one tick to the next, beyond what the twist explains
+  double redundancy = 0.5;     ///< mm between two measurements of one length
+  Bounds wrench_ceiling{20, 1200};  ///< N, N·mm: above the limits; a wrench over it is a fault
+
+  /// std::invalid_argument naming the field.
+  void validate() const;
+};
+
+/// What is known at the start of a tick.
+struct Observation {
+  double dt = 0;   ///< s since the last tick
+  double age = 0;  ///< s since the newest report was measured
+  Pose pose{};     ///< of the grip
+  Twist twist{};
+  double redundancy = 0;      ///< mm; 0 for a device that measures nothing twice
+  bool homed = false;         ///< the device knows its pose
+  bool dead_man = false;      ///< the switch is held
+  unsigned device_fault = 0;  ///< the device's code; 0 is none
+};
+
+/// A wrench that has passed the gate. The default is zero.
+class SafeWrench {
+ public:
+  SafeWrench() = default;
+  const Wrench& wrench() const { return wrench_; }
+
+ private:
+  friend class Safety;
+  explicit SafeWrench(const Wrench& w) : wrench_(w) {}
+  Wrench wrench_;
+};
+
+class Safety {
+ public:
+  /// Validates the settings.
+  explicit Safety(const SafetySettings& settings);
+
+  /// All checks of the tick, before anything is computed from its data. Returns the state after them.
+  ForceState observe(const Observation& now);
+
+  /// `wanted` times the gain; zero unless `observe` was called since the last release, passed, and lets force through.
+  /// A wrench that is not finite or over the ceiling trips, and is zero.
+  SafeWrench release(const Wrench& wanted);
+
+  void switch_on() { apply(ForceEvent::SwitchOn); }
+  void switch_off() { apply(ForceEvent::SwitchOff); }
+  /// Clears a trip that does not heal by itself; the device must report itself homed again.
+  void reset() { apply(ForceEvent::Reset); }
+
+  ForceState state() const { return state_; }
+  double gain() const { return gain_; }
+  /// Of the last trip or stop; None once force is let through again.
+  Cause cause() const { return cause_; }
+  /// Trips, and stops by the dead-man switch. To be read by other threads.
+  const TripLog& log() const { return log_; }
+
+ private:
+  struct Finding {
+    Cause cause;
+    double value;
+  };
+  Finding check(const Observation& now) const;
+  Finding check_motion(const Observation& now) const;
+  /// In [0, 1]: what the age of the data, or the lateness of the tick, leaves.
+  double freshness(const Observation& now) const;
+  void apply(ForceEvent event);
+  void trip(const Finding& finding);
+  void let_go(const Observation& now);
+  void rest(double dt);
+  void move_gain(double dt, double freshness);
+
+  SafetySettings settings_;
+  ForceState state_ = ForceState::Off;
+  Cause cause_ = Cause::None;
+  double gain_ = 0, rested_ = 0, time_ = 0;
+  bool permitted_ = false, placed_ = false;
+  Pose last_{};
+  TripLog log_;
+};
+
+}  // namespace riffler
