@@ -3,14 +3,14 @@
 //
 // One tick, with the parts of this folder:
 //
-//   safety.observe({.dt = dt, .age = age, .pose = grip, .twist = twist, …});   // checks; may trip
+//   if (!lets_force_through(safety.observe({.dt = dt, .age = age, .pose = grip, …}))) w = {};   // checks; may trip
 //   passivity.observe(held.wrench(), displacement, dt);                        // what the last hold did
 //   const auto [on_grip, on_tool, energy] = couple(coupling, stretch(grip, tool), twist, tool_twist);
 //   tool = …;                                                                  // follows on_tool, or is held by
-//   contact Wrench w = limited(limits, capability, actuators, held.wrench(), on_grip, twist, dt); w =
-//   passivity.control(w, capability); w = magnitude_gain(limits, actuators, w) * w;                              //
-//   damping was added held = safety.release(w);                                                  // gain of ramp and
-//   fade; the last checks device.write(held);
+//   contact w = limited(limits, capability, actuators, w, on_grip, twist, dt);         // the rates: from the last w,
+//   ungated w = passivity.control(w, capability); w = magnitude_gain(limits, actuators, w) * w; // damping was added
+//   held = safety.release(w);                                                  // gain of ramp and fade; the last
+//   checks device.write(held);
 //
 // After `control` a wrench may only shrink, as it does in the last two steps: the account that bears a wrench bears
 // any part of it. All wrenches and twists of a tick are about the grip's point.

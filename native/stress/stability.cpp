@@ -1,0 +1,168 @@
+#include "stress/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace riffler::stress {
+
+namespace {
+
+constexpr double kLever = 20;  // mm: makes rad comparable with mm
+
+Column scaled(double s, Column c) {
+  for (double& x : c) x *= s;
+  return c;
+}
+
+/// Smallest stiffness in [1e-6, 1e6] for which `active` holds, to 1e-4; `active` must hold above it.
+template <class Active>
+double bisect(const Active& active) {
+  double low = std::log(1e-6), high = std::log(1e6);
+  if (active(std::exp(low))) return 0;
+  while (high - low > 1e-4) (active(std::exp(0.5 * (low + high))) ? high : low) = 0.5 * (low + high);
+  return std::exp(0.5 * (low + high));
+}
+
+bool swings_up(const SimulatedDevice& device, const SimulatedHand& hand, const SimulatedWall& wall) {
+  constexpr int kTicks = 16'000;
+  const Column zero(wall.normal.size(), 0.0);
+  WallSimulation simulation(device, hand, wall);
+  simulation.place(zero, inverse(device.mass) * wall.normal);
+  double early = 0, late = 0;
+  for (int k = 0; k < kTicks; ++k) {
+    simulation.tick(zero);
+    const double d = dot(wall.normal, simulation.position());
+    const double energy = simulation.mechanical_energy() + 0.5 * wall.stiffness * d * d;
+    if (!(energy < 1e100)) return true;
+    if (k >= kTicks / 4 && k < kTicks / 2) early += energy;
+    if (k >= 3 * kTicks / 4) late += energy;
+  }
+  return late > early;
+}
+
+}  // namespace
+
+double swing_boundary(const SimulatedDevice& device, const SimulatedHand& hand, const Column& normal) {
+  return bisect([&](double stiffness) { return swings_up(device, hand, {normal, stiffness}); });
+}
+
+double gained(const SimulatedDevice& device, const SimulatedWall& wall, const Column& amplitude, int ticks) {
+  const std::size_t n = amplitude.size();
+  RenderedWall rendered(device, wall, {});
+  Column last;
+  double sum = 0;
+  // The second round of two, when what came before the path is forgotten.
+  for (int k = 0; k <= 4 * ticks; ++k) {
+    const int phase = k % (2 * ticks);
+    const double s = (phase <= ticks ? phase : 2 * ticks - phase) * 2.0 / ticks - 1;
+    Column x(n), way(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = s * amplitude[i] + 0.5 * device.resolution[i];
+    if (k > 2 * ticks) {
+      for (std::size_t i = 0; i < n; ++i) way[i] = x[i] - last[i];
+      sum += dot(rendered.held(), way) - dot(way, device.damping * way) / device.period;
+      for (std::size_t i = 0; i < n; ++i) sum -= device.friction[i] * std::abs(way[i]);
+    }
+    rendered.sample(x);
+    last = x;
+  }
+  return sum;
+}
+
+double cunning_boundary(const SimulatedDevice& device, double wall_damping, const Column& normal,
+                        const std::vector<Column>& directions) {
+  return bisect([&](double stiffness) {
+    for (const Column& direction : directions)
+      for (const double amplitude : {1e-3, 0.1, 0.4, 1.0, 4.0, 32.0, 1e3})
+        for (const int ticks : {1, 2, 3, 4, 8, 32})
+          if (gained(device, {normal, stiffness, wall_damping}, scaled(amplitude, direction), ticks) > 0) return true;
+    return false;
+  });
+}
+
+CoupledScene coupled_scene(std::uint64_t seed) {
+  Random random(seed);
+  constexpr int n = 5;
+  // Qᵀ Q + ½: positive definite, with eigenvalues that are some times apart.
+  const auto definite = [&](double scale) {
+    Matrix q(n, n);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) q(i, j) = random.uniform(-1, 1) * std::sqrt(0.6);
+    Matrix m = transposed(q) * q + 0.5 * Matrix::identity(n);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) m(i, j) *= scale * (i < 3 ? 1 : kLever) * (j < 3 ? 1 : kLever);
+    return m;
+  };
+  CoupledScene scene;
+  scene.device.mass = definite(1e-4), scene.device.damping = definite(1e-3);
+  scene.device.friction = scene.device.resolution = Column(n, 0.0);
+  // A contact: a force and its torque about the pivot, of which two coordinates are felt.
+  const Vec3 force = random.direction(), torque = glm::cross(random.uniform(5, 30) * random.direction(), force);
+  scene.normal = {force.x, force.y, force.z, torque.x, torque.y};
+  scene.easiest = inverse(scene.device.damping) * scene.normal;
+  scene.damping = 1 / dot(scene.normal, scene.easiest);
+  return scene;
+}
+
+SimulatedHand guide(const SimulatedDevice& device, const Column& direction) {
+  // Springs against every way but `direction`, in coordinates where rad count as lengths; far stiffer than any wall
+  // here.
+  const int n = device.coordinates();
+  Column u = direction;
+  for (int i = 3; i < n; ++i) u[static_cast<std::size_t>(i)] *= kLever;
+  const double length = std::sqrt(dot(u, u));
+  SimulatedHand hand{Matrix(n, n), Matrix(n, n)};
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const std::size_t a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      hand.stiffness(i, j) =
+          1e4 * ((i == j) - u[a] * u[b] / (length * length)) * (i < 3 ? 1 : kLever) * (j < 3 ? 1 : kLever);
+    }
+  return hand;
+}
+
+SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, const Session& session,
+                    const std::optional<PassivitySettings>& settings) {
+  const std::size_t n = wall.normal.size();
+  Random random(session.seed);
+  WallSimulation simulation(device, {}, wall, settings);
+  Column start(n), hand(n, 0.0), before(n, 0.0), last(n, 0.0), way(n, 0.0);
+  for (std::size_t k = 0; k < n; ++k) start[k] = -0.5 * wall.normal[k] / dot(wall.normal, wall.normal);
+  simulation.place(start, Column(n, 0.0));
+  SessionResult result;
+  double push = session.push, waver = 0;
+  long pressed = 0;
+  for (long tick = 0; tick < session.ticks; ++tick) {
+    if (tick % 512 == 0) push = random.one_in(6) ? -session.push / 2 : random.uniform(0.2, 1) * session.push;
+    if (tick % 8 == 0) waver = random.uniform(-0.3, 0.3) * session.push;
+    const Column& x = simulation.position();
+    const Column& v = simulation.velocity();
+    for (std::size_t k = 0; k < n; ++k) {
+      const double unit = k < 3 ? 1 : kLever;
+      // The hand feels its way back when it is far off, as hands do; weakly, and passively.
+      hand[k] = (push + waver) * wall.normal[k] - unit * unit * (0.02 * x[k] + 1e-4 * v[k]);
+    }
+    before = simulation.rendered().held(), last = x;
+    simulation.tick(hand);
+    const Column& held = simulation.rendered().held();
+    const double d = dot(wall.normal, simulation.position()), speed = dot(wall.normal, simulation.velocity());
+    if (!(std::abs(d) < 1e9)) return result.delivered = INFINITY, result;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double gone = simulation.position()[k] - last[k];
+      const double acceleration = (gone - way[k]) / (device.period * device.period);
+      if (settings && std::abs(acceleration) > settings->acceleration[static_cast<int>(k)]) ++result.unforeseen;
+      way[k] = gone;
+      result.variation += 0.5 * device.resolution[k] * std::abs(held[k] - before[k]);
+    }
+    result.delivered = std::max(result.delivered, static_cast<double>(simulation.delivered()));
+    result.measured_delivered =
+        std::max(result.measured_delivered, static_cast<double>(simulation.measured_delivered()));
+    if (const Passivity* p = simulation.rendered().passivity())
+      result.least_energy = std::min(tick == 0 ? INFINITY : result.least_energy, p->energy());
+    if (push > 0) ++pressed, result.penetration += d, result.speed += speed * speed;
+  }
+  result.penetration /= static_cast<double>(pressed);
+  result.speed = std::sqrt(result.speed / static_cast<double>(pressed));
+  return result;
+}
+
+}  // namespace riffler::stress

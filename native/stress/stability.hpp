@@ -1,0 +1,57 @@
+// Where a simulated device begins to give energy to the hand: the measured side of docs/stability.md.
+#pragma once
+
+#include <cstdint>
+
+#include "stress/random.hpp"
+#include "stress/wall_simulation.hpp"
+
+namespace riffler::stress {
+
+/// The stiffness (N/mm) from which the device, struck once and then held by `hand`, swings up instead of calming down.
+/// Without friction and encoder steps; to 1e-3.
+double swing_boundary(const SimulatedDevice& device, const SimulatedHand& hand, const Column& normal);
+
+/// N·mm that a hand gains by one round of a path, if it moves the device itself: what the wall delivers less what
+/// damping and friction take. The path is a triangle of 2 · `ticks` samples, `amplitude` to both sides of an edge
+/// between encoder steps.
+double gained(const SimulatedDevice& device, const SimulatedWall& wall, const Column& amplitude, int ticks);
+
+/// The stiffness from which some of many paths gains: of all lengths, and of amplitudes from a thousandth of an encoder
+/// step to a thousand steps, along each of `directions`. The most cunning hand, which is what passivity is about.
+double cunning_boundary(const SimulatedDevice& device, double wall_damping, const Column& normal,
+                        const std::vector<Column>& directions);
+
+/// Five coordinates, three in mm and two in rad, coupled by mass and damping, and a wall across all of them.
+struct CoupledScene {
+  SimulatedDevice device;
+  Column normal;
+  /// The motion that costs the hand least per mm of depth: damping⁻¹ · normal.
+  Column easiest;
+  /// Damping along the normal with everything else left free: 1 / (normalᵀ · damping⁻¹ · normal).
+  double damping;
+};
+CoupledScene coupled_scene(std::uint64_t seed);
+
+/// A hand that lets the device slide along `direction` and no other way.
+SimulatedHand guide(const SimulatedDevice& device, const Column& direction);
+
+/// A random hand that presses, wavers, strikes and lets go, on a one-sided wall.
+struct Session {
+  long ticks = 100'000;
+  double push = 2;  // N: of the hand; mm are scaled to rad by 20 mm
+  std::uint64_t seed = 1;
+};
+struct SessionResult {
+  double delivered = 0;           ///< N·mm: the most that the wall was ahead of the hand, over all ticks
+  double measured_delivered = 0;  ///< by measured positions
+  double least_energy = 0;        ///< of the controller's account
+  double penetration = 0;         ///< mm, mean depth while pressed
+  double speed = 0;               ///< mm/s, root mean square along the normal, while pressed
+  double variation = 0;           ///< N, N·mm times encoder steps: what quantisation can hide
+  long unforeseen = 0;            ///< ticks in which the grip accelerated beyond the settings' bound
+};
+SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, const Session& session,
+                    const std::optional<PassivitySettings>& settings);
+
+}  // namespace riffler::stress

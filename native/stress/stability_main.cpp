@@ -1,0 +1,166 @@
+// Prints, as JSON, what docs/stability.md shows: boundaries in theory and in simulation, and sessions with and without
+// the passivity controller. `docs/gallery/stability.py` draws it.
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <string>
+
+#include "haptics/passive_bound.hpp"
+#include "stress/arguments.hpp"
+#include "stress/stability.hpp"
+
+using namespace riffler;
+using namespace riffler::stress;
+
+namespace {
+
+constexpr double kMass = 1.5e-4;  // N·s²/mm: 150 g
+constexpr double kPeriod = 1e-3;
+
+/// A JSON array of objects, one a line.
+class Rows {
+ public:
+  explicit Rows(const char* name) { std::printf("%s\"%s\": [", first_array ? "" : ",\n", name), first_array = false; }
+  ~Rows() { std::printf("]"); }
+  template <class... Values>
+  void add(const char* format, Values... values) {
+    std::printf("%s\n  ", first_ ? "" : ",");
+    std::printf(format, values...);
+    first_ = false;
+  }
+
+ private:
+  static inline bool first_array = true;
+  bool first_ = true;
+};
+
+void sampling() {
+  Rows rows("sampling");
+  for (const double b : {2.5e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3}) {
+    const SimulatedDevice device = simulated_device(kMass, b);
+    rows.add(R"({"damping": %.9g, "bound": %.9g, "swing": %.9g, "cunning": %.9g})", b,
+             passive_stiffness({kPeriod, b, 0, 0}).least(), swing_boundary(device, {}, {1.0}),
+             cunning_boundary(device, 0, {1.0}, {{1.0}}));
+  }
+}
+
+void wall_damping() {
+  Rows rows("wall_damping");
+  for (const double wall : {-1.5e-3, -1e-3, -5e-4, 0.0, 5e-4, 1e-3, 1.5e-3}) {
+    const SimulatedDevice device = simulated_device(kMass, 2e-3);
+    rows.add(R"({"wall_damping": %.9g, "bound": %.9g, "cunning": %.9g})", wall,
+             passive_stiffness({kPeriod, 2e-3, 0, 0}, wall).least(), cunning_boundary(device, wall, {1.0}, {{1.0}}));
+  }
+}
+
+void quantisation() {
+  Rows rows("quantisation");
+  for (const double step : {0.005, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3}) {
+    const double damping = 2e-3, friction = 0.2;
+    const SimulatedDevice device = simulated_device(kMass, damping, friction, step);
+    rows.add(R"({"step": %.9g, "bound": %.9g, "cunning": %.9g})", step,
+             passive_stiffness({kPeriod, damping, friction, step}).least(),
+             cunning_boundary(device, 0, {1.0}, {{step}}));
+  }
+}
+
+void five_coordinates() {
+  Rows rows("five");
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const CoupledScene scene = coupled_scene(seed);
+    Random random(seed, 1, 0);
+    std::vector<Column> directions{scene.easiest};
+    for (int k = 0; k < 200; ++k) {
+      Column d(5);
+      for (double& x : d) x = random.uniform(-1, 1);
+      d[3] /= 20, d[4] /= 20;
+      directions.push_back(d);
+    }
+    rows.add(R"({"bound": %.9g, "guided": %.9g, "free": %.9g, "cunning": %.9g})",
+             passive_stiffness({kPeriod, scene.damping, 0, 0}).least(),
+             swing_boundary(scene.device, guide(scene.device, scene.easiest), scene.normal),
+             swing_boundary(scene.device, {}, scene.normal),
+             cunning_boundary(scene.device, 0, scene.normal, directions));
+  }
+}
+
+/// What may happen in a session: the wall pushes with 10 N and the hand with 3 at the most.
+PassivitySettings account(Bounds acceleration, Bounds resolution) {
+  PassivitySettings settings;
+  settings.jitter = 0;
+  settings.acceleration = acceleration, settings.resolution = resolution;
+  return settings;
+}
+
+void sessions(const char* name, const SimulatedDevice& device, const Column& normal, double bound,
+              const PassivitySettings& settings) {
+  Rows rows(name);
+  for (const double times : {0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 15.0, 30.0, 60.0, 100.0}) {
+    const SimulatedWall wall{normal, times * bound, 0, true, 10};
+    const Session session{20'000, 2, 7};
+    const SessionResult off = press(device, wall, session, {}), on = press(device, wall, session, settings);
+    rows.add(
+        R"({"times": %.9g, "off": %.9g, "on": %.9g, "off_speed": %.9g, "on_speed": %.9g, "off_depth": %.9g, "on_depth": %.9g, "least": %.9g, "unforeseen": %ld})",
+        times, off.delivered, on.delivered, off.speed, on.speed, off.penetration, on.penetration, on.least_energy,
+        on.unforeseen);
+  }
+}
+
+/// The shipped pen: steps of its encoders, 48 000 and 70 000 counts a turn on arms of 180 mm, at the end of an arm.
+void pen(double damping, double friction) {
+  struct Place {
+    const char* name;
+    double step;
+  };
+  constexpr double kTurn = 6.283185307179586;
+  Rows rows("pen");
+  for (const Place& p : {Place{"arm, end of one link (48000 counts, 180 mm)", kTurn / 48'000 * 180},
+                         Place{"arm, about Z, home (70000 counts, 180 mm)", kTurn / 70'000 * 180},
+                         Place{"arm, about Z, stretched (70000 counts, 360 mm)", kTurn / 70'000 * 360},
+                         Place{"middle of the grip, one joint of six", 0.5 * kTurn / 48'000 * 180}}) {
+    const PassiveStiffness k = passive_stiffness({kPeriod, damping, friction, p.step});
+    rows.add(
+        R"({"place": "%s", "step": %.9g, "damping": %.9g, "friction": %.9g, "sampling": %.9g, "quantisation": %.9g})",
+        p.name, p.step, damping, friction, k.sampling, k.quantisation);
+  }
+}
+
+double number(const char* name, const char* text) {
+  char* end = nullptr;
+  const double value = text ? std::strtod(text, &end) : 0;
+  if (!text || end == text || *end != '\0') throw std::invalid_argument(std::string(name) + " needs a number");
+  return value;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    double damping = 2e-3, friction = 0.2;
+    bool pen_only = false;
+    for (int k = 1; k < argc; ++k) {
+      const std::string key = argv[k];
+      if (key == "--pen") {
+        pen_only = true;
+      } else if (key == "--damping" || key == "--friction") {
+        ++k;
+        (key == "--damping" ? damping : friction) = number(key.c_str(), k < argc ? argv[k] : nullptr);
+      } else {
+        std::puts("riffler_stability [--pen] [--damping N·s/mm] [--friction N]\n  --pen  the table of the pen alone");
+        return key == "--help" ? 0 : 2;
+      }
+    }
+    std::printf("{");
+    pen(damping, friction);
+    if (!pen_only) {
+      sampling(), wall_damping(), quantisation(), five_coordinates();
+      sessions("one_session", simulated_device(kMass, 2e-3, 0.2, 0.012), {1.0}, 4, account({9e4, 0}, {0.012, 0}));
+      const CoupledScene scene = coupled_scene(3);
+      sessions("five_session", scene.device, scene.normal, 2 * scene.damping / kPeriod, account({2e5, 1e4}, {0, 0}));
+    }
+    std::printf("}\n");
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "riffler_stability: %s\n", e.what());
+    return 2;
+  }
+}
