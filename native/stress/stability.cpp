@@ -120,48 +120,73 @@ SimulatedHand guide(const SimulatedDevice& device, const Column& direction) {
   return hand;
 }
 
+namespace {
+
+/// What the hand does at a tick.
+class Hand {
+ public:
+  Hand(const Session& session, const Column& normal) : session_(session), normal_(normal), random_(session.seed) {
+    push_ = session.push;
+  }
+
+  Column force(long tick, const Column& x, const Column& v) {
+    if (session_.strikes) {
+      if (tick % 512 == 0) push_ = random_.one_in(6) ? -session_.push / 2 : random_.uniform(0.2, 1) * session_.push;
+      if (tick % 8 == 0) waver_ = random_.uniform(-0.3, 0.3) * session_.push;
+    }
+    Column f(x.size());
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const double unit = k < 3 ? 1 : kLever * kLever;
+      f[k] = (push_ + waver_) * normal_[k] - unit * (0.02 * x[k] + 1e-4 * v[k]);
+    }
+    return f;
+  }
+  bool pushes() const { return push_ > 0; }
+
+ private:
+  const Session& session_;
+  const Column& normal_;
+  Random random_;
+  double push_, waver_ = 0;
+};
+
+}  // namespace
+
 SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, const Session& session,
                     const std::optional<PassivitySettings>& settings) {
   const std::size_t n = wall.normal.size();
-  Random random(session.seed);
-  WallSimulation simulation(device, {}, wall, settings);
-  Column start(n), hand(n, 0.0), before(n, 0.0), last(n, 0.0), way(n, 0.0);
-  for (std::size_t k = 0; k < n; ++k) start[k] = -0.5 * wall.normal[k] / dot(wall.normal, wall.normal);
-  simulation.place(start, Column(n, 0.0));
+  WallSimulation simulation(device, session.guide, wall, settings);
+  Hand hand(session, wall.normal);
+  Column way(n, 0.0);
+  const Column towards = inverse(device.damping) * wall.normal;
+  simulation.place(scaled(-0.5 / dot(wall.normal, towards), towards), Column(n, 0.0));
   SessionResult result;
-  double push = session.push, waver = 0;
-  long pressed = 0;
+  long pushing = 0;
+  double gained = 0;
   for (long tick = 0; tick < session.ticks; ++tick) {
-    if (tick % 512 == 0) push = random.one_in(6) ? -session.push / 2 : random.uniform(0.2, 1) * session.push;
-    if (tick % 8 == 0) waver = random.uniform(-0.3, 0.3) * session.push;
-    const Column& x = simulation.position();
-    const Column& v = simulation.velocity();
+    const Column force = hand.force(tick, simulation.position(), simulation.velocity());
+    const Column before = simulation.rendered().held(), last = simulation.position();
+    simulation.tick(force);
+    const Column &held = simulation.rendered().held(), &now = simulation.position();
+    const double depth = dot(wall.normal, now), speed = dot(wall.normal, simulation.velocity());
     for (std::size_t k = 0; k < n; ++k) {
-      const double unit = k < 3 ? 1 : kLever;
-      // The hand feels its way back when it is far off, as hands do; weakly, and passively.
-      hand[k] = (push + waver) * wall.normal[k] - unit * unit * (0.02 * x[k] + 1e-4 * v[k]);
-    }
-    before = simulation.rendered().held(), last = x;
-    simulation.tick(hand);
-    const Column& held = simulation.rendered().held();
-    const double d = dot(wall.normal, simulation.position()), speed = dot(wall.normal, simulation.velocity());
-    if (!(std::abs(d) < 1e9)) return result.delivered = INFINITY, result;
-    for (std::size_t k = 0; k < n; ++k) {
-      const double gone = simulation.position()[k] - last[k];
-      const double acceleration = (gone - way[k]) / (device.period * device.period);
+      const double acceleration = (now[k] - last[k] - way[k]) / (device.period * device.period);
       if (settings && std::abs(acceleration) > settings->acceleration[static_cast<int>(k)]) ++result.unforeseen;
-      way[k] = gone;
+      way[k] = now[k] - last[k];
       result.variation += 0.5 * device.resolution[k] * std::abs(held[k] - before[k]);
     }
+    gained -= dot(force, way);
+    result.gained = std::max(result.gained, gained);
     result.delivered = std::max(result.delivered, static_cast<double>(simulation.delivered()));
     result.measured_delivered =
         std::max(result.measured_delivered, static_cast<double>(simulation.measured_delivered()));
     if (const Passivity* p = simulation.rendered().passivity())
-      result.least_energy = std::min(tick == 0 ? INFINITY : result.least_energy, p->energy());
-    if (push > 0) ++pressed, result.penetration += d, result.speed += speed * speed;
+      result.least_energy = tick == 0 ? p->energy() : std::min(result.least_energy, p->energy());
+    if (hand.pushes()) ++pushing, result.depth += depth;
+    if (tick >= session.ticks / 4 * 3) result.speed += speed * speed;
   }
-  result.penetration /= static_cast<double>(pressed);
-  result.speed = std::sqrt(result.speed / static_cast<double>(pressed));
+  result.depth /= static_cast<double>(std::max(1L, pushing));
+  result.speed = std::sqrt(result.speed / static_cast<double>(std::max(1L, session.ticks / 4)));
   return result;
 }
 

@@ -36,20 +36,24 @@ CoupledScene coupled_scene(std::uint64_t seed);
 /// A hand that lets the device slide along `direction` and no other way.
 SimulatedHand guide(const SimulatedDevice& device, const Column& direction);
 
-/// A random hand that presses, wavers, strikes and lets go, on a one-sided wall.
+/// A hand on a one-sided wall. One that strikes presses, wavers, and lets go at random; one that does not presses with
+/// all its push, from half a millimetre before the wall. Beyond its force it is a weak spring and damper.
 struct Session {
   long ticks = 100'000;
-  double push = 2;  // N: of the hand; mm are scaled to rad by 20 mm
+  double push = 2;  // N; in coordinates that are angles, times 20 mm
   std::uint64_t seed = 1;
+  bool strikes = true;
+  SimulatedHand guide{};
 };
 struct SessionResult {
   double delivered = 0;           ///< N·mm: the most that the wall was ahead of the hand, over all ticks
   double measured_delivered = 0;  ///< by measured positions
+  double gained = 0;              ///< N·mm: the most that the hand had got from wall and device together
   double least_energy = 0;        ///< of the controller's account
-  double penetration = 0;         ///< mm, mean depth while pressed
-  double speed = 0;               ///< mm/s, root mean square along the normal, while pressed
-  double variation = 0;           ///< N, N·mm times encoder steps: what quantisation can hide
-  long unforeseen = 0;            ///< ticks in which the grip accelerated beyond the settings' bound
+  double depth = 0;               ///< mm, mean over the time in which the hand pushes
+  double speed = 0;               ///< mm/s along the normal, root mean square of the last quarter
+  double variation = 0;  ///< N·mm: half an encoder step times change of force, summed: what quantisation may hide
+  long unforeseen = 0;   ///< ticks in which the grip accelerated beyond the settings' bound
 };
 SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, const Session& session,
                     const std::optional<PassivitySettings>& settings);

@@ -84,25 +84,19 @@ void five_coordinates() {
   }
 }
 
-/// What may happen in a session: the wall pushes with 10 N and the hand with 3 at the most.
-PassivitySettings account(Bounds acceleration, Bounds resolution) {
-  PassivitySettings settings;
-  settings.jitter = 0;
-  settings.acceleration = acceleration, settings.resolution = resolution;
-  return settings;
-}
-
+/// A hand leans on walls that are soft and walls that are far too hard, which push with 10 N at the most.
 void sessions(const char* name, const SimulatedDevice& device, const Column& normal, double bound,
-              const PassivitySettings& settings) {
+              const SimulatedHand& guide, const PassivitySettings& settings) {
   Rows rows(name);
-  for (const double times : {0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 15.0, 30.0, 60.0, 100.0}) {
+  for (const double times : {0.25, 0.5, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 8.0, 15.0, 30.0, 60.0, 100.0}) {
     const SimulatedWall wall{normal, times * bound, 0, true, 10};
-    const Session session{20'000, 2, 7};
+    const Session session{20'000, 2, 7, false, guide};
     const SessionResult off = press(device, wall, session, {}), on = press(device, wall, session, settings);
     rows.add(
-        R"({"times": %.9g, "off": %.9g, "on": %.9g, "off_speed": %.9g, "on_speed": %.9g, "off_depth": %.9g, "on_depth": %.9g, "least": %.9g, "unforeseen": %ld})",
-        times, off.delivered, on.delivered, off.speed, on.speed, off.penetration, on.penetration, on.least_energy,
-        on.unforeseen);
+        R"({"times": %.9g, "off": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g},)"
+        R"( "on": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g, "least": %.9g, "unforeseen": %ld}})",
+        times, off.gained, off.delivered, off.speed, off.depth, on.gained, on.delivered, on.speed, on.depth,
+        on.least_energy, on.unforeseen);
   }
 }
 
@@ -154,9 +148,14 @@ int main(int argc, char** argv) {
     pen(damping, friction);
     if (!pen_only) {
       sampling(), wall_damping(), quantisation(), five_coordinates();
-      sessions("one_session", simulated_device(kMass, 2e-3, 0.2, 0.012), {1.0}, 4, account({9e4, 0}, {0.012, 0}));
+      PassivitySettings settings;
+      settings.jitter = 0;
+      settings.acceleration = {9e4, 0}, settings.resolution = {0, 0}, settings.device_damping = {2e-3, 0};
+      sessions("one_session", simulated_device(kMass, 2e-3), {1.0}, 4, {}, settings);
       const CoupledScene scene = coupled_scene(3);
-      sessions("five_session", scene.device, scene.normal, 2 * scene.damping / kPeriod, account({2e5, 1e4}, {0, 0}));
+      settings.acceleration = {2e5, 1e4}, settings.device_damping = {0, 0};
+      sessions("five_session", scene.device, scene.normal, 2 * scene.damping / kPeriod,
+               guide(scene.device, scene.easiest), settings);
     }
     std::printf("}\n");
   } catch (const std::exception& e) {
