@@ -1,0 +1,242 @@
+#include "haptics/passivity.hpp"
+
+#include <gtest/gtest.h>
+
+#include "haptics/passive_bound.hpp"
+#include "stress/stability.hpp"
+#include "support/error_of.hpp"
+
+namespace riffler {
+namespace {
+
+using stress::Column;
+
+/// Exact positions and ticks, and a device that takes nothing.
+PassivitySettings strict(Bounds acceleration) {
+  PassivitySettings s;
+  s.jitter = 0, s.acceleration = acceleration, s.resolution = {0, 0};
+  return s;
+}
+
+TEST(Passivity, AccountIsTheSumOfWrenchTimesDisplacement) {
+  stress::Random random(1);
+  PassivitySettings s = strict({1e5, 1e3});
+  s.reserve = 1e3, s.storage = 1e9;
+  Passivity passivity(s);
+  long double sum = 0;
+  std::array<long double, kCoordinates> each{};
+  for (int n = 0; n < 100'000; ++n) {
+    Wrench held;
+    Twist moved;
+    for (int k = 0; k < kCoordinates; ++k) {
+      held[k] = random.uniform(-5, 5), moved[k] = random.uniform(-0.1, 0.1);
+      each[static_cast<std::size_t>(k)] -= static_cast<long double>(held[k]) * moved[k];
+      sum -= static_cast<long double>(held[k]) * moved[k];
+    }
+    passivity.observe(held, moved, 1e-3);
+  }
+  EXPECT_NEAR(passivity.energy(), s.reserve + static_cast<double>(sum), 1e-9);
+  for (std::size_t k = 0; k < kCoordinates; ++k)
+    EXPECT_NEAR(passivity.absorbed()[k], static_cast<double>(each[k]), 1e-9);
+}
+
+TEST(Passivity, TheWorstHandWithinTheBoundsNeverMakesADebt) {
+  // The hand knows the wrench that is held and goes with it as far as its acceleration lets it, in every coordinate.
+  stress::Random random(2);
+  for (int session = 0; session < 20; ++session) {
+    const Bounds a{random.power_of_ten(3, 6), random.power_of_ten(1, 4)};
+    PassivitySettings s = strict(a);
+    s.reserve = session % 3 == 0 ? 0 : random.power_of_ten(-3, 1);
+    Passivity passivity(s);
+    Capability device;
+    device.axes[2] = random.direction(), device.axes[0] = random.square_to(device.axes[2]);
+    device.axes[1] = glm::cross(device.axes[2], device.axes[0]);
+    device.push[5] = session % 2 == 0;
+    Twist step;  // along the device's axes
+    Wrench held;
+    long double delivered = 0;
+    for (int n = 0; n < 5000; ++n) {
+      const Wrench local{held.force * device.axes, held.torque * device.axes};
+      for (int k = 0; k < kCoordinates; ++k) {
+        const double with = local[k] != 0 ? std::copysign(1.0, local[k]) : random.uniform(-1, 1);
+        // Now and then it moves off again, to be able to come back with a run.
+        const double way = random.one_in(4) ? -with : with;
+        step[k] = std::clamp(step[k] + way * a[k] * 1e-6, -300 * a[k] * 1e-6, 300 * a[k] * 1e-6);
+      }
+      const Twist moved{device.axes * step.linear, device.axes * step.angular};
+      for (int k = 0; k < kCoordinates; ++k) delivered += static_cast<long double>(held[k]) * moved[k];
+      passivity.observe(held, moved, 1e-3);
+      ASSERT_GE(passivity.energy(), -1e-9) << session << " " << n;
+      ASSERT_LE(delivered, s.reserve + 1e-9L) << session << " " << n;
+      held = passivity.control(
+          renderable(device, {random.uniform(0, 10) * random.direction(), random.uniform(0, 300) * random.direction()}),
+          device);
+    }
+  }
+}
+
+struct Scene {
+  const char* name;
+  stress::SimulatedDevice device;
+  Column normal;
+  double bound;
+  Bounds acceleration;
+};
+
+std::vector<Scene> scenes() {
+  const stress::CoupledScene five = stress::coupled_scene(3);
+  return {{"one coordinate", stress::simulated_device(1.5e-4, 2e-3), {1.0}, 4, {9.5e4, 0}},
+          {"five coordinates", five.device, five.normal, 2 * five.damping / 1e-3, {3e5, 1.5e4}}};
+}
+
+TEST(Passivity, WallsFarBeyondThePassiveBoundGiveNoEnergy) {
+  for (const Scene& scene : scenes())
+    for (const double times : {0.5, 1.5, 5.0, 30.0, 100.0}) {
+      const stress::SimulatedWall wall{scene.normal, times * scene.bound, 0, true, 10};
+      const stress::Session session{100'000, 2, static_cast<std::uint64_t>(10 * times)};
+      const PassivitySettings settings = strict(scene.acceleration);
+      const stress::SessionResult on = press(scene.device, wall, session, settings);
+      EXPECT_EQ(on.unforeseen, 0) << scene.name << ", " << times;
+      EXPECT_LE(on.delivered, settings.reserve + 1e-9) << scene.name << ", " << times;
+      EXPECT_GE(on.least_energy, -1e-9) << scene.name << ", " << times;
+      // Without it the same session does.
+      EXPECT_GT(press(scene.device, wall, {10'000, 2, session.seed}, {}).delivered, 10 * settings.reserve)
+          << scene.name << ", " << times;
+    }
+}
+
+TEST(Passivity, QuantisationHidesNoMoreThanItsStepTimesTheChangeOfForce) {
+  for (const double step : {0.005, 0.02, 0.1}) {
+    const stress::SimulatedDevice device = stress::simulated_device(1.5e-4, 2e-3, 0.2, step);
+    PassivitySettings settings = strict({9e4, 0});
+    settings.resolution = {step, 0};
+    for (const double times : {1.0, 10.0}) {
+      const stress::SessionResult r = press(device, {{1.0}, 4 * times, 0, true, 10}, {100'000, 2, 5}, settings);
+      EXPECT_EQ(r.unforeseen, 0);
+      EXPECT_LE(r.measured_delivered, settings.reserve + 1e-9);
+      EXPECT_LE(r.delivered, settings.reserve + r.variation + 1e-9);
+    }
+  }
+}
+
+TEST(Passivity, WallsWithinThePassiveBoundAreLeftAlone) {
+  // The device's own damping, credited, is what makes them passive: (2.13) is when the account never falls.
+  PassivitySettings settings = strict({9e4, 0});
+  settings.device_damping = {2e-3, 0};
+  for (const double times : {0.1, 0.5, 0.9, 0.99}) {
+    const stress::SimulatedWall wall{{1.0}, 4 * times, 0, true, 10};
+    const stress::SimulatedDevice device = stress::simulated_device(1.5e-4, 2e-3);
+    const stress::Session session{50'000, 2, 3, false};
+    const stress::SessionResult on = press(device, wall, session, settings), off = press(device, wall, session, {});
+    EXPECT_EQ(on.depth, off.depth) << times;
+    EXPECT_EQ(on.delivered, off.delivered) << times;
+    EXPECT_GT(on.least_energy, 0.98 * settings.reserve) << times;
+  }
+}
+
+TEST(Passivity, CoordinatesOfAPassiveObjectMayGiveForEverWhatOthersTake) {
+  // A spring whose principal axes are not the coordinates, and a damper, on an elliptic path.
+  Passivity passivity(strict({1e5, 1e3}));
+  const double k11 = 1, k22 = 3, k12 = 0.8, b = 1e-4;
+  Twist last{{1, 0, 0}, {}};
+  Wrench held;
+  for (int n = 0; n < 100'000; ++n) {
+    const double angle = 2 * 3.141592653589793 * n / 1000;
+    const Twist now{{std::cos(angle), 0.5 * std::sin(angle), 0}, {}};
+    passivity.observe(held, now - last, 1e-3);
+    const Vec3 v = 1e3 * (now - last).linear;
+    held = {{-k11 * now[0] - k12 * now[1] - b * v.x, -k12 * now[0] - k22 * now[1] - b * v.y, 0}, {}};
+    held = passivity.control(held, {});
+    ASSERT_EQ(passivity.kept(), 1);
+    ASSERT_EQ(passivity.damped(), 0);
+    last = now;
+  }
+  // Per turn: k12 times the area π · 1 · ½, and the damper's share.
+  EXPECT_NEAR(passivity.absorbed()[0], -100 * 0.8 * 1.5708, 2);
+  EXPECT_GT(passivity.absorbed()[1], 100);
+}
+
+TEST(Passivity, ADebtIsPaidBeforeAnythingIsDelivered) {
+  const PassivitySettings s = strict({1e4, 1e2});
+  Passivity passivity(s);
+  passivity.observe({{5, 0, 0}, {}}, {{10, 0, 0}, {}}, 40e-3);  // a late tick: the grip was carried off
+  EXPECT_DOUBLE_EQ(passivity.energy(), s.reserve - 50);
+  // Moving with the force: nothing of it, and damping against the motion.
+  passivity.observe({}, {{0.2, 0, 0}, {}}, 1e-3);
+  const Wrench w = passivity.control({{5, 0, 0}, {}}, {});
+  EXPECT_EQ(passivity.kept(), 0);
+  EXPECT_EQ(passivity.damped(), 1);
+  EXPECT_DOUBLE_EQ(w.force.x, -s.max_damping.linear * 200);
+  // A wall that stops the hand takes energy, and is let through.
+  passivity.observe({}, {{-0.2, 0, 0}, {}}, 1e-3);
+  passivity.observe({}, {{-0.2, 0, 0}, {}}, 1e-3);
+  EXPECT_GT(passivity.control({{5, 0, 0}, {}}, {}).force.x, 5 - 1e-12);
+  // Rest, and free motion, forgive nothing.
+  for (int k = 0; k < 1000; ++k) passivity.observe({}, {{0.1, 0, 0}, {}}, 1e-3);
+  EXPECT_DOUBLE_EQ(passivity.energy(), s.reserve - 50);
+  passivity.reset();
+  EXPECT_EQ(passivity.energy(), s.reserve);
+}
+
+TEST(Passivity, CreditIsForgottenWhereNothingCanHoldIt) {
+  const PassivitySettings s = strict({1e5, 1e3});
+  Passivity passivity(s);
+  for (int k = 0; k < 1000; ++k) passivity.observe({{-5, 0, 0}, {}}, {{0.1, 0, 0}, {}}, 1e-3);
+  EXPECT_EQ(passivity.energy(), s.storage);
+  EXPECT_NEAR(passivity.absorbed()[0], 500, 1e-9);
+  passivity.observe({}, {{0.1, 0, 0}, {}}, 1e-3);
+  EXPECT_EQ(passivity.energy(), s.reserve);
+}
+
+TEST(Passivity, DampsOnlyWhatTheDevicePushesAndWhereTheDirectionIsSure) {
+  PassivitySettings s;  // steps of 0.03 mm, 100 m/s²
+  Passivity passivity(s);
+  Capability pen;
+  pen.push[5] = false;
+  passivity.observe({{100, 0, 0}, {}}, {{1, 0, 0}, {}}, 1e-3);  // a debt
+  passivity.observe({}, {{0.05, 0.3, 0}, {0, 0.004, 0.02}}, 1e-3);
+  const Wrench w = passivity.control({{3, 1, 1}, {100, 0, 0}}, pen);
+  EXPECT_EQ(w.force.x, 0) << "0.05 mm in a tick may be noise";
+  EXPECT_LT(w.force.y, 0);
+  EXPECT_EQ(w.torque, Vec3(0)) << "0.004 rad may be noise, and about z nothing pushes";
+  for (int k = 0; k < kCoordinates; ++k) EXPECT_LE(std::abs(w[k]), s.max_damping[k] * 300 + 1e-12);
+}
+
+TEST(Passivity, SurvivesTicksOfNoTimeAndNumbersThatAreNone) {
+  Passivity passivity{PassivitySettings{}};
+  passivity.observe({}, {{0.1, 0, 0}, {}}, 0);
+  passivity.observe({{NAN, 0, 0}, {}}, {}, 1e-3);
+  passivity.observe({}, {{NAN, 0, 0}, {}}, 1e-3);
+  passivity.observe({}, {}, NAN);
+  EXPECT_EQ(passivity.energy(), PassivitySettings{}.reserve);
+  EXPECT_TRUE(finite(passivity.control({{1, 0, 0}, {}}, {})));
+  EXPECT_EQ(passivity.control({}, {}), Wrench{});
+  EXPECT_FALSE(finite(passivity.control({{NAN, 0, 0}, {}}, {}))) << "is the gate's to refuse";
+}
+
+TEST(Passivity, SettingsNameTheFieldThatIsWrong) {
+  const auto message = [](auto change) {
+    PassivitySettings s;
+    change(s);
+    return test::error_of([&] { Passivity passivity(s); });
+  };
+  EXPECT_EQ(message([](auto& s) { s.period = 0; }), "period must be positive");
+  EXPECT_EQ(message([](auto& s) { s.acceleration.angular = NAN; }), "acceleration.angular must not be negative");
+  EXPECT_EQ(message([](auto& s) { s.storage = 0.5; }), "storage must be at least reserve");
+}
+
+TEST(PassiveBound, IsTheLesserOfSamplingAndQuantisation) {
+  const PassiveStiffness k = passive_stiffness({1e-3, 2e-3, 0.2, 0.02});
+  EXPECT_DOUBLE_EQ(k.sampling, 4);
+  EXPECT_DOUBLE_EQ(k.quantisation, 20);
+  EXPECT_DOUBLE_EQ(k.least(), 4);
+  EXPECT_DOUBLE_EQ(passive_stiffness({1e-3, 2e-3, 0.2, 0.02}, -1.5e-3).sampling, 1);
+  EXPECT_EQ(passive_stiffness({1e-3, 2e-3, 0.2, 0.02}, 3e-3).sampling, 0);
+  EXPECT_EQ(passive_stiffness({1e-3, 2e-3, 0, 0.02}).least(), 0);
+  EXPECT_EQ(passive_stiffness({1e-3, 2e-3, 0, 0}).quantisation, INFINITY);
+  EXPECT_EQ(test::error_of([] { passive_stiffness({0, 1, 1, 1}); }), "period must be positive");
+  EXPECT_EQ(test::error_of([] { passive_stiffness({1e-3, 1, -1, 1}); }), "friction must not be negative");
+}
+
+}  // namespace
+}  // namespace riffler

@@ -1,0 +1,76 @@
+#include "stress/stability.hpp"
+
+#include <gtest/gtest.h>
+
+#include "haptics/passive_bound.hpp"
+
+namespace riffler::stress {
+namespace {
+
+TEST(WallSimulation, MovesAFreeDeviceAsTheClosedFormSays) {
+  // m ẍ + b ẋ = 0 and m ẍ + k x = 0.
+  WallSimulation coasts(simulated_device(2e-4, 1e-3), {}, {{1.0}});
+  coasts.place({0.0}, {100.0});
+  WallSimulation swings(simulated_device(2e-4, 0), {Matrix::diagonal({3.0}), {}}, {{1.0}});
+  swings.place({1.0}, {0.0});
+  for (int k = 1; k <= 1000; ++k) {
+    coasts.tick({0.0}), swings.tick({0.0});
+    const double t = k * 1e-3;
+    ASSERT_NEAR(coasts.velocity()[0], 100 * std::exp(-5 * t), 1e-9);
+    ASSERT_NEAR(coasts.position()[0], 20 * (1 - std::exp(-5 * t)), 1e-9);
+    ASSERT_NEAR(swings.position()[0], std::cos(std::sqrt(3 / 2e-4) * t), 1e-8);
+  }
+}
+
+TEST(WallSimulation, FrictionSlowsEvenlyAndHolds) {
+  // 0.2 N on 0.2 kg: 1000 mm/s² from 100 mm/s is 5 mm in 0.1 s; then less than the friction moves nothing.
+  WallSimulation rubs(simulated_device(2e-4, 0, 0.2), {}, {{1.0}});
+  rubs.place({0.0}, {100.0});
+  for (int k = 0; k < 200; ++k) rubs.tick({0.0});
+  EXPECT_NEAR(rubs.position()[0], 5, 1e-3);
+  const double rest = rubs.position()[0];
+  for (int k = 0; k < 200; ++k) rubs.tick({0.19});
+  EXPECT_NEAR(rubs.position()[0], rest, 1e-6);
+  for (int k = 0; k < 200; ++k) rubs.tick({0.25});
+  EXPECT_GT(rubs.position()[0], rest + 1);
+}
+
+TEST(Stability, OneCoordinateSwingsUpAtTheBoundOfColgateAndSchenkel) {
+  for (const double b : {5e-4, 2e-3})
+    EXPECT_NEAR(swing_boundary(simulated_device(1.5e-4, b), {}, {1.0}) / (2 * b / 1e-3), 1, 0.01) << b;
+}
+
+TEST(Stability, ACunningHandGainsFromTheBoundOn) {
+  for (const double wall : {0.0, 5e-4, 1.5e-3}) {
+    const double bound = passive_stiffness({1e-3, 2e-3, 0, 0}, wall).least();
+    EXPECT_NEAR(cunning_boundary(simulated_device(1.5e-4, 2e-3), wall, {1.0}, {{1.0}}) / bound, 1, 0.01) << wall;
+  }
+  // With encoder steps, Abbott and Okamura's, from well below to well above the step at which it takes over.
+  for (const double step : {0.01, 0.05, 0.2, 0.3}) {
+    const double bound = passive_stiffness({1e-3, 2e-3, 0.2, step}).least();
+    const SimulatedDevice device = simulated_device(1.5e-4, 2e-3, 0.2, step);
+    EXPECT_NEAR(cunning_boundary(device, 0, {1.0}, {{step}}) / bound, 1, 0.012) << step;
+  }
+}
+
+TEST(Stability, FiveCoupledCoordinatesAreBoundByTheDampingAlongTheNormal) {
+  for (const std::uint64_t seed : {1, 3, 9}) {
+    const CoupledScene scene = coupled_scene(seed);
+    const double bound = 2 * scene.damping / 1e-3;
+    EXPECT_NEAR(swing_boundary(scene.device, guide(scene.device, scene.easiest), scene.normal) / bound, 1, 0.01);
+    EXPECT_NEAR(cunning_boundary(scene.device, 0, scene.normal, {scene.easiest}) / bound, 1, 0.01);
+    // No other hand gains earlier.
+    Random random(seed);
+    std::vector<Column> others;
+    for (int k = 0; k < 50; ++k) {
+      Column d(5);
+      for (double& x : d) x = random.uniform(-1, 1);
+      others.push_back(d);
+    }
+    EXPECT_GE(cunning_boundary(scene.device, 0, scene.normal, others), bound * 0.999);
+    EXPECT_GE(swing_boundary(scene.device, {}, scene.normal), bound * 0.999);
+  }
+}
+
+}  // namespace
+}  // namespace riffler::stress
