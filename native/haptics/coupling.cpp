@@ -20,12 +20,14 @@ Vec3 any_square_to(const Vec3& a) {
   return glm::normalize(glm::cross(a, far));
 }
 
-/// Shortest turn from unit vector to unit vector; by atan2, so 1e-12 rad is as good as 3.
+/// Shortest turn from unit vector to unit vector. The difference, or near half a turn the sum, is exact where the cross
+/// product of the vectors themselves would be rounding.
 Vec3 turn(const Vec3& from, const Vec3& to) {
-  const Vec3 c = glm::cross(from, to);
-  const double s = glm::length(c), angle = std::atan2(s, glm::dot(from, to));
-  if (s > 0) return angle / s * c;
-  return angle > 1 ? kPi * any_square_to(from) : Vec3(0);
+  const double along = glm::dot(from, to);
+  const Vec3 c = glm::cross(from, along > 0 ? to - from : to + from);
+  const double s = glm::length(c);
+  if (along > 0) return s > 0 ? std::atan2(s, along) / s * c : Vec3(0);
+  return s > 1e-15 ? std::atan2(s, along) / s * c : kPi * any_square_to(from);
 }
 
 /// Rotation vector of a rotation matrix, by its quaternion, of which the largest component is found first (Shepperd

@@ -114,11 +114,21 @@ void WallSimulation::tick(const Column& hand) {
   const double part = device_.period / parts_;
   for (int k = 0; k < parts_; ++k) {
     rub(part / 2);
+    if (sticks(force)) break;
     advance(force);
     rub(part / 2);
   }
   for (std::size_t k = 0; k < held.size(); ++k)
     delivered_ += static_cast<long double>(held[k]) * (static_cast<long double>(position_[k]) - start[k]);
+}
+
+/// At rest, and pushed by less than friction: for good, as long as the force is held.
+bool WallSimulation::sticks(const Column& force) const {
+  if (!rubs_) return false;
+  const Column pull = hand_.stiffness * position_;
+  for (std::size_t k = 0; k < force.size(); ++k)
+    if (velocity_[k] != 0 || std::abs(force[k] - pull[k]) > device_.friction[k]) return false;
+  return true;
 }
 
 void WallSimulation::advance(const Column& force) {

@@ -80,6 +80,7 @@ class WallSimulation {
 
  private:
   void advance(const Column& force);
+  bool sticks(const Column& force) const;
   void rub(double time);
 
   SimulatedDevice device_;

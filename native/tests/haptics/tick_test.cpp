@@ -1,0 +1,157 @@
+// The parts together, as haptics/safety.hpp calls them in one tick.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "haptics/coupling.hpp"
+#include "haptics/limits.hpp"
+#include "haptics/passivity.hpp"
+#include "haptics/safety.hpp"
+#include "stress/random.hpp"
+
+namespace {
+
+thread_local long allocations = 0;
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+// Every allocation of this program by new is counted.
+void* operator new(std::size_t size) {
+  return counted(size);
+}
+void* operator new[](std::size_t size) {
+  return counted(size);
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete[](void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+  std::free(p);
+}
+
+namespace riffler {
+namespace {
+
+/// A device without motors to speak of, a tool that is held in place, and all that is between.
+class Loop {
+ public:
+  explicit Loop(const Vec3& where = Vec3(0))
+      : passivity_(PassivitySettings{}), safety_(SafetySettings{}), tool_{where, {0, 0, 1}}, last_(tool_) {
+    safety_.switch_on();
+    capability_.push[5] = false;
+    actuators_.count = 3;
+    for (std::size_t i = 0; i < 3; ++i) actuators_.rows[i][i] = 180, actuators_.most[i] = 700;
+  }
+
+  Wrench tick(Observation now) {
+    const Twist displacement{now.pose.tip - last_.tip, glm::cross(last_.axis, now.pose.axis)};
+    last_ = now.pose;
+    if (now.dt > 0) now.twist = 1 / now.dt * displacement;
+    if (!lets_force_through(safety_.observe(now))) w_ = {};
+    passivity_.observe(held_.wrench(), displacement, now.dt);
+    const auto [on_grip, on_tool, energy] = couple(coupling_, stretch(now.pose, tool_), now.twist, {});
+    w_ = limited(limits_, capability_, actuators_, w_, on_grip, now.twist, now.dt);
+    w_ = passivity_.control(w_, capability_);
+    w_ = magnitude_gain(limits_, actuators_, w_) * w_;
+    held_ = safety_.release(w_);
+    return held_.wrench();
+  }
+
+  const Safety& safety() const { return safety_; }
+  const Passivity& passivity() const { return passivity_; }
+
+ private:
+  CouplingSettings coupling_;
+  LimitSettings limits_;
+  Capability capability_;
+  Actuators actuators_;
+  Passivity passivity_;
+  Safety safety_;
+  Pose tool_, last_;
+  Wrench w_;
+  SafeWrench held_;
+};
+
+Observation at(double t) {
+  Observation o;
+  o.dt = 1e-3, o.age = 1e-4, o.homed = o.dead_man = true;
+  o.pose.tip = {2 * std::sin(3 * t), std::sin(2 * t), 0};
+  o.pose.axis = glm::normalize(Vec3(0.1 * std::sin(t), 0, 1));
+  return o;
+}
+
+TEST(HapticTick, AllocatesNothing) {
+  const long before = allocations;
+  const auto* proof = new std::array<int, 100>();
+  EXPECT_GT(allocations, before) << "the count counts";
+  delete proof;
+  Loop loop;
+  double sum = 0;
+  const long start = allocations;
+  for (int k = 0; k < 20'000; ++k) {
+    Observation o = at(k * 1e-3);
+    // Faults of every kind are no reason to allocate.
+    if (k % 3000 == 1500) o.dt = 0.03;
+    if (k == 9000) o.pose.tip.x = NAN;
+    sum += glm::length(loop.tick(o).force);
+  }
+  EXPECT_EQ(allocations, start);
+  EXPECT_GT(sum, 100);
+  EXPECT_GE(loop.safety().log().count(), 4u);
+}
+
+TEST(HapticTick, LateTicksOfAnyLengthNeverMakeTheForceJumpUp) {
+  stress::Random random(1);
+  Loop loop;
+  double last = 0;
+  double t = 0;
+  for (int k = 0; k < 100'000; ++k) {
+    const double dt = random.one_in(50) ? random.uniform(2e-3, 40e-3) : random.one_in(50) ? 0 : 1e-3;
+    t += dt;
+    Observation o = at(t);
+    o.dt = dt;
+    const double force = glm::length(loop.tick(o).force);
+    ASSERT_TRUE(std::isfinite(force));
+    ASSERT_LE(force - last, LimitSettings{}.rate.linear * dt + 3e-3 / SafetySettings{}.ramp * 5 + 1e-9) << k;
+    ASSERT_LE(force, LimitSettings{}.wrench.linear * (1 + 1e-12));
+    last = force;
+  }
+}
+
+TEST(HapticTick, APoseThatIsNotANumberGivesNoForceInThatTickNorAfter) {
+  Loop loop;
+  for (int k = 0; k < 1000; ++k) loop.tick(at(k * 1e-3));
+  EXPECT_GT(glm::length(loop.tick(at(1.0)).force), 0);
+  Observation o = at(1.001);
+  o.pose.axis.x = NAN;
+  EXPECT_EQ(loop.tick(o), Wrench{});
+  for (int k = 1002; k < 3000; ++k) EXPECT_EQ(loop.tick(at(k * 1e-3)), Wrench{});
+  EXPECT_TRUE(std::isfinite(loop.passivity().energy()));
+}
+
+TEST(HapticTick, FarFromTheOriginItIsAsNearIt) {
+  const Vec3 offset(1e5, -1e5, 1e5);
+  Loop near, far(offset);
+  for (int k = 0; k < 3000; ++k) {
+    Observation o = at(k * 1e-3);
+    const Wrench here = near.tick(o);
+    o.pose.tip += offset;
+    EXPECT_LT(glm::length(far.tick(o).force - here.force), 1e-6) << k;
+  }
+}
+
+}  // namespace
+}  // namespace riffler
