@@ -35,18 +35,23 @@ void Passivity::reset() {
   energy_ = settings_.reserve;
   rate_ = {};
   last_dt_ = settings_.period;
-  absorbed_ = {};
+  absorbed_ = {}, way_ = {}, way_time_ = {};
   kept_ = 1, damped_ = 0;
 }
 
-/// What the device itself took from the hand, at the least. Damping: among all motions over the displacement the steady
-/// one loses the least (Cauchy and Schwarz). Friction: the way is at least the displacement, which is known to one
-/// step.
-double Passivity::dissipated(const Twist& displacement, double dt) const {
+/// What the device itself took from the hand, at the least. Damping: among all motions over a way the steady one loses
+/// the least (Cauchy and Schwarz). Friction: the path is at least as long as the way, which is known to one step. So
+/// that this step weighs little, ways are gathered until they are some steps long.
+double Passivity::dissipated(const Twist& displacement, double dt) {
   double sum = 0;
   for (int k = 0; k < kCoordinates; ++k) {
-    const double way = std::max(0.0, std::abs(displacement[k]) - settings_.resolution[k]);
-    sum += settings_.device_friction[k] * way + (dt > 0 ? settings_.device_damping[k] * way * way / dt : 0);
+    double& time = way_time_[static_cast<std::size_t>(k)];
+    way_[k] += displacement[k], time += std::max(0.0, dt);
+    if (std::abs(way_[k]) < 8 * settings_.resolution[k]) continue;
+    const double way = std::abs(way_[k]) - settings_.resolution[k];
+    if (way > 0) sum += settings_.device_friction[k] * way;
+    if (way > 0 && time > 0) sum += settings_.device_damping[k] * way * way / time;
+    way_[k] = time = 0;
   }
   return sum;
 }

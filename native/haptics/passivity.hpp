@@ -29,10 +29,13 @@ struct PassivitySettings {
   Bounds acceleration{1e5, 1e3};  ///< mm/s², rad/s²: of the grip, per coordinate
   Bounds resolution{0.03, 2e-3};  ///< mm, rad: step of the measured position
   Bounds max_damping{2e-3, 2};    ///< N·s/mm, N·mm·s/rad: the most that is injected
-  Bounds device_damping{0, 0};    ///< what the device surely has, in every coordinate
-  Bounds device_friction{0, 0};   ///< N, N·mm: likewise
-  double reserve = 1;             ///< N·mm that rendering may owe to nobody: where the account starts
-  double storage = 50;            ///< N·mm, ≥ reserve: the most that rendered objects can hold
+  // What the device takes from the hand by itself is what lets a wall within its passive bound be sampled at a loss for
+  // ever: without it, the reserve is spent some day, and contacts begin soft.
+  Bounds device_damping{0, 0};  ///< what the device surely has, in whatever direction
+  Bounds device_friction{0,
+                         0};  ///< N, N·mm: surely, in each coordinate; 1/√3 of one that is the same in all directions
+  double reserve = 1;         ///< N·mm that rendering may owe to nobody: where the account starts
+  double storage = 50;        ///< N·mm, ≥ reserve: the most that rendered objects can hold
 
   /// std::invalid_argument naming the field.
   void validate() const;
@@ -63,12 +66,14 @@ class Passivity {
   void reset();
 
  private:
-  double dissipated(const Twist& displacement, double dt) const;
+  double dissipated(const Twist& displacement, double dt);
 
   PassivitySettings settings_;
   double energy_;
   Twist rate_{};  // mean over the last tick
   double last_dt_;
+  Twist way_{};  // since the device's own dissipation was credited last, and for how long: by coordinate
+  std::array<double, kCoordinates> way_time_{};
   std::array<double, kCoordinates> absorbed_{};
   double kept_ = 1, damped_ = 0;
 };

@@ -4,7 +4,8 @@
 // One tick, with the parts of this folder:
 //
 //   if (!lets_force_through(safety.observe({.dt = dt, .age = age, .pose = grip, …}))) w = {};   // checks; may trip
-//   passivity.observe(held.wrench(), displacement, dt);                        // what the last hold did
+//   const auto [way, turn] = stretch(grip, last_grip);
+//   passivity.observe(held.wrench(), {way, turn}, dt);                         // what the last hold did
 //   const auto [on_grip, on_tool, energy] = couple(coupling, stretch(grip, tool), twist, tool_twist);
 //   tool = …;                                                                  // follows on_tool, or is held by
 //   contact w = limited(limits, capability, actuators, w, on_grip, twist, dt);         // the rates: from the last w,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace riffler::stress {
 
@@ -70,10 +71,13 @@ double gained(const SimulatedDevice& device, const SimulatedWall& wall, const Co
 
 double cunning_boundary(const SimulatedDevice& device, double wall_damping, const Column& normal,
                         const std::vector<Column>& directions) {
+  // Without steps everything is linear, and one amplitude as good as any.
+  static constexpr double kAmplitudes[] = {1, 1e-3, 0.1, 0.4, 4, 32, 1e3};
+  const bool stepless = *std::max_element(device.resolution.begin(), device.resolution.end()) == 0;
   return bisect([&](double stiffness) {
     for (const Column& direction : directions)
-      for (const double amplitude : {1e-3, 0.1, 0.4, 1.0, 4.0, 32.0, 1e3})
-        for (const int ticks : {1, 2, 3, 4, 8, 32})
+      for (const double amplitude : std::span(kAmplitudes).first(stepless ? 1 : std::size(kAmplitudes)))
+        for (const int ticks : {1, 2, 3, 4, 8, 32, 256})
           if (gained(device, {normal, stiffness, wall_damping}, scaled(amplitude, direction), ticks) > 0) return true;
     return false;
   });
@@ -141,7 +145,6 @@ class Hand {
     }
     return f;
   }
-  bool pushes() const { return push_ > 0; }
 
  private:
   const Session& session_;
@@ -161,7 +164,7 @@ SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, co
   const Column towards = inverse(device.damping) * wall.normal;
   simulation.place(scaled(-0.5 / dot(wall.normal, towards), towards), Column(n, 0.0));
   SessionResult result;
-  long pushing = 0;
+  long late = 0;
   double gained = 0;
   for (long tick = 0; tick < session.ticks; ++tick) {
     const Column force = hand.force(tick, simulation.position(), simulation.velocity());
@@ -182,11 +185,12 @@ SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, co
         std::max(result.measured_delivered, static_cast<double>(simulation.measured_delivered()));
     if (const Passivity* p = simulation.rendered().passivity())
       result.least_energy = tick == 0 ? p->energy() : std::min(result.least_energy, p->energy());
-    if (hand.pushes()) ++pushing, result.depth += depth;
-    if (tick >= session.ticks / 4 * 3) result.speed += speed * speed;
+    if (tick < session.ticks / 4 * 3) continue;
+    ++late;
+    result.depth += depth, result.speed += speed * speed;
   }
-  result.depth /= static_cast<double>(std::max(1L, pushing));
-  result.speed = std::sqrt(result.speed / static_cast<double>(std::max(1L, session.ticks / 4)));
+  result.depth /= static_cast<double>(late);
+  result.speed = std::sqrt(result.speed / static_cast<double>(late));
   return result;
 }
 

@@ -50,7 +50,7 @@ struct SessionResult {
   double measured_delivered = 0;  ///< by measured positions
   double gained = 0;              ///< N·mm: the most that the hand had got from wall and device together
   double least_energy = 0;        ///< of the controller's account
-  double depth = 0;               ///< mm, mean over the time in which the hand pushes
+  double depth = 0;               ///< mm, mean of the last quarter
   double speed = 0;               ///< mm/s along the normal, root mean square of the last quarter
   double variation = 0;  ///< N·mm: half an encoder step times change of force, summed: what quantisation may hide
   long unforeseen = 0;   ///< ticks in which the grip accelerated beyond the settings' bound

@@ -70,7 +70,7 @@ void five_coordinates() {
     const CoupledScene scene = coupled_scene(seed);
     Random random(seed, 1, 0);
     std::vector<Column> directions{scene.easiest};
-    for (int k = 0; k < 200; ++k) {
+    for (int k = 0; k < 50; ++k) {
       Column d(5);
       for (double& x : d) x = random.uniform(-1, 1);
       d[3] /= 20, d[4] /= 20;

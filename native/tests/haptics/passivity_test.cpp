@@ -134,6 +134,30 @@ TEST(Passivity, WallsWithinThePassiveBoundAreLeftAlone) {
   }
 }
 
+TEST(Passivity, CreditsTheDeviceNoMoreThanItTakesAndNotMuchLess) {
+  stress::Random random(6);
+  PassivitySettings settings = strict({1e6, 1e3});
+  settings.resolution = {0.01, 0}, settings.device_friction = {0.2, 0}, settings.device_damping = {1e-3, 0};
+  settings.storage = 1e9;
+  for (const double speed : {2.0, 20.0, 200.0}) {
+    Passivity passivity(settings);
+    long double taken = 0;
+    double x = 0, measured = 0, v = 0;
+    for (int n = 0; n < 50'000; ++n) {
+      if (n % 400 == 0) v = random.uniform(-speed, speed);
+      x += v * 1e-3;
+      taken += static_cast<long double>(0.2 * std::abs(v) + 1e-3 * v * v) * 1e-3L;
+      const double now = 0.01 * std::floor(x / 0.01 + 0.5);
+      // A wrench so small that it moves no energy, so that nothing is forgotten.
+      passivity.observe({{1e-300, 0, 0}, {}}, {{now - measured, 0, 0}, {}}, 1e-3);
+      measured = now;
+    }
+    const double credit = passivity.energy() - settings.reserve;
+    EXPECT_LE(credit, static_cast<double>(taken));
+    EXPECT_GT(credit, 0.7 * static_cast<double>(taken)) << speed;
+  }
+}
+
 TEST(Passivity, CoordinatesOfAPassiveObjectMayGiveForEverWhatOthersTake) {
   // A spring whose principal axes are not the coordinates, and a damper, on an elliptic path.
   PassivitySettings settings = strict({1e5, 1e3});

@@ -57,7 +57,8 @@ class Loop {
   }
 
   Wrench tick(Observation now) {
-    const Twist displacement{now.pose.tip - last_.tip, glm::cross(last_.axis, now.pose.axis)};
+    const auto [way, turn] = stretch(now.pose, last_);
+    const Twist displacement{way, turn};
     last_ = now.pose;
     if (now.dt > 0) now.twist = 1 / now.dt * displacement;
     if (!lets_force_through(safety_.observe(now))) w_ = {};

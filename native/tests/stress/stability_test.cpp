@@ -41,9 +41,9 @@ TEST(Stability, OneCoordinateSwingsUpAtTheBoundOfColgateAndSchenkel) {
 }
 
 TEST(Stability, ACunningHandGainsFromTheBoundOn) {
-  for (const double wall : {0.0, 5e-4, 1.5e-3}) {
+  for (const double wall : {-1.5e-3, -5e-4, 0.0, 5e-4, 1.5e-3}) {
     const double bound = passive_stiffness({1e-3, 2e-3, 0, 0}, wall).least();
-    EXPECT_NEAR(cunning_boundary(simulated_device(1.5e-4, 2e-3), wall, {1.0}, {{1.0}}) / bound, 1, 0.01) << wall;
+    EXPECT_NEAR(cunning_boundary(simulated_device(1.5e-4, 2e-3), wall, {1.0}, {{1.0}}) / bound, 1, 0.03) << wall;
   }
   // With encoder steps, Abbott and Okamura's, from well below to well above the step at which it takes over.
   for (const double step : {0.01, 0.05, 0.2, 0.3}) {
@@ -69,6 +69,32 @@ TEST(Stability, FiveCoupledCoordinatesAreBoundByTheDampingAlongTheNormal) {
     }
     EXPECT_GE(cunning_boundary(scene.device, 0, scene.normal, others), bound * 0.999);
     EXPECT_GE(swing_boundary(scene.device, {}, scene.normal), bound * 0.999);
+  }
+}
+
+TEST(Stability, EncoderStepsOfFiveCoordinatesAddUp) {
+  // A hand that trembles across the edge between two steps in every coordinate at once flips the force by
+  // stiffness · Σ |n_i| Δ_i, and gains where friction is least for its share of the normal.
+  for (const std::uint64_t seed : {2, 5, 8}) {
+    CoupledScene scene = coupled_scene(seed);
+    Random random(seed);
+    double flips = 0, bound = INFINITY;
+    for (std::size_t i = 0; i < 5; ++i) {
+      const double unit = i < 3 ? 1 : 1.0 / 20;
+      scene.device.resolution[i] = random.uniform(0.5, 1) * 0.3 * unit;
+      scene.device.friction[i] = random.uniform(0.02, 0.04) / unit;
+      flips += std::abs(scene.normal[i]) * scene.device.resolution[i];
+    }
+    std::vector<Column> hands;
+    for (std::size_t j = 0; j < 5; ++j) {
+      bound = std::min(bound, 2 * scene.device.friction[j] / (std::abs(scene.normal[j]) * flips));
+      Column d(5);
+      for (std::size_t i = 0; i < 5; ++i)
+        d[i] = std::copysign((i == j ? 1e-2 : 1e-6) * scene.device.resolution[i], scene.normal[i]);
+      hands.push_back(d);
+    }
+    ASSERT_LT(bound, 2 * scene.damping / scene.device.period) << "quantisation is to be what limits";
+    EXPECT_NEAR(cunning_boundary(scene.device, 0, scene.normal, hands) / bound, 1, 0.02) << seed;
   }
 }
 
