@@ -43,7 +43,7 @@ Safety::Finding Safety::check(const Observation& now) const {
     return {Cause::NotFinite, 0};
   if (now.device_fault) return {Cause::DeviceFault, static_cast<double>(now.device_fault)};
   // Before it is homed a device has no pose that could be checked.
-  if (state_ == ForceState::Homing) return {Cause::None, 0};
+  if (state_ == ForceState::Homing && !now.homed) return {Cause::None, 0};
   if (!now.homed) return {Cause::NotHomed, 0};
   if (std::abs(now.redundancy) > settings_.redundancy) return {Cause::Redundancy, now.redundancy};
   if (const Finding motion = check_motion(now); motion.cause != Cause::None) return motion;

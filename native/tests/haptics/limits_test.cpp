@@ -46,7 +46,7 @@ LimitSettings without_rates() {
   return s;
 }
 
-TEST(Limits, KeepTheDirectionInAllSixCoordinates) {
+TEST(HapticLimits, KeepTheDirectionInAllSixCoordinates) {
   stress::Random random(1);
   const LimitSettings s = without_rates();
   for (int n = 0; n < 5000; ++n) {
@@ -63,7 +63,7 @@ TEST(Limits, KeepTheDirectionInAllSixCoordinates) {
   }
 }
 
-TEST(Limits, LeaveAloneWhatIsWithinThem) {
+TEST(HapticLimits, LeaveAloneWhatIsWithinThem) {
   const Wrench wanted{{1, 2, 3}, {10, 20, 30}};
   LimitReport report;
   const Twist grip{{1, 2, 3}, {0.1, 0, 0}};
@@ -75,7 +75,7 @@ TEST(Limits, LeaveAloneWhatIsWithinThem) {
   EXPECT_EQ(report.unrendered, Wrench{});
 }
 
-TEST(Limits, ChangeByNoMoreThanTheRatesOrShrink) {
+TEST(HapticLimits, ChangeByNoMoreThanTheRatesOrShrink) {
   stress::Random random(2);
   const LimitSettings s;
   Wrench previous;
@@ -97,7 +97,7 @@ TEST(Limits, ChangeByNoMoreThanTheRatesOrShrink) {
   }
 }
 
-TEST(Limits, ReachASteadyWrenchByAStraightLine) {
+TEST(HapticLimits, ReachASteadyWrenchByAStraightLine) {
   const LimitSettings s;
   const Wrench wanted{{0, 0, 5}, {100, 0, 0}};
   Wrench w;
@@ -109,13 +109,13 @@ TEST(Limits, ReachASteadyWrenchByAStraightLine) {
   EXPECT_EQ(ticks, 3);  // 5 N at 2 N a tick
 }
 
-TEST(Limits, NoTimeMeansNoChange) {
+TEST(HapticLimits, NoTimeMeansNoChange) {
   const LimitSettings s;
   const Wrench before{{1, 0, 0}, {}};
   for (const double dt : {0.0, -1.0}) EXPECT_EQ(limited(s, {}, {}, before, {{0, 3, 0}, {}}, {}, dt), before);
 }
 
-TEST(Limits, SpeedScalesDownInAStraightLineToNothing) {
+TEST(HapticLimits, SpeedScalesDownInAStraightLineToNothing) {
   const LimitSettings s;
   EXPECT_EQ(speed_gain(s, {{300, 0, 0}, {}}), 1);
   EXPECT_DOUBLE_EQ(speed_gain(s, {{650, 0, 0}, {}}), 0.5);
@@ -126,7 +126,7 @@ TEST(Limits, SpeedScalesDownInAStraightLineToNothing) {
   EXPECT_EQ(limited(s, {}, {}, {{5, 0, 0}, {}}, {{5, 0, 0}, {}}, {{0, 2000, 0}, {}}, 1e-3), Wrench{});
 }
 
-TEST(Limits, OfZeroLetNothingThroughAndMakeNoNan) {
+TEST(HapticLimits, OfZeroLetNothingThroughAndMakeNoNan) {
   const Wrench wanted{{1, 2, 3}, {4, 5, 6}};
   for (int field = 0; field < 4; ++field) {
     LimitSettings s;
@@ -143,7 +143,7 @@ TEST(Limits, OfZeroLetNothingThroughAndMakeNoNan) {
   EXPECT_EQ(limited(without_rates(), {}, actuators, {}, wanted, {}, 1e-3), Wrench{});
 }
 
-TEST(Limits, NeverHideWhatIsNotANumber) {
+TEST(HapticLimits, NeverHideWhatIsNotANumber) {
   for (const double bad : {double(NAN), double(INFINITY), -double(INFINITY)})
     for (int k = 0; k < kCoordinates; ++k) {
       Wrench wanted{{1, 0, 0}, {0, 1, 0}};
@@ -152,7 +152,7 @@ TEST(Limits, NeverHideWhatIsNotANumber) {
     }
 }
 
-TEST(Limits, SayWhatTheDeviceCannotPush) {
+TEST(HapticLimits, SayWhatTheDeviceCannotPush) {
   // A pen with its grip along (0, 0.6, 0.8): no torque about it.
   Capability pen;
   pen.push[5] = false;
@@ -168,7 +168,7 @@ TEST(Limits, SayWhatTheDeviceCannotPush) {
               1e-12);
 }
 
-TEST(Limits, SettingsNameTheFieldThatIsWrong) {
+TEST(HapticLimits, SettingsNameTheFieldThatIsWrong) {
   const auto message = [](auto change) {
     LimitSettings s;
     change(s);

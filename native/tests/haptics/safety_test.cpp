@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "stress/random.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler {
@@ -273,6 +274,70 @@ TEST(Safety, AMoveThatTheSpeedExplainsIsNoJump) {
     }
     EXPECT_FALSE(r.tick(o) == Wrench{}) << k;
   }
+}
+
+TEST(Safety, ADeviceThatComesHomeInABadStateGetsNoForce) {
+  for (const Fault& fault : faults()) {
+    if (fault.cause == Cause::NotHomed || fault.cause == Cause::Jump) continue;  // what homing is for
+    Safety safety{SafetySettings{}};
+    safety.switch_on();
+    Observation o = good();
+    fault.spoil(o);
+    for (int k = 0; k < 3; ++k) {
+      safety.observe(o);
+      EXPECT_EQ(safety.release(kPush).wrench(), Wrench{}) << sentence(fault.cause);
+    }
+    EXPECT_EQ(safety.cause(), fault.cause);
+  }
+}
+
+TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
+  stress::Random random(1);
+  const SafetySettings s;
+  SafetySettings quick = s;
+  quick.ramp = quick.rest = 5e-3;
+  Safety safety(quick);
+  Vec3 tip{0}, last_tip{0};
+  bool last_known = false;
+  long forces = 0, trips = 0;
+  const std::vector<Fault> kinds = faults();
+  for (int k = 0; k < 300'000; ++k) {
+    if (random.one_in(200)) safety.switch_on();
+    if (random.one_in(3000)) safety.switch_off();
+    if (random.one_in(30)) safety.reset();
+    Observation o = good();
+    o.dead_man = !random.one_in(40);
+    o.dt = random.one_in(30) ? random.uniform(0, 0.03) : 1e-3;
+    o.age = random.one_in(30) ? random.uniform(0, 0.03) : 1e-3;
+    o.pose.tip = tip = tip + random.uniform(0, random.one_in(100) ? 10 : 1) * random.direction();
+    o.twist.linear = random.uniform(0, random.one_in(100) ? 2000 : 900) * random.direction();
+    if (random.one_in(40)) kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))].spoil(o);
+    Wrench wanted = kPush;
+    if (random.one_in(100)) wanted[random.below(6)] = random.one_in(2) ? double(NAN) : 1e4;
+    const ForceState state = safety.observe(o);
+    const Wrench w = safety.release(wanted).wrench();
+    if (!(w == Wrench{})) {
+      ++forces;
+      ASSERT_TRUE(lets_force_through(state) && lets_force_through(safety.state()));
+      ASSERT_TRUE(finite(w) && finite(wanted) && o.dead_man && o.homed && !o.device_fault && o.dt >= 0);
+      ASSERT_TRUE(finite(o.pose.tip) && finite(o.pose.axis) && finite(o.twist));
+      ASSERT_LT(std::max(o.age, o.dt), s.fresh + s.fade);
+      ASSERT_LT(glm::length(o.twist.linear), s.overspeed.linear);
+      ASSERT_LT(glm::length(o.twist.angular), s.overspeed.angular);
+      ASSERT_LE(std::abs(o.redundancy), s.redundancy);
+      if (last_known) {
+        ASSERT_LE(glm::length(o.pose.tip - last_tip), s.jump.linear + s.overspeed.linear * o.dt + 1e-9);
+      }
+      ASSERT_LE(glm::length(w.force), safety.gain() * 3 + 1e-12);
+    }
+    // Where it was while off or not homed says nothing.
+    if (finite(o.pose.tip)) last_tip = o.pose.tip, last_known = o.homed && state != ForceState::Off;
+    last_known = last_known && state != ForceState::Off;
+    trips += state == ForceState::Tripped;
+  }
+  EXPECT_GT(forces, 10'000);
+  EXPECT_GT(trips, 10'000);
+  EXPECT_GT(safety.log().count(), 1000u);
 }
 
 TEST(Safety, SettingsNameTheFieldThatIsWrong) {

@@ -48,8 +48,12 @@ namespace {
 /// A device without motors to speak of, a tool that is held in place, and all that is between.
 class Loop {
  public:
-  explicit Loop(const Vec3& where = Vec3(0))
-      : passivity_(PassivitySettings{}), safety_(SafetySettings{}), tool_{where, {0, 0, 1}}, last_(tool_) {
+  explicit Loop(const Vec3& where = Vec3(0), const CouplingSettings& coupling = {})
+      : coupling_(coupling),
+        passivity_(PassivitySettings{}),
+        safety_(SafetySettings{}),
+        tool_{where, {0, 0, 1}},
+        last_(tool_) {
     safety_.switch_on();
     capability_.push[5] = false;
     actuators_.count = 3;
@@ -141,6 +145,35 @@ TEST(HapticTick, APoseThatIsNotANumberGivesNoForceInThatTickNorAfter) {
   EXPECT_EQ(loop.tick(o), Wrench{});
   for (int k = 1002; k < 3000; ++k) EXPECT_EQ(loop.tick(at(k * 1e-3)), Wrench{});
   EXPECT_TRUE(std::isfinite(loop.passivity().energy()));
+}
+
+TEST(HapticTick, AMassWithoutAnyDampingGetsNoMoreThanTheReserve) {
+  // No stiffness is passive on it. The hand shakes it; ramp, limits and controller stand between it and the coupling.
+  for (const double stiffness : {0.5, 5.0, 50.0}) {
+    CouplingSettings coupling;
+    coupling.stiffness = stiffness;
+    Loop loop(Vec3(0), coupling);
+    stress::Random random(1);
+    const double mass = 1.5e-4, dt = 1e-3;
+    Vec3 x(0.5, 0, 0), v(0), hand(0);
+    long double delivered = 0;
+    double stiffest = 0;
+    for (int k = 0; k < 100'000; ++k) {
+      Observation o = at(0);
+      o.pose = {x, {0, 0, 1}};
+      const Vec3 force = loop.tick(o).force;
+      stiffest = std::max(stiffest, glm::length(force));
+      if (k % 64 == 0) hand = random.uniform(0, 1.5) * random.direction();
+      // The hand brakes what is fast, and holds on to what goes off.
+      const Vec3 push = hand - 1e-3 * v - 0.05 * x;
+      const Vec3 a = (force + push) / mass, way = dt * v + 0.5 * dt * dt * a;
+      for (int i = 0; i < 3; ++i) delivered += static_cast<long double>(force[i]) * way[i];
+      x += way, v += dt * a;
+      ASSERT_LE(delivered, PassivitySettings{}.reserve + 1e-9L) << stiffness << " " << k;
+    }
+    EXPECT_GT(stiffest, 0.5) << "there was a force";
+    EXPECT_EQ(loop.safety().log().count(), 0u);
+  }
 }
 
 TEST(HapticTick, FarFromTheOriginItIsAsNearIt) {
