@@ -3,15 +3,21 @@
 //
 // One tick, with the parts of this folder:
 //
-//   if (!lets_force_through(safety.observe({.dt = dt, .age = age, .pose = grip, …}))) w = {};   // checks; may trip
+//   const ForceState state = safety.observe({.dt = dt, .age = age, .pose = grip, .twist = twist, ...});  // may trip
+//   if (!lets_force_through(state)) w = {};
+//
 //   const auto [way, turn] = stretch(grip, last_grip);
-//   passivity.observe(held.wrench(), {way, turn}, dt);                         // what the last hold did
+//   passivity.observe(held.wrench(), {way, turn}, dt);  // what the last hold did
+//
 //   const auto [on_grip, on_tool, energy] = couple(coupling, stretch(grip, tool), twist, tool_twist);
-//   tool = …;                                                                  // follows on_tool, or is held by
-//   contact w = limited(limits, capability, actuators, w, on_grip, twist, dt);         // the rates: from the last w,
-//   ungated w = passivity.control(w, capability); w = magnitude_gain(limits, actuators, w) * w; // damping was added
-//   held = safety.release(w);                                                  // gain of ramp and fade; the last
-//   checks device.write(held);
+//   tool = ...;  // goes where on_tool takes it, or is held by what it touches
+//
+//   w = limited(limits, capability, actuators, w, on_grip, twist, dt);  // rates: from the last w, not from held
+//   w = passivity.control(w, capability);
+//   w = magnitude_gain(limits, actuators, w) * w;  // damping was added
+//
+//   held = safety.release(w);  // the gain of ramp and fade, the last checks
+//   device.write(held);
 //
 // After `control` a wrench may only shrink, as it does in the last two steps: the account that bears a wrench bears
 // any part of it. All wrenches and twists of a tick are about the grip's point.
@@ -32,7 +38,7 @@ struct SafetySettings {
   double fade = 17e-3;         ///< s: then the force falls on a straight line, to nothing and a trip at fresh + fade
   double rest = 0.5;           ///< s for which all checks must pass after a trip that heals by itself
   Bounds overspeed{1000, 20};  ///< mm/s, rad/s
-  Bounds jump{3, 0.1};         ///< mm, rad from one tick to the next, beyond what the twist explains
+  Bounds jump{3, 0.1};         ///< mm, rad from one tick to the next, beyond overspeed · dt
   double redundancy = 0.5;     ///< mm between two measurements of one length
   Bounds wrench_ceiling{20, 1200};  ///< N, N·mm: above the limits; a wrench over it is a fault
 
