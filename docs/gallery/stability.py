@@ -77,6 +77,13 @@ def session_table(data: dict) -> str:
     return table(head, rows)
 
 
+def touched_table(rows: list[dict]) -> str:
+    return table(
+        ["K, N/mm", "nothing credited", "half", "all"],
+        [[f"{r['stiffness']:g}", str(r["none"]), str(r["half"]), str(r["all"])] for r in rows],
+    )
+
+
 def fill(tables: dict[str, str]) -> None:
     text = DOCUMENT.read_text()
     for name, rows in tables.items():
@@ -156,7 +163,14 @@ def main() -> None:
     arguments = parser.parse_args()
     data = json.loads(subprocess.run([arguments.program], check=True, stdout=subprocess.PIPE).stdout)
     draw(data)
-    fill({"pen": pen_table(data["pen"]), "agreement": agreement_table(data), "sessions": session_table(data)})
+    fill(
+        {
+            "pen": pen_table(data["pen"]),
+            "agreement": agreement_table(data),
+            "sessions": session_table(data),
+            "touched": touched_table(data["touched"]),
+        }
+    )
 
 
 if __name__ == "__main__":

@@ -2,15 +2,12 @@
 // controller that lets it go back no further than that (Hannaford and Ryu, "Time-domain passivity control of haptic
 // interfaces", IEEE Trans. Robotics and Automation 18(1), 2002; series type, for impedance devices).
 //
-// Two things are done differently.
-// - A hold's energy is known exactly at the tick that ends it: wrench held · displacement since (Stramigioli, Secchi,
-// van
-//   der Schaft and Fantuzzi, IEEE Trans. Robotics 21(4), 2005). So the account has no error of sampling.
-// - The controller does not wait for a debt. The grip's acceleration is bounded, so its next displacement is known up
-// to an
-//   uncertainty; no wrench is let through which could deliver more than the account holds, wherever in there the grip
-//   goes. While the bounds hold, the account never is below zero; a tick that breaks them leaves a debt, which is
-//   accounted and paid before anything else is delivered.
+// Two things are done differently. A hold's energy is known exactly at the tick that ends it, wrench held ·
+// displacement since (Stramigioli, Secchi, van der Schaft and Fantuzzi, IEEE Trans. Robotics 21(4), 2005), so the
+// account has no error of sampling. And the controller does not wait for a debt. The grip's acceleration is bounded, so
+// its next displacement is known up to an uncertainty; no wrench is let through which could deliver more than the
+// account holds, wherever in there the grip goes. While the bounds hold, the account is never below zero; a tick that
+// breaks them leaves a debt, which is accounted and paid before anything else is delivered.
 //
 // One account serves all coordinates. Energy per coordinate depends on the choice of axes and pivot, and a passive
 // object may take it in one and give it back in another for ever (a spring whose principal axes are not the coordinates
@@ -31,11 +28,10 @@ struct PassivitySettings {
   Bounds max_damping{2e-3, 2};    ///< N·s/mm, N·mm·s/rad: the most that is injected
   // What the device takes from the hand by itself is what lets a wall within its passive bound be sampled at a loss for
   // ever: without it, the reserve is spent some day, and contacts begin soft.
-  Bounds device_damping{0, 0};  ///< what the device surely has, in whatever direction
-  Bounds device_friction{0,
-                         0};  ///< N, N·mm: surely, in each coordinate; 1/√3 of one that is the same in all directions
-  double reserve = 1;         ///< N·mm that rendering may owe to nobody: where the account starts
-  double storage = 50;        ///< N·mm, ≥ reserve: the most that rendered objects can hold
+  Bounds device_damping{0, 0};   ///< what the device surely has, in whatever direction
+  Bounds device_friction{0, 0};  ///< N, N·mm: surely, in each coordinate; of one that is the same all round, 1/√3
+  double reserve = 1;            ///< N·mm that rendering may owe to nobody: where the account starts
+  double storage = 50;           ///< N·mm, ≥ reserve: the most that rendered objects can hold
 
   /// std::invalid_argument naming the field.
   void validate() const;

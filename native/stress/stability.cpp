@@ -183,8 +183,10 @@ SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, co
     result.delivered = std::max(result.delivered, static_cast<double>(simulation.delivered()));
     result.measured_delivered =
         std::max(result.measured_delivered, static_cast<double>(simulation.measured_delivered()));
-    if (const Passivity* p = simulation.rendered().passivity())
+    if (const Passivity* p = simulation.rendered().passivity()) {
+      result.touched += p->kept() < 1 || p->damped() > 0;
       result.least_energy = tick == 0 ? p->energy() : std::min(result.least_energy, p->energy());
+    }
     if (tick < session.ticks / 4 * 3) continue;
     ++late;
     result.depth += depth, result.speed += speed * speed;

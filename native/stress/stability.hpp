@@ -53,6 +53,7 @@ struct SessionResult {
   double depth = 0;               ///< mm, mean of the last quarter
   double speed = 0;               ///< mm/s along the normal, root mean square of the last quarter
   double variation = 0;  ///< N·mm: half an encoder step times change of force, summed: what quantisation may hide
+  long touched = 0;      ///< ticks in which the controller changed the wall's force
   long unforeseen = 0;   ///< ticks in which the grip accelerated beyond the settings' bound
 };
 SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, const Session& session,

@@ -100,6 +100,24 @@ void sessions(const char* name, const SimulatedDevice& device, const Column& nor
   }
 }
 
+/// Ticks of 10⁵ in which the controller, with its own settings, changes a wall's force: a hand strikes at random, and
+/// of the device's damping and friction none, half or all is credited.
+void touched(double damping, double friction) {
+  Rows rows("touched");
+  const double step = 6.283185307179586 / 48'000 * 180;
+  for (const double stiffness : {0.5, 1.0, 2.0, 4.0, 8.0}) {
+    long ticks[3];
+    for (int half = 0; half <= 2; ++half) {
+      PassivitySettings settings;
+      settings.resolution.linear = step;
+      settings.device_damping.linear = 0.5 * half * damping, settings.device_friction.linear = 0.5 * half * friction;
+      const SimulatedWall wall{{1.0}, stiffness, 1e-3, true, 10};
+      ticks[half] = press(simulated_device(kMass, damping, friction, step), wall, {100'000, 2, 3}, settings).touched;
+    }
+    rows.add(R"({"stiffness": %.9g, "none": %ld, "half": %ld, "all": %ld})", stiffness, ticks[0], ticks[1], ticks[2]);
+  }
+}
+
 /// The shipped pen: steps of its encoders, 48 000 and 70 000 counts a turn on arms of 180 mm, at the end of an arm.
 void pen(double damping, double friction) {
   struct Place {
@@ -147,7 +165,7 @@ int main(int argc, char** argv) {
     std::printf("{");
     pen(damping, friction);
     if (!pen_only) {
-      sampling(), wall_damping(), quantisation(), five_coordinates();
+      sampling(), wall_damping(), quantisation(), five_coordinates(), touched(damping, friction);
       PassivitySettings settings;
       settings.jitter = 0;
       settings.acceleration = {9e4, 0}, settings.resolution = {0, 0}, settings.device_damping = {2e-3, 0};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "haptics/coupling.hpp"
 #include "haptics/passive_bound.hpp"
 #include "stress/stability.hpp"
 #include "support/error_of.hpp"
@@ -132,6 +133,17 @@ TEST(Passivity, WallsWithinThePassiveBoundAreLeftAlone) {
     EXPECT_EQ(on.delivered, off.delivered) << times;
     EXPECT_GT(on.least_energy, 0.98 * settings.reserve) << times;
   }
+}
+
+TEST(Passivity, DefaultsLeaveACouplingOnAnOrdinaryDeviceAlone) {
+  // Damping, friction and encoder as docs/stability.md takes them for the pen; half of them credited.
+  const CouplingSettings coupling;
+  PassivitySettings settings;
+  settings.device_damping.linear = 1e-3, settings.device_friction.linear = 0.1;
+  const stress::SimulatedWall wall{{1.0}, coupling.stiffness, coupling.damping, true, 10};
+  const auto r = press(stress::simulated_device(1.5e-4, 2e-3, 0.2, 0.0236), wall, {100'000, 2, 3}, settings);
+  EXPECT_EQ(r.touched, 0);
+  EXPECT_EQ(r.unforeseen, 0);
 }
 
 TEST(Passivity, CreditsTheDeviceNoMoreThanItTakesAndNotMuchLess) {
