@@ -1,46 +1,12 @@
 // The parts together, as haptics/safety.hpp calls them in one tick.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "haptics/coupling.hpp"
 #include "haptics/limits.hpp"
 #include "haptics/passivity.hpp"
 #include "haptics/safety.hpp"
 #include "stress/random.hpp"
-
-namespace {
-
-thread_local long allocations = 0;
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-// Every allocation of this program by new is counted.
-void* operator new(std::size_t size) {
-  return counted(size);
-}
-void* operator new[](std::size_t size) {
-  return counted(size);
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete[](void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
-void operator delete[](void* p, std::size_t) noexcept {
-  std::free(p);
-}
+#include "support/allocations.hpp"
 
 namespace riffler {
 namespace {
@@ -99,13 +65,13 @@ Observation at(double t) {
 }
 
 TEST(HapticTick, AllocatesNothing) {
-  const long before = allocations;
+  const long before = test::allocations();
   const auto* proof = new std::array<int, 100>();
-  EXPECT_GT(allocations, before) << "the count counts";
+  EXPECT_GT(test::allocations(), before) << "the count counts";
   delete proof;
   Loop loop;
   double sum = 0;
-  const long start = allocations;
+  const long start = test::allocations();
   for (int k = 0; k < 20'000; ++k) {
     Observation o = at(k * 1e-3);
     // Faults of every kind are no reason to allocate.
@@ -113,7 +79,7 @@ TEST(HapticTick, AllocatesNothing) {
     if (k == 9000) o.pose.tip.x = NAN;
     sum += glm::length(loop.tick(o).force);
   }
-  EXPECT_EQ(allocations, start);
+  EXPECT_EQ(test::allocations(), start);
   EXPECT_GT(sum, 100);
   EXPECT_GE(loop.safety().log().count(), 4u);
 }

@@ -1,11 +1,9 @@
-// How often a thread asks for memory.
+// How often this thread has allocated: for what must not allocate at all.
 #pragma once
-
-#include <cstdint>
 
 namespace riffler::test {
 
-/// Calls of operator new so far in this thread.
-std::uint64_t allocations();
+/// Calls of operator new by this thread so far, whoever made them: allocations.cpp replaces it in the whole program.
+long allocations();
 
 }  // namespace riffler::test
