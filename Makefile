@@ -70,14 +70,14 @@ lint:  ## Check style, layers, and that every header stands alone
 	@$(ready) cpp-tests
 	$(python) -m ruff check .
 	$(python) -m ruff format --check .
-	find native -name '*.[ch]pp' | xargs .venv/bin/clang-format --dry-run -Werror
+	find native device -name '*.[ch]pp' -o -name '*.[ch]' | xargs .venv/bin/clang-format --dry-run -Werror
 	$(python) tools/check_layers.py
 	$(python) tools/preset.py release riffler_core_verify_interface_header_sets \
 	  riffler_reference_verify_interface_header_sets
 
 format:  ## Bring all sources into style
 	@$(ready)
-	find native -name '*.[ch]pp' | xargs .venv/bin/clang-format -i
+	find native device -name '*.[ch]pp' -o -name '*.[ch]' | xargs .venv/bin/clang-format -i
 	$(python) -m ruff check --fix-only --quiet .
 	$(python) -m ruff format .
 

@@ -1,5 +1,6 @@
 """Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core touches neither Python
-nor what it is judged by, and addon/core never touches Blender. Prints every line that breaks a rule and exits 1."""
+nor what it is judged by, the pen's C files touch nothing but each other, and addon/core never touches Blender. Prints
+every line that breaks a rule and exits 1."""
 
 from __future__ import annotations
 
@@ -18,6 +19,10 @@ BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
     "stress": (None, ["reference"]),
     "bindings": (None, ["bench", "stress"]),
 }
+# Topics that may include the pen's protocol and firmware.
+USES_DEVICE = {"pen"}
+# What the pen's C files may include of the standard library: all of it is there without an operating system.
+FREESTANDING = {"stddef.h", "stdint.h", "string.h"}
 IMPORTS_BLENDER = re.compile(r"^\s*(?:import|from)\s+(?:bpy|bmesh|gpu|mathutils|blf|bl_\w+)\b")
 
 
@@ -37,7 +42,7 @@ def lines(folder: Path, *suffixes: str):
 
 
 def includes(folder: Path):
-    for place, line in lines(folder, ".cpp", ".hpp"):
+    for place, line in lines(folder, ".cpp", ".hpp", ".c", ".h"):
         if match := INCLUDE.match(line):
             yield place, match[1], match[2]
 
@@ -50,6 +55,8 @@ def core_problems() -> list[str]:
             folder = name.split("/")[0]
             if name == "Python.h" or folder == "pybind11":
                 problems.append(f"{place}: the core includes {name}")
+            elif folder == "device" and topic in USES_DEVICE:
+                continue
             elif quote == '"' and "/" not in name:
                 problems.append(f"{place}: write the topic's folder: {topic}/{name}")
             elif quote == '"' and folder not in order[: rank + 1]:
@@ -71,13 +78,25 @@ def beside_problems() -> list[str]:
     return problems
 
 
+def device_problems() -> list[str]:
+    """A path is taken from the file that includes it, so that the two folders can be copied into a firmware's tree."""
+    problems = []
+    for folder, above in (("protocol", []), ("firmware", ["../protocol"])):
+        for place, quote, name in includes(ROOT / "device" / folder):
+            if quote == "<" and name not in FREESTANDING:
+                problems.append(f"{place}: {folder} includes <{name}>, which a pen may not have")
+            elif quote == '"' and name.rpartition("/")[0] not in ["", *above]:
+                problems.append(f"{place}: {folder} includes {name}, which is not above it")
+    return problems
+
+
 def addon_problems() -> list[str]:
     core = ROOT / "addon" / "core"
     return [f"{place}: addon/core imports Blender" for place, line in lines(core, ".py") if IMPORTS_BLENDER.match(line)]
 
 
 def entry() -> None:
-    problems = core_problems() + beside_problems() + addon_problems()
+    problems = core_problems() + beside_problems() + device_problems() + addon_problems()
     print("\n".join(problems) or "layers: every include points upwards")
     sys.exit(bool(problems))
 

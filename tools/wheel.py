@@ -17,6 +17,8 @@ def sources() -> list[Path]:
     """Every file that the wheel depends on."""
     files = [ROOT / name for name in ("CMakeLists.txt", "pyproject.toml", "README.md", "LICENSE")]
     files += (ROOT / "cmake").rglob("*.cmake")
+    files += (ROOT / "device").rglob("CMakeLists.txt")
+    files += (ROOT / "device").rglob("*.[ch]")
     for topic in (ROOT / "native").iterdir():
         if topic.is_dir() and topic.name not in NOT_SHIPPED:
             files += (f for f in topic.rglob("*") if f.is_file() and f.suffix not in {".so", ".pyc"})

@@ -45,7 +45,7 @@ void riffler_pen_reference_config(riffler_pen_config* config) {
   config->limits.watchdog_us = 20000;
   config->limits.ramp_us = 500000;
   config->limits.speed_counts_per_s = 400000;
-  config->limits.stall_ma = 1000;
+  config->limits.stall_ma = 400;
   config->limits.stall_ms = 2000;
   config->late_us = 5000;
   config->mismatch_ma = 500;

@@ -230,6 +230,9 @@ const char* riffler_pen_limits_problem(const riffler_pen_limits* limits) {
   if (limits->speed_counts_per_s == 0 || limits->speed_counts_per_s > 100000000)
     return "the fastest speed of a joint is not within 1 … 10⁸ counts/s";
   if (limits->stall_ma == 0 || limits->stall_ms == 0) return "the stall's current or time is 0";
+  for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k)
+    if (limits->stall_ma > limits->continuous_ma[k])
+      return "the stall's current is above a continuous current: a warm motor would never show a stall";
   return NULL;
 }
 

@@ -186,7 +186,7 @@ typedef struct riffler_pen_limits {
   uint32_t watchdog_us;                       /* age of a command at which the pen goes to fault, ≤ 1 000 000 */
   uint32_t ramp_us;                           /* from no force to full force, ≤ 60 000 000 */
   uint32_t speed_counts_per_s;                /* of a joint; faster is a jump, 1 … 100 000 000 */
-  uint16_t stall_ma;                          /* current from which a joint without a count is a stall, > 0 */
+  uint16_t stall_ma;                          /* from which a joint without a count is a stall, 1 … every continuous */
   uint16_t stall_ms;                          /* for how long, > 0 */
 } riffler_pen_limits;
 
