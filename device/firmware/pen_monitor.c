@@ -27,7 +27,7 @@ static uint32_t grown(uint32_t timer, uint32_t elapsed_us) {
 /* The lowest joint whose bit is set, or RIFFLER_PEN_NO_JOINT. */
 static size_t first_joint(uint8_t bits) {
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k)
-    if (bits >> k & 1U) return k;
+    if (((uint32_t)bits >> k & 1U) != 0) return k;
   return RIFFLER_PEN_NO_JOINT;
 }
 

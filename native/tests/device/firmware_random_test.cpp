@@ -137,9 +137,7 @@ TEST(PenFirmwareRandom, AMillionStepsKeepEveryPromise) {
                                                         : 1000;
       const riffler_pen_state before = pen.state();
       riffler_pen_sensors& s = pen.sensors;
-      for (std::int32_t& counter : s.counters)
-        counter =
-            static_cast<std::int32_t>(static_cast<std::uint32_t>(counter) + static_cast<std::uint32_t>(k % 2 ? 1 : -1));
+      for (std::int32_t& counter : s.counters) counter = moved(counter, k % 2 ? 1 : -1);
       for (int j = 0; j < RIFFLER_PEN_JOINTS; ++j) s.current_ma[j] = pen.drive.current_ma[j];
       if (random.one_in(mood.fault_one_in)) spoil(s, random);
       pen.drive = riffler_pen_step(&pen.pen, &s, elapsed);

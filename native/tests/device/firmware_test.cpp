@@ -160,8 +160,7 @@ TEST(PenFirmware, SequenceAndTimesWrapWithoutATrace) {
   std::uint16_t sequence = riffler_pen_report(&pen.pen).sequence;
   std::uint32_t time = pen.pen.time_us;
   for (int k = 0; k < 1000; ++k) {
-    for (std::int32_t& counter : pen.sensors.counters)
-      counter = static_cast<std::int32_t>(static_cast<std::uint32_t>(counter) + 10U);
+    for (std::int32_t& counter : pen.sensors.counters) counter = moved(counter, 10);
     pen.send(true, kCommand);
     pen.still_step();
     ASSERT_EQ(pen.state(), RIFFLER_PEN_ACTIVE);

@@ -54,6 +54,11 @@ inline riffler_pen_config reference() {
   return config;
 }
 
+/// A counter after so many counts; wraps.
+inline std::int32_t moved(std::int32_t counter, int counts) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(counter) + static_cast<std::uint32_t>(counts));
+}
+
 /// Any report within its bounds.
 inline riffler_pen_input random_input(stress::Random& random) {
   riffler_pen_input report{};
@@ -133,7 +138,7 @@ class Pen {
 
   /// One step; the hand trembles by a count.
   riffler_pen_drive step(std::uint32_t elapsed_us = 1000) {
-    for (std::int32_t& counter : sensors.counters) counter += steps_ % 2 ? 1 : -1;
+    for (std::int32_t& counter : sensors.counters) counter = moved(counter, steps_ % 2 ? 1 : -1);
     ++steps_;
     return still_step(elapsed_us);
   }
