@@ -90,11 +90,11 @@ docs:  ## Check links and examples, collect the documents and the API reference:
 	$(python) tools/check_docs.py
 	$(python) tools/collect_docs.py
 
-gallery:  ## Plan and render the pictures of planning and of stability: docs/images
+gallery:  ## Plan, measure and draw the pictures of planning, stability and the pen: docs/images
 	@$(ready) demo
 	@$(ready) cpp-tests
 	$(python) tools/preset.py release riffler_stability
-	for script in mouse mouse_fixtures sole verify_map stability; do $(python) docs/gallery/$$script.py || exit 1; done
+	for script in mouse mouse_fixtures sole verify_map stability pen_states; do $(python) docs/gallery/$$script.py || exit 1; done
 
 package:  ## Make the wheel and the Blender extension: dist
 	@$(ready)

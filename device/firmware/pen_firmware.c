@@ -31,7 +31,7 @@ void riffler_pen_reference_config(riffler_pen_config* config) {
   config->identity.major = RIFFLER_PEN_PROTOCOL_MAJOR;
   config->identity.minor = RIFFLER_PEN_PROTOCOL_MINOR;
   config->identity.firmware = 1;
-  strcpy(config->identity.geometry, "reference");
+  strcpy(config->identity.geometry, "riffler");
   strcpy(config->identity.serial, "0");
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) {
     config->limits.peak_ma[k] = 1500;

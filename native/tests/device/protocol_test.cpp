@@ -270,7 +270,7 @@ TEST(PenProtocol, ADeviceThatOnlySharesThePensNumberIsRefused) {
 }
 
 TEST(PenProtocol, ANameIsGraphicAsciiAndThenNothing) {
-  const riffler_pen_identity identity = reference().identity;  // "reference", "0"
+  const riffler_pen_identity identity = reference().identity;  // "riffler", "0"
   const std::size_t geometry = RIFFLER_PEN_IDENTITY_GEOMETRY, serial = RIFFLER_PEN_IDENTITY_SERIAL;
   EXPECT_EQ(with(identity, geometry, 0), RIFFLER_PEN_BAD_NAME) << "empty, then letters";
   EXPECT_EQ(with(identity, serial, 0), RIFFLER_PEN_BAD_NAME) << "empty";
