@@ -107,6 +107,38 @@ TEST(PenCurrents, HeatFollowsTheSquareOfTheCurrentWithTheWindingsTime) {
   }
 }
 
+TEST(PenCurrents, HeatIsThatOfTheGreaterOfMeasuredAndToldCurrent) {
+  riffler_pen_config config = reference();
+  config.limits.thermal_ms = 1000;
+  config.mismatch_ma = 1000;
+  Pen pen(config);
+  pen.activate({400, 400, 0, 0, 0, 0});
+  for (int ms = 0; ms < 8000; ++ms) {
+    pen.send(true, {400, 400, 0, 0, 0, 0});
+    for (std::int32_t& counter : pen.sensors.counters) counter = moved(counter, ms % 2 ? 1 : -1);
+    pen.sensors.current_ma[0] = -450;
+    pen.sensors.current_ma[1] = 0;  // a sensor that is dead
+    pen.drive = riffler_pen_step(&pen.pen, &pen.sensors, 1000);
+  }
+  EXPECT_NEAR(std::sqrt(heat(pen)), 450, 2);
+  EXPECT_NEAR(std::sqrt(static_cast<double>(pen.pen.heat_q12[1]) / 4096), 400, 2);
+}
+
+TEST(PenCurrents, TheLimitFallsFromHalfOfTheHeatOnAStraightLine) {
+  const double full = 500.0 * 500 * 4096;
+  for (const auto& [part, limit] :
+       {std::pair{0.5, 1500}, {0.6, 1300}, {0.75, 1000}, {0.9, 700}, {1.0, 500}, {1.5, 500}}) {
+    riffler_pen_config config = reference();
+    config.limits.thermal_ms = 65535;
+    config.limits.rate_ma_per_ms = 65535;
+    Pen pen(config);
+    pen.activate();
+    pen.pen.heat_q12[0] = static_cast<std::int64_t>(part * full);
+    pen.turn(true, {1500, 0, 0, 0, 0, 0});
+    EXPECT_NEAR(pen.currents()[0], limit, 1) << part;
+  }
+}
+
 TEST(PenCurrents, AWarmMotorGetsItsContinuousCurrentAndTheOthersLessInProportion) {
   riffler_pen_config config = reference();
   config.limits.thermal_ms = 1000;

@@ -274,6 +274,18 @@ TEST(PenFaults, AHotMotorMustCoolByTenDegrees) {
   EXPECT_EQ(pen.state(), RIFFLER_PEN_IDLE);
 }
 
+TEST(PenFaults, ATemperatureSensorThatReadsTheImpossibleIsBroken) {
+  for (const int dc : {-400, -401, 1500, 1501}) {
+    riffler_pen_config config = reference();
+    config.hottest_dc = 1500;
+    Pen pen(config);
+    pen.activate(kCommand);
+    pen.sensors.temperature_dc[4] = static_cast<std::int16_t>(dc);
+    pen.turn(true, kCommand);
+    EXPECT_EQ(pen.fault(), dc < -400 || dc > 1500 ? RIFFLER_PEN_TEMPERATURE_SENSOR : RIFFLER_PEN_NO_FAULT) << dc;
+  }
+}
+
 TEST(PenFaults, AJumpIsWhatTheArmCannotDoInTheTime) {
   for (const std::uint32_t tick : {125U, 1000U, 4000U}) {
     const auto most = static_cast<std::int32_t>(400'000ULL * tick / 1'000'000 + 8);
