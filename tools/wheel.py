@@ -27,7 +27,8 @@ def sources() -> list[Path]:
 
 def build_wheel() -> tuple[Path, str]:
     """The wheel of the present sources and the digest that names them."""
-    flags = [f"{name}={os.environ.get(name, '')}" for name in ("CXX", "CXXFLAGS", "LDFLAGS", "CMAKE_ARGS")]
+    names = ("CC", "CFLAGS", "CXX", "CXXFLAGS", "LDFLAGS", "CMAKE_ARGS")
+    flags = [f"{name}={os.environ.get(name, '')}" for name in names]
     requirements = ROOT / "requirements" / "dev.txt"
     key = digest([*sources(), requirements], sys.version, *flags)
     stamp = FOLDER / ".stamp"

@@ -155,7 +155,7 @@ typedef struct riffler_pen_input {
   uint8_t fault_count;                  /* faults since power came on, wraps: none is missed between two reports */
   uint8_t refused_count;                /* output reports that were not taken, wraps */
   uint16_t echo_sequence;               /* of the newest output report that was taken */
-  int16_t applied[RIFFLER_PEN_JOINTS];  /* mA that the motors were told in the step before */
+  int16_t applied[RIFFLER_PEN_JOINTS];  /* mA that the motors were told in the last step */
   uint32_t echo_time_us;                /* host time of the newest output report that was taken */
 } riffler_pen_input;
 
