@@ -17,6 +17,7 @@ def sources() -> list[Path]:
     """Every file that the wheel depends on."""
     files = [ROOT / name for name in ("CMakeLists.txt", "pyproject.toml", "README.md", "LICENSE")]
     files += (ROOT / "cmake").rglob("*.cmake")
+    files += (ROOT / "device" / "geometry").glob("*.toml")
     files += (ROOT / "device").rglob("CMakeLists.txt")
     files += (ROOT / "device").rglob("*.[ch]")
     for topic in (ROOT / "native").iterdir():

@@ -181,7 +181,7 @@ py::dict tools_of(const Program& program) {
 
 py::dict machine_list() {
   py::dict out;
-  for (const MachineEntry& entry : machines()) out[py::str(entry.name)] = entry.description;
+  for (const DescriptionEntry& entry : machines()) out[py::str(entry.name)] = entry.description;
   return out;
 }
 

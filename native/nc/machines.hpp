@@ -2,27 +2,19 @@
 // and files of the user's own.
 #pragma once
 
-#include <filesystem>
 #include <memory>
-#include <string>
 #include <string_view>
 #include <vector>
 
+#include "geom/descriptions.hpp"
 #include "nc/machine.hpp"
 #include "nc/options.hpp"
 
 namespace riffler {
 
-struct MachineEntry {
-  std::string name, description;
-};
-
-/// All machines, ours first, then every *.toml in own_machine_folders(); of a file that cannot be read the description
-/// says why.
-std::vector<MachineEntry> machines();
-
-/// RIFFLER_MACHINES (folders, apart as in PATH), then riffler/machines in the user's folder for settings.
-std::vector<std::filesystem::path> own_machine_folders();
+/// All machines, ours first, then every *.toml in the folders of RIFFLER_MACHINES (apart as in PATH) and in
+/// riffler/machines of the user's folder for settings; of a file that cannot be read the description says why.
+std::vector<DescriptionEntry> machines();
 
 /// `name` is one of machines(), or the path of a .toml file. Options that the machine does not take stay in `options`.
 /// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.

@@ -2,15 +2,12 @@
 #pragma once
 
 #include <span>
-#include <string_view>
+
+#include "geom/descriptions.hpp"
 
 namespace riffler {
 
-struct ShippedMachine {
-  std::string_view name, toml;
-};
-
 /// In the order in which a list shows them.
-std::span<const ShippedMachine> shipped_machines();
+std::span<const ShippedText> shipped_machines();
 
 }  // namespace riffler

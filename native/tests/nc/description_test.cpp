@@ -197,7 +197,7 @@ TEST(Machines, OfTheUsersOwnAreFoundByNameAndByPath) {
   write_file(own.folder / "broken.toml", std::string_view("description = 3"));
   write_file(own.folder / "tcp.toml", std::string_view(kMill));
   std::map<std::string, std::string> all;
-  for (const MachineEntry& m : machines()) all[m.name] = m.description;
+  for (const DescriptionEntry& m : machines()) all[m.name] = m.description;
   EXPECT_EQ(all.at("mill"), "my mill");
   EXPECT_EQ(all.at("broken"), "cannot be read: broken.toml, line 1: description must be a text");
   EXPECT_TRUE(all.at("tcp").starts_with("five axes")) << "what comes with Riffler stays";

@@ -1,0 +1,33 @@
+# Writes the descriptions that come with Riffler into source files, listed in shipped_sources.
+set(shipped_sources)
+
+# `function`() of `header` gives the texts of `folder`/`name`.toml, in the order of the names.
+function(ship_texts function header folder)
+  set(entries "")
+  foreach(name IN LISTS ARGN)
+    set(file ${PROJECT_SOURCE_DIR}/${folder}/${name}.toml)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(READ ${file} text)
+    string(APPEND entries "    {\"${name}\", R\"toml(${text})toml\"},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${function}.cpp @ONLY CONTENT
+"// Made by cmake/shipped.cmake.
+#include \"@header@\"
+
+namespace riffler {
+
+std::span<const ShippedText> @function@() {
+  static constexpr ShippedText kTexts[] = {
+@entries@  };
+  return kTexts;
+}
+
+}  // namespace riffler
+")
+  set(shipped_sources ${shipped_sources} ${PROJECT_BINARY_DIR}/${function}.cpp PARENT_SCOPE)
+endfunction()
+
+# A new description is one file and its name here.
+ship_texts(shipped_machines nc/shipped_machines.hpp native/nc/machines
+           tcp linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain apt)
+ship_texts(shipped_pens pen/shipped_pens.hpp device/geometry riffler)
