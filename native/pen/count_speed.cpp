@@ -5,6 +5,14 @@
 
 namespace riffler {
 
+namespace {
+
+// Counts. Readings are rounded down, so those of a steady motion are less than one off; one that trembles at a count's
+// edge is off by just one, and no motion.
+constexpr double kOff = 1 + 1e-9;
+
+}  // namespace
+
 void CountSpeed::add(const EncoderCounts& raw, double time) noexcept {
   if (!std::isfinite(time) || (size_ > 0 && !(time > time_[newest_]))) return;
   newest_ = (newest_ + 1) % kWindow;
@@ -22,7 +30,7 @@ double CountSpeed::counts_per_second(std::size_t channel) const noexcept {
     time[age] = time_[newest_] - time_[slot(age)];
     const double longer = count[age] / time[age];
     for (std::size_t k = 1; k < age; ++k)
-      if (std::abs(count[k] - longer * time[k]) >= 1) return slope;
+      if (std::abs(count[k] - longer * time[k]) > kOff) return slope;
     slope = longer;
   }
   return slope;

@@ -9,11 +9,11 @@
 namespace riffler {
 
 /// Of each counter, the slope of the longest line through the newest reading and an older one from which no reading
-/// between them is a count off: first-order adaptive windowing with end fit (Janabi-Sharifi, Hayward and Chen,
-/// "Discrete-time adaptive windowing for velocity estimation", IEEE Trans. Control Systems Technology 8(6), 2000). A
-/// steady motion is averaged over the whole window, which leaves less than a count over its time, and a change is
-/// followed at once. The difference of two readings at 1 kHz would be off by up to a count per millisecond, 24 mm/s at
-/// the end of a 180 mm arm. Counters may wrap. Allocates nothing.
+/// between them is more than a count off: first-order adaptive windowing with end fit (Janabi-Sharifi, Hayward and
+/// Chen, "Discrete-time adaptive windowing for velocity estimation", IEEE Trans. Control Systems Technology 8(6),
+/// 2000). A steady motion is averaged over the whole window, which leaves less than a count over its time, and a change
+/// is followed at once. The difference of two readings at 1 kHz would be off by up to a count per millisecond, 24 mm/s
+/// at the end of a 180 mm arm. Counters may wrap. Allocates nothing.
 class CountSpeed {
  public:
   explicit CountSpeed(const PenGeometry& pen) noexcept : channels_(pen.channels) {}

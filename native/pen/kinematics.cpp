@@ -29,7 +29,7 @@ double within_a_turn(double angle) noexcept {
   return least <= -std::numbers::pi ? least + kTurn : least;
 }
 
-PenKinematics::PenKinematics(const PenGeometry& geometry) noexcept
+PenKinematics::PenKinematics(const PenGeometry& geometry)
     : geometry_(geometry), probe_at_home_(geometry.probe_home), towards_(geometry.tip == Arm::L ? -1 : 1) {
   for (std::size_t k = 0; k < kPenChannels; ++k) at_home_[k] = geometry.channels[k].home;
 }

@@ -42,7 +42,7 @@ struct PenInverse {
 
 class PenKinematics {
  public:
-  explicit PenKinematics(const PenGeometry& geometry) noexcept;
+  explicit PenKinematics(const PenGeometry& geometry);
 
   const PenGeometry& geometry() const noexcept { return geometry_; }
 

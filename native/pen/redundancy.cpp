@@ -15,7 +15,8 @@ constexpr double kApart = 0.02;         // rad: by which a joint differs between
 constexpr std::size_t kFewest = 12;     // postures
 constexpr double kExplained = 1.0 / 3;  // of the tolerance, of what an explanation may leave
 constexpr double kClearly = 2;          // times as much must the second best leave
-constexpr int kSteps = 20;              // of Gauss–Newton
+constexpr int kSteps = 30;              // of Gauss–Newton
+constexpr double kConverged = 1e-3;     // counts
 
 /// From the centre of the circle that joint `joint` moves the end on, to the end.
 Vec3 arm_of_circle(const ArmLinks& links, const Vec3& angles, const Vec3& end, int joint) {
@@ -83,30 +84,39 @@ void GripDiagnosis::add(const PenPosture& posture) noexcept {
   if (++size_ == 3 * kKept) size_ = 2 * kKept;
 }
 
-double GripDiagnosis::fit(std::size_t channel, double& counts) const noexcept {
+/// Gauss–Newton.
+GripDiagnosis::Fit GripDiagnosis::fit_from(std::size_t channel, double counts) const noexcept {
   const PenGeometry& g = pen_->geometry();
   const PenChannel& c = g.channels[channel];
-  double rms = 0;
-  for (int step = 0; step <= kSteps; ++step) {
+  // What one count of this channel more turns its joint by, and what is taken from the joint with `counts`.
+  const double turn = c.sign / c.steps * kTurn;
+  for (int step = 0;; ++step) {
     double squares = 0, slopes = 0, both = 0;
     for (std::size_t k = 0; k < postures(); ++k) {
       JointAngles angles = angles_[k];
-      angles[index(c.arm)][c.joint] -= c.sign * counts / c.steps * kTurn;
+      angles[index(c.arm)][c.joint] -= turn * counts;
       const PenPosture posture = pen_->posture(angles);
       const double stretch = posture.length - g.grip_length;
-      const Vec3 away = c.arm == Arm::L ? posture.apart : -posture.apart;
-      const double slope = posture.length > 0 ? -c.sign / c.steps * kTurn / posture.length *
-                                                    glm::dot(away, posture.arms[index(c.arm)].jacobian[c.joint])
-                                              : 0;
+      const double growth = glm::dot(posture.apart, posture.arms[index(c.arm)].jacobian[c.joint]);
+      const double slope = posture.length > 0 ? (c.arm == Arm::L ? -turn : turn) * growth / posture.length : 0;
       squares += stretch * stretch, slopes += slope * slope, both += slope * stretch;
     }
-    rms = std::sqrt(squares / static_cast<double>(postures()));
-    if (step == kSteps || !(slopes > 0)) break;
+    const Fit now{std::sqrt(squares / static_cast<double>(postures())), counts};
     // No more than a twentieth of a turn at once: the circles are only straight nearby.
-    const double most = c.steps / 20;
-    counts += std::clamp(-both / slopes, -most, most);
+    const double change = slopes > 0 ? std::clamp(-both / slopes, -c.steps / 20, c.steps / 20) : 0;
+    if (step == kSteps || std::abs(change) < kConverged) return now;
+    counts += change;
   }
-  return rms;
+}
+
+GripDiagnosis::Fit GripDiagnosis::fit(std::size_t channel) const noexcept {
+  Fit best{kInfinity, 0};
+  // From several starts, since over large turns there are other minima.
+  for (const double turns : {0.0, -0.04, 0.04, -0.1, 0.1}) {
+    const Fit one = fit_from(channel, turns * pen_->geometry().channels[channel].steps);
+    if (one.left < best.left) best = one;
+  }
+  return best;
 }
 
 GripVerdict GripDiagnosis::verdict() const noexcept {
@@ -118,13 +128,12 @@ GripVerdict GripDiagnosis::verdict() const noexcept {
   out.left = kInfinity;
   double second = kInfinity;
   for (std::size_t channel = 0; channel < kPenChannels; ++channel) {
-    double counts = 0;
-    const double left = fit(channel, counts);
-    if (left < out.left) {
+    const Fit one = fit(channel);
+    if (one.left < out.left) {
       second = out.left;
-      out.left = left, out.channel = channel, out.counts = counts;
+      out.left = one.left, out.channel = channel, out.counts = one.counts;
     } else {
-      second = std::min(second, left);
+      second = std::min(second, one.left);
     }
   }
   if (fits)

@@ -54,8 +54,12 @@ class GripDiagnosis {
  private:
   static constexpr std::size_t kKept = 64;
 
-  /// Root mean square of the stretch with `counts` taken from one channel, and the best number of them by Gauss–Newton.
-  double fit(std::size_t channel, double& counts) const noexcept;
+  struct Fit {
+    double left, counts;
+  };
+  /// Root mean square of the stretch with `counts` taken from one channel, for the best number of them.
+  Fit fit(std::size_t channel) const noexcept;
+  Fit fit_from(std::size_t channel, double counts) const noexcept;
 
   const PenKinematics* pen_;
   std::array<JointAngles, kKept> angles_{};

@@ -3,7 +3,7 @@
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """
 
-from . import cluster, plan
+from . import cluster, pen, plan
 from ._core import (
     Cancelled,
     Collider,
@@ -48,6 +48,7 @@ __all__ = [
     "__version__",
     "cluster",
     "machines",
+    "pen",
     "plan",
     "verify",
 ]

@@ -1,0 +1,331 @@
+// riffler.pen: what a pen is and how it moves.
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bindings/bindings.hpp"
+#include "pen/capability.hpp"
+#include "pen/motors.hpp"
+#include "pen/pens.hpp"
+#include "pen/redundancy.hpp"
+#include "pen/wrench_split.hpp"
+
+namespace riffler {
+
+namespace {
+
+using namespace py::literals;
+
+using Row = std::array<double, 6>;
+
+py::array_t<double> shaped(std::vector<Row>&& rows, const std::vector<py::ssize_t>& each) {
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(rows.size())};
+  shape.insert(shape.end(), each.begin(), each.end());
+  return take<double>(std::move(rows), 6).reshape(shape);
+}
+
+Vec3 vector_at(const double* p) {
+  return {p[0], p[1], p[2]};
+}
+
+Row row_of(const std::array<Vec3, 2>& pair) {
+  return {pair[0].x, pair[0].y, pair[0].z, pair[1].x, pair[1].y, pair[1].z};
+}
+
+std::vector<EncoderCounts> to_counts(const Doubles& array) {
+  std::vector<EncoderCounts> out(check_rows(array, kPenChannels, "counts"));
+  const double* p = array.data();
+  for (std::size_t row = 0; row < out.size(); ++row)
+    for (std::int32_t& count : out[row]) {
+      const double value = *p++;
+      if (value != std::floor(value) || std::abs(value + 0.5) > 0x1p31)
+        throw py::value_error("counts, row " + std::to_string(row) + ": must be whole numbers of 32 bits");
+      count = static_cast<std::int32_t>(value);
+    }
+  return out;
+}
+
+std::vector<JointAngles> to_joints(const Doubles& array, const char* name) {
+  std::vector<JointAngles> out(check_rows(array, 6, name));
+  const double* p = array.data();
+  for (JointAngles& row : out) row = {vector_at(p), vector_at(p + 3)}, p += 6;
+  return out;
+}
+
+std::vector<Wrench> to_wrenches(const Doubles& array) {
+  std::vector<Wrench> out(check_rows(array, 6, "wrenches"));
+  const double* p = array.data();
+  for (Wrench& row : out) row = {vector_at(p), vector_at(p + 3)}, p += 6;
+  return out;
+}
+
+void check_same(std::size_t rows, std::size_t expected, const char* name) {
+  if (rows != expected)
+    throw py::value_error(std::string(name) + " must have as many rows as counts: " + std::to_string(expected) +
+                          ", not " + std::to_string(rows));
+}
+
+/// One row of six numbers for each of `in`.
+template <class In, class F>
+std::vector<Row> rows_of(const std::vector<In>& in, const F& row) {
+  std::vector<Row> out;
+  out.reserve(in.size());
+  for (const In& one : in) out.push_back(row(one));
+  return out;
+}
+
+py::array_t<double> forward(const PenKinematics& pen, const Doubles& counts) {
+  return shaped(rows_of(to_counts(counts),
+                        [&](const EncoderCounts& raw) {
+                          const Pose pose = pen.posture(raw).pose;
+                          return row_of({pose.tip, pose.axis});
+                        }),
+                {6});
+}
+
+py::array_t<double> joints(const PenKinematics& pen, const Doubles& counts) {
+  return shaped(rows_of(to_counts(counts), [&](const EncoderCounts& raw) { return row_of(pen.angles(raw)); }), {6});
+}
+
+py::array_t<std::int32_t> counts_of(const PenKinematics& pen, const Doubles& angles) {
+  std::vector<EncoderCounts> out;
+  for (const JointAngles& row : to_joints(angles, "joints")) out.push_back(pen.counts(row));
+  return take<std::int32_t>(std::move(out), kPenChannels);
+}
+
+py::array_t<double> ends(const PenKinematics& pen, const Doubles& counts) {
+  return shaped(rows_of(to_counts(counts),
+                        [&](const EncoderCounts& raw) {
+                          const PenPosture posture = pen.posture(raw);
+                          return row_of({posture.arms[0].end, posture.arms[1].end});
+                        }),
+                {2, 3});
+}
+
+py::array_t<double> jacobian(const PenKinematics& pen, const Doubles& counts) {
+  const std::vector<EncoderCounts> rows = to_counts(counts);
+  py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), py::ssize_t{2}, py::ssize_t{3}, py::ssize_t{3}});
+  double* p = out.mutable_data();
+  for (const EncoderCounts& raw : rows)
+    for (const ArmPosture& arm : pen.posture(raw).arms)
+      for (int row = 0; row < 3; ++row)
+        for (int joint = 0; joint < 3; ++joint) *p++ = arm.jacobian[joint][row];
+  return out;
+}
+
+py::array_t<double> stretch(const PenKinematics& pen, const Doubles& counts) {
+  std::vector<double> out;
+  for (const EncoderCounts& raw : to_counts(counts)) out.push_back(check_grip(pen, pen.posture(raw)).stretch);
+  return take<double>(std::move(out));
+}
+
+py::array_t<double> noticed(const PenKinematics& pen, const Doubles& counts) {
+  return shaped(rows_of(to_counts(counts),
+                        [&](const EncoderCounts& raw) {
+                          const auto found = noticed_counts(pen, pen.posture(raw));
+                          Row row{};
+                          for (std::size_t k = 0; k < row.size(); ++k) row[k] = std::max(found[k].few, found[k].many);
+                          return row;
+                        }),
+                {6});
+}
+
+const char* name_of(Reach reach) {
+  switch (reach) {
+    case Reach::Reached:
+      return "reached";
+    case Reach::TooFar:
+      return "too far";
+    case Reach::TooNear:
+      return "too near";
+    case Reach::OnAxis:
+      return "on axis";
+    case Reach::Limits:
+      return "limits";
+    default:
+      return "not finite";
+  }
+}
+
+py::tuple inverse(const PenKinematics& pen, const Doubles& poses) {
+  std::vector<Row> angles;
+  py::list reach;
+  for (const Pose& pose : to_poses(poses, "poses")) {
+    const PenInverse found = pen.inverse(pose);
+    angles.push_back(row_of(found.angles));
+    reach.append(py::make_tuple(name_of(found.reach[0]), name_of(found.reach[1])));
+  }
+  return py::make_tuple(shaped(std::move(angles), {6}), reach);
+}
+
+py::tuple split(const PenKinematics&, const Doubles& wrenches, const Doubles& apart) {
+  const std::vector<Wrench> rows = to_wrenches(wrenches);
+  const std::vector<Vec3> between = to_vec3s(apart, "apart");
+  if (between.size() != rows.size())
+    throw py::value_error("apart must have as many rows as wrenches: " + std::to_string(rows.size()) + ", not " +
+                          std::to_string(between.size()));
+  std::vector<Row> forces;
+  std::vector<Vec3> missing;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const WrenchSplit one = split_wrench(rows[k], between[k]);
+    forces.push_back(row_of(one.forces)), missing.push_back(one.missing);
+  }
+  return py::make_tuple(shaped(std::move(forces), {2, 3}), from_vec3s(missing));
+}
+
+py::tuple efforts(const PenKinematics& pen, const Doubles& counts, const Doubles& wrenches, const Doubles& at) {
+  const std::vector<EncoderCounts> rows = to_counts(counts);
+  const std::vector<Wrench> wanted = to_wrenches(wrenches);
+  const std::vector<Vec3> points = to_vec3s(at, "at");
+  check_same(wanted.size(), rows.size(), "wrenches");
+  check_same(points.size(), rows.size(), "at");
+  std::vector<Row> torques;
+  std::vector<Vec3> missing;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const PenEffort effort = pen_effort(pen, pen.posture(rows[k]), wanted[k], points[k]);
+    torques.push_back(row_of(effort.torques)), missing.push_back(effort.missing);
+  }
+  return py::make_tuple(shaped(std::move(torques), {6}), from_vec3s(missing));
+}
+
+template <class F>
+py::tuple commands(const PenKinematics& pen, const Doubles& torques, const F& command) {
+  std::vector<std::array<std::int16_t, kPenChannels>> values;
+  std::vector<double> scales;
+  for (const JointAngles& row : to_joints(torques, "torques")) {
+    const MotorCommands one = command(motor_torques(pen.geometry(), row));
+    values.push_back(one.values), scales.push_back(one.scale);
+  }
+  return py::make_tuple(take<std::int16_t>(std::move(values), kPenChannels), take<double>(std::move(scales)));
+}
+
+py::tuple currents(const PenKinematics& pen, const Doubles& torques) {
+  return commands(pen, torques, [&](const MotorTorques& motors) { return motor_currents(pen.geometry(), motors); });
+}
+
+py::tuple steps(const PenKinematics& pen, const Doubles& torques) {
+  const std::optional<Converter>& converter = pen.geometry().converter;
+  if (!converter) throw py::value_error("pen " + pen.geometry().name + " has no [converter]");
+  return commands(pen, torques,
+                  [&](const MotorTorques& motors) { return converter_steps(pen.geometry(), *converter, motors); });
+}
+
+py::dict diagnose(const PenKinematics& pen, const Doubles& counts) {
+  GripDiagnosis diagnosis(pen);
+  for (const EncoderCounts& raw : to_counts(counts)) diagnosis.add(pen.posture(raw));
+  const GripVerdict verdict = diagnosis.verdict();
+  constexpr const char* kFaults[] = {"none", "channel", "several", "unclear"};
+  py::dict out("fault"_a = kFaults[static_cast<std::size_t>(verdict.fault)], "postures"_a = diagnosis.postures());
+  if (verdict.fault == GripFault::Channel)
+    out["channel"] = verdict.channel, out["counts"] = verdict.counts, out["left"] = verdict.left;
+  return out;
+}
+
+py::dict capability(const PenKinematics& pen) {
+  const DeviceCapability device = pen_capability(pen.geometry());
+  py::dict axes;
+  for (std::size_t k = 0; k < kCoordinates; ++k) {
+    const CoordinateCapability& c = device.coordinates[k];
+    constexpr const char* kSensing[] = {"none", "position", "rate"};
+    axes[py::str(std::string(1, "xyzabc"[k]))] =
+        py::dict("sensing"_a = kSensing[static_cast<std::size_t>(c.sensing)], "pushes"_a = c.pushes, "low"_a = c.low,
+                 "high"_a = c.high, "resolution"_a = c.resolution, "peak"_a = c.peak, "continuous"_a = c.continuous);
+  }
+  return py::dict("name"_a = device.name, "text"_a = capability_text(device), "axes"_a = axes);
+}
+
+py::list channels(const PenKinematics& pen) {
+  py::list out;
+  for (const PenChannel& c : pen.geometry().channels)
+    out.append(py::dict("name"_a = std::string(c.arm == Arm::R ? "R" : "L") + std::to_string(c.joint + 1),
+                        "steps"_a = c.steps, "ratio"_a = c.ratio, "sign"_a = c.sign, "home"_a = c.home, "low"_a = c.low,
+                        "high"_a = c.high, "torque_constant"_a = c.torque_constant, "peak_current"_a = c.peak_current,
+                        "continuous_current"_a = c.continuous_current, "coulomb"_a = c.coulomb, "viscous"_a = c.viscous,
+                        "gravity"_a = c.gravity));
+  return out;
+}
+
+py::dict limits(const PenKinematics& pen) {
+  const PenGeometry& g = pen.geometry();
+  return py::dict("lower"_a = from_vec3(g.workspace.lower), "upper"_a = from_vec3(g.workspace.upper),
+                  "elbow"_a = py::make_tuple(g.elbow_low, g.elbow_high), "force"_a = g.force, "torque"_a = g.torque,
+                  "speed"_a = g.speed, "turn_rate"_a = g.turn_rate);
+}
+
+py::dict pen_list() {
+  py::dict out;
+  for (const DescriptionEntry& entry : pens()) out[py::str(entry.name)] = entry.description;
+  return out;
+}
+
+}  // namespace
+
+void bind_pen(py::module_& m) {
+  py::class_<PenKinematics>(m, "PenGeometry",
+                            R"(A pen: its lengths, gears, encoders, motors and limits, and how it moves.
+
+Two arms, R and L, hold the two ends of a grip. Counts are the six counters in the device's own order (``channels``);
+joints are θ1 θ2 θ3 of R, then of L, in rad. Poses are the grip's pivot and the unit axis along it, away from the tool's
+tip. Arrays have one row per moment.)")
+      .def_static(
+          "load", [](const std::string& name) { return PenKinematics(load_pen(name)); }, "name"_a,
+          "A pen of ``riffler.pen.names()``, or one that a ``.toml`` file describes. FormatError names the file's "
+          "line; "
+          "ValueError the pens there are.")
+      .def_property_readonly(
+          "name", [](const PenKinematics& p) { return p.geometry().name; }, "Its file's name.")
+      .def_property_readonly(
+          "description", [](const PenKinematics& p) { return p.geometry().description; }, "What its file says of it.")
+      .def_property_readonly(
+          "grip_length", [](const PenKinematics& p) { return p.geometry().grip_length; }, "mm, between the arms' ends.")
+      .def_property_readonly(
+          "grip_tolerance", [](const PenKinematics& p) { return p.geometry().grip_tolerance; },
+          "mm: a larger |stretch| is a lost count or a bad homing.")
+      .def_property_readonly("channels", &channels, "The six motors with their encoders, dicts in the device's order.")
+      .def_property_readonly("limits", &limits, "Workspace, elbow, force, torque, speeds: a dict; mm, rad, s, N.")
+      .def_property_readonly(
+          "home",
+          [](const PenKinematics& p) {
+            std::vector<EncoderCounts> one{p.counts(p.home_angles())};
+            return take<std::int32_t>(std::move(one)).reshape({static_cast<py::ssize_t>(kPenChannels)});
+          },
+          "(6,) int32: what the counters read in the home posture.")
+      .def("forward", &forward, "counts"_a, "(n, 6) poses of (n, 6) counts: (2.3) and (2.4).")
+      .def("joints", &joints, "counts"_a, "(n, 6) joint angles of (n, 6) counts: (2.9).")
+      .def("counts", &counts_of, "joints"_a, "(n, 6) int32: the nearest counts of (n, 6) joint angles.")
+      .def("ends", &ends, "counts"_a, "(n, 2, 3) mm: ends of R and of L in the arms' frame, (2.1) and (2.2).")
+      .def("jacobian", &jacobian, "counts"_a,
+           "(n, 2, 3, 3) mm/rad: of R and of L, the derivative of the end's x y z by its θ1 θ2 θ3 (2.7), (2.8).")
+      .def("inverse", &inverse, "poses"_a, R"(Joint angles of poses.
+
+Returns (n, 6) joints and a list of pairs, of R and of L: "reached", "too far", "too near", "on axis" (of θ1, or folded),
+"limits" (the angles are beyond the joints' or the elbow's) or "not finite".)")
+      .def("split", &split, "wrenches"_a, "apart"_a, R"(What the arms push with for a force and a torque on the hand.
+
+``wrenches``: (n, 6), force in N and torque in N·mm about the grip's pivot; ``apart``: (n, 3), from R's end to L's.
+Returns (n, 2, 3) forces of R and of L, and (n, 3) the torque that cannot be felt: its part along the grip.)")
+      .def("efforts", &efforts, "counts"_a, "wrenches"_a, "at"_a, R"(Joint torques for a force and a torque on the hand.
+
+``wrenches``: (n, 6), about the points ``at`` (n, 3), both in the frame of poses. Returns (n, 6) joint torques in N·mm and
+the (n, 3) torque that cannot be felt.)")
+      .def("motor_currents", &currents, "torques"_a, R"(What the motors are told for (n, 6) joint torques, N·mm.
+
+Returns (n, 6) int16, mA in the device's order, and (n,) the factor that all six of a row were scaled by so that none
+passes its peak.)")
+      .def("converter_steps", &steps, "torques"_a,
+           "As motor_currents, in the steps of the pen's digital to analogue converter.")
+      .def("stretch", &stretch, "counts"_a, "(n,) mm: by which the grip comes out longer than it is.")
+      .def("noticed_counts", &noticed, "counts"_a, R"((n, 6): how many counts each channel may be off before it shows.
+
+Whichever way it is off, all other channels being right; infinite where none shows, and 0 in rows that do not fit.)")
+      .def("diagnose", &diagnose, "counts"_a, R"(Which counter is wrong, from (n, 6) counts of different postures.
+
+A dict: ``fault`` is "none", "channel" (then ``channel``, the ``counts`` that it reads too many, and ``left``, the mm that
+stay unexplained), "several" (bad homing, or another pen) or "unclear" (move the pen: twelve postures that differ by
+0.02 rad are needed).)")
+      .def("capability", &capability,
+           "What each coordinate senses and pushes: a dict with ``text`` and ``axes``, x y z a b c.");
+  m.def("_pens", &pen_list);
+}
+
+}  // namespace riffler
