@@ -94,7 +94,7 @@ gallery:  ## Plan, measure and draw the pictures of planning, stability and the 
 	@$(ready) demo
 	@$(ready) cpp-tests
 	$(python) tools/preset.py release riffler_stability
-	for script in mouse mouse_fixtures sole verify_map stability pen_states; do $(python) docs/gallery/$$script.py || exit 1; done
+	for script in mouse mouse_fixtures sole verify_map stability pen_states pen_frames; do $(python) docs/gallery/$$script.py || exit 1; done
 
 package:  ## Make the wheel and the Blender extension: dist
 	@$(ready)

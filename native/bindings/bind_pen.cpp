@@ -65,9 +65,10 @@ void check_same(std::size_t rows, std::size_t expected, const char* name) {
                           ", not " + std::to_string(rows));
 }
 
-/// One row of six numbers for each of `in`.
+/// One row of six numbers for each of `in`; `row` knows nothing of Python.
 template <class In, class F>
 std::vector<Row> rows_of(const std::vector<In>& in, const F& row) {
+  const py::gil_scoped_release release;
   std::vector<Row> out;
   out.reserve(in.size());
   for (const In& one : in) out.push_back(row(one));
@@ -91,6 +92,14 @@ py::array_t<std::int32_t> counts_of(const PenKinematics& pen, const Doubles& ang
   std::vector<EncoderCounts> out;
   for (const JointAngles& row : to_joints(angles, "joints")) out.push_back(pen.counts(row));
   return take<std::int32_t>(std::move(out), kPenChannels);
+}
+
+PenKinematics homed(const PenKinematics& pen, const Doubles& counts, std::int32_t probe) {
+  const std::vector<EncoderCounts> rows = to_counts(counts);
+  if (rows.size() != 1) throw py::value_error("counts must have one row: what the counters read at home");
+  PenKinematics out = pen;
+  out.home_at(rows[0], probe);
+  return out;
 }
 
 py::array_t<double> ends(const PenKinematics& pen, const Doubles& counts) {
@@ -293,6 +302,11 @@ tip. Arrays have one row per moment.)")
       .def("forward", &forward, "counts"_a, "(n, 6) poses of (n, 6) counts: (2.3) and (2.4).")
       .def("joints", &joints, "counts"_a, "(n, 6) joint angles of (n, 6) counts: (2.9).")
       .def("counts", &counts_of, "joints"_a, "(n, 6) int32: the nearest counts of (n, 6) joint angles.")
+      .def("homed", &homed, "counts"_a, "probe"_a = 0, R"(The same pen, homed by its readings instead of presets.
+
+``counts``: (1, 6), what the counters read in the home posture, and ``probe`` what the seventh does. Counters may wrap.)")
+      .def("probe_angle", &PenKinematics::probe_angle, "count"_a,
+           "rad: the grip's rotation about the pose's axis, turns added up, of the seventh counter.")
       .def("ends", &ends, "counts"_a, "(n, 2, 3) mm: ends of R and of L in the arms' frame, (2.1) and (2.2).")
       .def("jacobian", &jacobian, "counts"_a,
            "(n, 2, 3, 3) mm/rad: of R and of L, the derivative of the end's x y z by its θ1 θ2 θ3 (2.7), (2.8).")

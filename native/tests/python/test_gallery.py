@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 GALLERY = Path(__file__).parents[3] / "docs" / "gallery"
-SCRIPTS = ["mouse", "mouse_fixtures", "sole", "verify_map"]
+SCRIPTS = ["mouse", "mouse_fixtures", "sole", "verify_map", "pen_frames", "pen_counts"]
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
