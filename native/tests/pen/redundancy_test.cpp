@@ -73,6 +73,18 @@ TEST(GripCheck, AtHomeTheForeArmsCountsShowAtOnceAndTheOthersHardly) {
   EXPECT_GT(stated[2].many, 100) << "the first joint moves the end square to the grip";
 }
 
+TEST(GripCheck, SwappedPlugsDoNotFit) {
+  const PenKinematics pen(load_pen("riffler"));
+  int arms = 0, joints = 0, all = 0;
+  for (const EncoderCounts& c : postures(pen, 2000, 38)) {
+    arms += fits(pen, {c[3], c[4], c[5], c[0], c[1], c[2]});
+    joints += fits(pen, {c[1], c[0], c[2], c[3], c[4], c[5]});
+    ++all;
+  }
+  EXPECT_EQ(arms, 0) << "R and L, of " << all;
+  EXPECT_LT(joints, all / 50) << "joints 2 and 3 of R: where both have the same count it cannot show";
+}
+
 TEST(GripCheck, NumbersThatAreNotAreNotAFit) {
   const PenKinematics pen(load_pen("riffler"));
   PenPosture posture = pen.posture(pen.home_angles());
