@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "pen/motors.hpp"
 #include "pen/wrench_split.hpp"
@@ -19,6 +20,13 @@ std::string letters_of(const DeviceCapability& device, bool (*has)(const Coordin
   for (std::size_t k = 0; k < kCoordinates; ++k)
     if (has(device.coordinates[k])) out += {' ', kLetters[k]};
   return out.empty() ? " nothing" : out;
+}
+
+/// What A and B turn about: square to the grip, the first the one most like x, or like y where the grip lies along x.
+std::pair<Vec3, Vec3> square_to(const Vec3& axis) {
+  const Vec3 x(1, 0, 0), y(0, 1, 0), like = std::abs(axis.x) < 0.9 ? x : y;
+  const Vec3 a = glm::normalize(like - glm::dot(like, axis) * axis);
+  return {a, glm::cross(axis, a)};
 }
 
 /// N or N·mm of the direction `unit` that the motors have in this posture.
@@ -66,20 +74,14 @@ std::string capability_text(const DeviceCapability& device) {
   return missing.empty() ? out : out + "; the hand does not feel: " + missing;
 }
 
-RenderedWrench rendered_part(const DeviceCapability& device, const Wrench& wrench, const Vec3& axis) noexcept {
-  RenderedWrench out;
-  for (int k = 0; k < 3; ++k)
-    (device.coordinates[static_cast<std::size_t>(k)].pushes ? out.felt : out.missing).force[k] = wrench.force[k];
-  if (device.turns == TurnAxes::Device) {
-    for (int k = 0; k < 3; ++k)
-      (device.coordinates[static_cast<std::size_t>(k) + 3].pushes ? out.felt : out.missing).torque[k] =
-          wrench.torque[k];
-    return out;
-  }
-  const Vec3 along = glm::dot(wrench.torque, axis) * axis;
-  (device[Coordinate::C].pushes ? out.felt : out.missing).torque += along;
-  const bool square = device[Coordinate::A].pushes && device[Coordinate::B].pushes;
-  (square ? out.felt : out.missing).torque += wrench.torque - along;
+Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept {
+  Capability out;
+  for (std::size_t k = 0; k < kCoordinates; ++k) out.push[k] = device.coordinates[k].pushes;
+  if (device.turns == TurnAxes::Device) return out;
+  const auto [a, b] = square_to(axis);
+  out.axes = Mat3(a, b, axis);
+  out.push[0] = out.push[1] = out.push[2] = out.push[0] && out.push[1] && out.push[2];
+  out.push[3] = out.push[4] = out.push[3] && out.push[4];
   return out;
 }
 
@@ -87,15 +89,14 @@ DeviceCapability pen_capability(const PenGeometry& pen) {
   const PenKinematics kinematics(pen);
   const PenPosture home = kinematics.posture(kinematics.home_angles());
   const Vec3 axis = kinematics.to_base(home.pose.axis);
-  const Vec3 x(1, 0, 0), y(0, 1, 0), like = std::abs(axis.x) < 0.9 ? x : y;
-  const Vec3 a = glm::normalize(like - glm::dot(like, axis) * axis), b = glm::cross(axis, a);
+  const auto [a, b] = square_to(axis);
   DeviceCapability out;
   out.name = pen.name;
   out.turns = TurnAxes::Grip;
   for (std::size_t k = 0; k < kCoordinates; ++k) {
     CoordinateCapability& c = out.coordinates[k];
     c.sensing = Sensing::Position;
-    c.pushes = k < 5;
+    c.pushes = k + 1 < kCoordinates;
     Vec3 direction = k == 3 ? a : k == 4 ? b : axis;
     if (k < 3) {
       const int i = static_cast<int>(k);
@@ -110,8 +111,8 @@ DeviceCapability pen_capability(const PenGeometry& pen) {
       JointAngles one{};
       one[index(channel.arm)][channel.joint] = kTurn / channel.steps;
       const PenSpeed step = kinematics.speed(home, one);
-      const Vec3 moved = kinematics.to_base(k < 3 ? step.pivot : step.angular);
-      c.resolution = std::max(c.resolution, std::abs(glm::dot(moved, direction)));
+      const Vec3 change = kinematics.to_base(k < 3 ? step.twist.linear : step.twist.angular);
+      c.resolution = std::max(c.resolution, std::abs(glm::dot(change, direction)));
     }
   }
   out[Coordinate::C].resolution = kTurn / pen.probe_steps;

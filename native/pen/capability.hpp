@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "geom/wrench.hpp"
+#include "haptics/wrench.hpp"
 
 namespace riffler {
 
@@ -14,7 +14,6 @@ struct PenGeometry;
 
 /// Along the device's x, y, z, and about three axes, see TurnAxes.
 enum class Coordinate : unsigned char { X, Y, Z, A, B, C };
-constexpr std::size_t kCoordinates = 6;
 
 enum class Sensing : unsigned char {
   None,
@@ -50,14 +49,10 @@ struct DeviceCapability {
 /// "senses x y z a b c, pushes x y z a b; the hand does not feel: torque about the grip's axis"
 std::string capability_text(const DeviceCapability& device);
 
-struct RenderedWrench {
-  Wrench felt, missing;  // their sum is what was asked for
-};
-
-/// What of a wrench the device has motors for; whether they are strong enough is another matter. In the device's frame;
-/// `axis` is the grip's, of unit length, and only read where turns are about the grip. There torque square to the grip
-/// is felt where both A and B push.
-RenderedWrench rendered_part(const DeviceCapability& device, const Wrench& wrench, const Vec3& axis) noexcept;
+/// What of a wrench the device has motors for, for renderable(): with the grip's axis (unit, device's frame) for the
+/// third column where turns are about the grip, which then has a torque square to it only where both A and B push, and
+/// forces only where X, Y and Z all do. Whether the motors are strong enough is another matter.
+Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept;
 
 /// Six coordinates sensed, five that push: strengths and resolutions from the motors, gears and encoders, at home, and
 /// within the pen's limits. Its device frame is the arms' base frame.

@@ -86,10 +86,10 @@ PenSpeed PenKinematics::speed(const PenPosture& posture, const JointAngles& rate
   const Vec3 right = posture.arms[index(Arm::R)].jacobian * rates[index(Arm::R)];
   const Vec3 left = posture.arms[index(Arm::L)].jacobian * rates[index(Arm::L)];
   PenSpeed out;
-  out.pivot = from_base(0.5 * (left + right));
+  out.twist.linear = from_base(0.5 * (left + right));
   if (posture.length > 0) {
     const Vec3 along = posture.apart / posture.length, turning = (left - right) / posture.length;
-    out.angular = from_base(glm::cross(along, turning));
+    out.twist.angular = from_base(glm::cross(along, turning));
     out.stretch = glm::dot(along, left - right);
   }
   return out;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "geom/pose.hpp"
+#include "haptics/wrench.hpp"
 #include "pen/arm.hpp"
 #include "pen/geometry.hpp"
 
@@ -29,8 +30,7 @@ struct PenPosture {
 };
 
 struct PenSpeed {
-  Vec3 pivot{0};       // mm/s, frame of poses
-  Vec3 angular{0};     // rad/s, frame of poses; square to the grip: the arms cannot see its rotation about itself
+  Twist twist{};       // of the grip about its pivot, frame of poses; the arms cannot see it turn about itself
   double stretch = 0;  // mm/s: by which the grip would grow; a rigid one's is 0
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pen/wrench_split.hpp"
+
 namespace riffler {
 
 namespace {
@@ -39,6 +41,20 @@ JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torq
     const PenChannel& c = pen.channels[k];
     out[index(c.arm)][c.joint] = c.sign * motor_torques[k] * c.ratio;
   }
+  return out;
+}
+
+Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept {
+  Actuators out;
+  out.count = kPenChannels;
+  for (int k = 0; k < kCoordinates; ++k) {
+    Wrench unit;
+    unit[k] = 1;
+    const PenEffort effort = pen_effort(pen, posture, unit, posture.pose.tip);
+    const MotorTorques torques = motor_torques(pen.geometry(), effort.torques);
+    for (std::size_t i = 0; i < kPenChannels; ++i) out.rows[i][static_cast<std::size_t>(k)] = torques[i];
+  }
+  for (std::size_t i = 0; i < kPenChannels; ++i) out.most[i] = pen.geometry().channels[i].peak_torque();
   return out;
 }
 

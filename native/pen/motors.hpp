@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "haptics/limits.hpp"
 #include "pen/kinematics.hpp"
 
 namespace riffler {
@@ -14,6 +15,10 @@ using MotorTorques = std::array<double, kPenChannels>;  // N·mm at the motors, 
 MotorTorques motor_torques(const PenGeometry& pen, const JointAngles& joint_torques) noexcept;
 /// And back.
 JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torques) noexcept;
+
+/// How a wrench about the grip's pivot, frame of poses, spreads over the motors in this posture, and their peaks: N·mm
+/// at the motors, in the device's order. What limits of the haptic step are kept by.
+Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept;
 
 struct MotorCommands {
   std::array<std::int16_t, kPenChannels> values{};

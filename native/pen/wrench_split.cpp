@@ -26,7 +26,7 @@ double tension(const ArmForces& forces, const Vec3& apart) noexcept {
 
 PenEffort pen_effort(const PenKinematics& pen, const PenPosture& posture, const Wrench& wrench,
                      const Vec3& at) noexcept {
-  const Wrench here = wrench.about(posture.pose.tip, at);
+  const Wrench here = moved(wrench, at, posture.pose.tip);
   const WrenchSplit split = split_wrench({pen.to_base(here.force), pen.to_base(here.torque)}, posture.apart);
   PenEffort out;
   for (std::size_t arm = 0; arm < 2; ++arm) out.torques[arm] = joint_torques(posture.arms[arm], split.forces[arm]);

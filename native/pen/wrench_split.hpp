@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "geom/wrench.hpp"
+#include "haptics/wrench.hpp"
 #include "pen/kinematics.hpp"
 
 namespace riffler {

@@ -28,18 +28,16 @@ TEST(Capability, TextSaysWhatTheHandWillNotFeel) {
   EXPECT_FALSE(puck.has_force());
 }
 
-TEST(Capability, FeltAndMissingAreTheWholeWrench) {
+TEST(Capability, WhatIsPushedIsWhatTheArmsCanBear) {
   stress::Random random(61);
   const DeviceCapability pen = pen_capability(load_pen("riffler")), three = three_motors();
   for (int k = 0; k < 1000; ++k) {
     const Vec3 axis = random.direction();
     const Wrench wrench{5.0 * random.direction(), 50.0 * random.direction()};
-    const RenderedWrench of_pen = rendered_part(pen, wrench, axis);
-    EXPECT_EQ(of_pen.felt.force, wrench.force);
-    EXPECT_LT(glm::distance(of_pen.missing.torque, split_wrench(wrench, 30.0 * axis).missing), 1e-13);
-    EXPECT_LT(glm::distance(of_pen.felt.torque + of_pen.missing.torque, wrench.torque), 1e-13);
-    EXPECT_EQ(rendered_part(three, wrench, axis).missing.torque, wrench.torque);
-    EXPECT_EQ(rendered_part(three, wrench, axis).felt.force, wrench.force);
+    const Wrench missing = wrench - renderable(pushed(pen, axis), wrench);
+    EXPECT_LT(glm::length(missing.force), 1e-14);
+    EXPECT_LT(glm::distance(missing.torque, split_wrench(wrench, 30.0 * axis).missing), 1e-13);
+    EXPECT_EQ(renderable(pushed(three, axis), wrench), (Wrench{wrench.force, Vec3(0)}));
   }
 }
 
@@ -57,7 +55,7 @@ TEST(Capability, PensStrengthIsWhatItsMotorsHaveAtHome) {
     wrench.force[k] = capability.coordinates[static_cast<std::size_t>(k)].peak;
     const auto scale = [&](double times) {
       return motor_currents(geometry,
-                            motor_torques(geometry, pen_effort(pen, home, wrench * times, home.pose.tip).torques))
+                            motor_torques(geometry, pen_effort(pen, home, times * wrench, home.pose.tip).torques))
           .scale;
     };
     EXPECT_EQ(scale(0.999), 1);

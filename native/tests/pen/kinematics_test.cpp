@@ -102,10 +102,10 @@ TEST(PenKinematics, SpeedIsTheDerivativeOfThePose) {
     };
     const PenPosture now = at(0), before = at(-kStep), after = at(kStep);
     const PenSpeed speed = pen.speed(now, rates);
-    EXPECT_LT(glm::distance(speed.pivot, (after.pose.tip - before.pose.tip) / (2 * kStep)), 1e-4);
+    EXPECT_LT(glm::distance(speed.twist.linear, (after.pose.tip - before.pose.tip) / (2 * kStep)), 1e-4);
     const Vec3 turning = (after.pose.axis - before.pose.axis) / (2 * kStep);
-    EXPECT_LT(glm::distance(glm::cross(speed.angular, now.pose.axis), turning), 1e-4);
-    EXPECT_NEAR(glm::dot(speed.angular, now.pose.axis), 0, 1e-12);
+    EXPECT_LT(glm::distance(glm::cross(speed.twist.angular, now.pose.axis), turning), 1e-4);
+    EXPECT_NEAR(glm::dot(speed.twist.angular, now.pose.axis), 0, 1e-12);
     EXPECT_NEAR(speed.stretch, (after.length - before.length) / (2 * kStep), 1e-4);
   });
 }
@@ -158,7 +158,7 @@ TEST(PenKinematics, EndsThatCoincideHaveNoDirectionAndNothingIsNotFinite) {
   EXPECT_EQ(posture.length, 0);
   EXPECT_EQ(posture.pose.axis, Vec3(0));
   const PenSpeed speed = pen.speed(posture, {Vec3(1), Vec3(2)});
-  EXPECT_TRUE(finite(speed.pivot) && finite(speed.angular));
+  EXPECT_TRUE(finite(speed.twist));
 }
 
 TEST(PenKinematics, WhatAHapticStepCallsThrowsNothingAndKeepsNoMemory) {

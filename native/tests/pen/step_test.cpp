@@ -28,13 +28,14 @@ TEST(PenStep, AsksForNoMemory) {
     felt += noticed_counts(pen, posture)[0].few > 0;
     diagnosis.add(posture);
     const PenSpeed moving = pen.speed(posture, speed.rates());
-    const Wrench wrench{-0.01 * moving.pivot, Vec3(10, 20, 30)};
+    const Wrench wrench{-0.01 * moving.twist.linear, Vec3(10, 20, 30)};
     JointAngles torques = pen_effort(pen, posture, wrench, posture.pose.tip).torques;
     const JointAngles weight = gravity_torques(geometry, posture.angles);
     for (std::size_t arm = 0; arm < 2; ++arm) torques[arm] += weight[arm];
     MotorTorques motors = motor_torques(geometry, torques);
     const MotorTorques friction = friction_torques(geometry, speed.rates());
     for (std::size_t j = 0; j < kPenChannels; ++j) motors[j] += friction[j];
+    felt += pen_actuators(pen, posture).count == 0;
     pushed += motor_currents(geometry, motors).values[0] != 0;
     reached += pen.inverse(posture.pose).reached();
   }

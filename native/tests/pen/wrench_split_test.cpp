@@ -104,12 +104,5 @@ TEST(WrenchSplit, EffortDoesTheWorkOfTheWrenchAtItsPoint) {
   EXPECT_GT(reached, 1000);
 }
 
-TEST(WrenchSplit, WrenchesMoveToAnotherPointAndBack) {
-  const Wrench wrench{{1, 0, 0}, {0, 0, 0}};
-  const Wrench moved = wrench.about({0, 0, 10}, {0, 0, 0});
-  EXPECT_EQ(moved.torque, Vec3(0, -10, 0)) << "a push along x below the point";
-  EXPECT_EQ(moved.about({0, 0, 0}, {0, 0, 10}).torque, Vec3(0));
-}
-
 }  // namespace
 }  // namespace riffler
