@@ -10,7 +10,7 @@ namespace riffler {
 namespace {
 
 constexpr int kSmallest = 5, kLargest = 17;  // log2 of bytes: blocks above the largest are the system's
-constexpr std::size_t kMostKept = 32U << 20;
+constexpr std::size_t kKept = 2U << 20, kReserved = 32U << 20;  // bytes
 
 /// Classes of size, four to a doubling: what a block has too much is a fifth of it at the most.
 struct SizeClass {
@@ -28,6 +28,8 @@ SizeClass size_class(std::size_t bytes) {
 /// into a block that another has: unlike in a linked stack, none can be gone meanwhile.
 class Shelf {
  public:
+  static constexpr std::size_t kPlaces = 256;
+
   void* take() {
     if (filled_.load(std::memory_order_relaxed) <= 0) return nullptr;
     const std::size_t start = first();
@@ -56,7 +58,7 @@ class Shelf {
     return false;
   }
 
-  int filled() const { return filled_.load(std::memory_order_relaxed); }
+  std::size_t filled() const { return static_cast<std::size_t>(std::max(0, filled_.load(std::memory_order_relaxed))); }
 
  private:
   /// Threads begin at different places, so that they seldom meet.
@@ -66,13 +68,16 @@ class Shelf {
     return mine;
   }
 
-  std::array<std::atomic<void*>, 256> places_{};
+  std::array<std::atomic<void*>, kPlaces> places_{};
   std::atomic<int> filled_{0};
 };
 
 struct Pool {
   std::array<Shelf, 4 * (kLargest - kSmallest)> shelves;
-  std::atomic<std::size_t> kept{0};
+  std::atomic<std::size_t> kept{0};  // bytes
+  std::atomic<int> reserves{0};
+
+  std::size_t most() const { return reserves.load(std::memory_order_relaxed) > 0 ? kReserved : kKept; }
 };
 
 /// Never destroyed: volumes of static storage may outlive everything else.
@@ -84,11 +89,22 @@ Pool& pool() {
 thread_local std::uint64_t asked = 0;
 
 bool keep(Pool& all, const SizeClass& size, void* memory) noexcept {
-  if (all.kept.fetch_add(size.bytes, std::memory_order_relaxed) + size.bytes <= kMostKept &&
+  if (all.kept.fetch_add(size.bytes, std::memory_order_relaxed) + size.bytes <= all.most() &&
       all.shelves[size.number].put(memory))
     return true;
   all.kept.fetch_sub(size.bytes, std::memory_order_relaxed);
   return false;
+}
+
+/// To the system, until no more than `count` blocks of that size are left.
+void give_back(Pool& all, const SizeClass& size, std::size_t count) noexcept {
+  Shelf& shelf = all.shelves[size.number];
+  while (shelf.filled() > count) {
+    void* memory = shelf.take();
+    if (!memory) return;
+    all.kept.fetch_sub(size.bytes, std::memory_order_relaxed);
+    ::operator delete(memory);
+  }
 }
 
 }  // namespace
@@ -110,19 +126,26 @@ void free_block(void* memory, std::size_t bytes) noexcept {
   if (size.number >= all.shelves.size() || !keep(all, size, memory)) ::operator delete(memory);
 }
 
-void keep_blocks_ready(std::size_t largest, std::size_t count) {
+BlockReserve::BlockReserve() noexcept {
+  ++pool().reserves;
+}
+
+BlockReserve::~BlockReserve() {
   Pool& all = pool();
+  if (--all.reserves == 0)
+    for (SizeClass size = size_class(0); size.number < all.shelves.size(); size = size_class(size.bytes + 1))
+      give_back(all, size, 0);
+}
+
+void BlockReserve::fill(std::size_t largest, std::size_t count) {
+  Pool& all = pool();
+  count = std::min(count, Shelf::kPlaces);
   const std::size_t last = std::min(size_class(largest).number + 1, all.shelves.size());
   // What lies there beyond that makes room.
   for (SizeClass size = size_class(0); size.number < all.shelves.size(); size = size_class(size.bytes + 1))
-    while (static_cast<std::size_t>(all.shelves[size.number].filled()) > (size.number < last ? count : 0)) {
-      void* memory = all.shelves[size.number].take();
-      if (!memory) break;
-      all.kept.fetch_sub(size.bytes, std::memory_order_relaxed);
-      ::operator delete(memory);
-    }
+    give_back(all, size, size.number < last ? count : 0);
   for (SizeClass size = size_class(0); size.number < last; size = size_class(size.bytes + 1))
-    while (static_cast<std::size_t>(all.shelves[size.number].filled()) < count) {
+    while (all.shelves[size.number].filled() < count) {
       void* memory = ::operator new(size.bytes);
       if (keep(all, size, memory)) continue;
       ::operator delete(memory);

@@ -12,13 +12,23 @@
 namespace riffler {
 
 /// A block of at least that many bytes, from those that were freed or from the system; any thread may free it. Nobody
-/// waits for another thread. Up to 32 MB of freed blocks are kept. Throws std::bad_alloc.
+/// waits for another thread. Throws std::bad_alloc.
 void* allocate_block(std::size_t bytes);
 void free_block(void* memory, std::size_t bytes) noexcept;
 
-/// Sees to it that so many blocks of every size up to `largest` bytes are ready and no others, as far as the 32 MB
-/// allow, small ones first: for a thread that has time, so that another need not ask the system. Throws std::bad_alloc.
-void keep_blocks_ready(std::size_t largest, std::size_t count);
+/// As long as one lives, up to 32 MB of freed blocks are kept, otherwise 2 MB.
+class BlockReserve {
+ public:
+  BlockReserve() noexcept;
+  BlockReserve(const BlockReserve&) = delete;
+  BlockReserve& operator=(const BlockReserve&) = delete;
+  ~BlockReserve();
+
+  /// Sees to it that so many blocks of every size up to `largest` bytes are ready and no others, as far as the 32 MB
+  /// allow, small ones first: for a thread that has time, so that another need not ask the system. Throws
+  /// std::bad_alloc.
+  void fill(std::size_t largest, std::size_t count);
+};
 
 /// How often blocks had to come from the system so far, in this thread.
 std::uint64_t blocks_from_system();

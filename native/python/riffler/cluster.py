@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import queue
-import tempfile
 import time
 import uuid
 from array import array
@@ -203,6 +202,8 @@ class Spool:
     """Packets of moves, slab by slab, in a temporary file that is gone with the process."""
 
     def __init__(self) -> None:
+        import tempfile  # brings hashlib, and that OpenSSL: 3 MB that only clusters need
+
         self.file = tempfile.TemporaryFile(prefix="riffler-")  # noqa: SIM115
         self.size = 0
         self.total = 0  # moves

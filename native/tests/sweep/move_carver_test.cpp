@@ -56,12 +56,13 @@ TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
 /// milliseconds: it looks at a snapshot, and makes memory ready for tiles that are cut for the first time.
 std::uint64_t allocations(Volume& volume, double lean, int moves, int warm) {
   MoveCarver carver(volume, cutters::ball(20, 40), {});
+  BlockReserve reserve;
   std::uint64_t count = 0;
   for (int k = 0; k < moves; ++k) {
     if (k % 50 == 0)
-      std::thread([seen = volume.snapshot()] {
+      std::thread([&reserve, seen = volume.snapshot()] {
         EXPECT_GT(seen.volume(), 0);
-        keep_blocks_ready(1 << 15, 128);
+        reserve.fill(1 << 15, 128);
       }).join();
     const std::uint64_t before = test::allocations();
     carver.move(on_spiral(k, lean), on_spiral(k + 1, lean), 0.001);

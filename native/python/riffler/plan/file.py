@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import os
@@ -36,6 +35,8 @@ class Plan:
 
 def part_of(mesh, name: str) -> dict[str, str]:
     """What a plan keeps of its part: its name and the hash of its vertices and triangles."""
+    import hashlib  # brings OpenSSL: 3 MB that only plan files need
+
     digest = hashlib.sha256()
     digest.update(np.ascontiguousarray(mesh.vertices, dtype="<f8").tobytes())
     digest.update(np.ascontiguousarray(mesh.triangles, dtype="<i4").tobytes())
