@@ -50,6 +50,12 @@ def program(name: str) -> Callable[[], bool]:
     return lambda: shutil.which(name) is not None
 
 
+def described(name: str) -> Callable[[], bool]:
+    """Whether pkg-config knows it."""
+    command = ["pkg-config", "--exists", name]
+    return lambda: shutil.which("pkg-config") is not None and subprocess.run(command, check=False).returncode == 0
+
+
 def library(name: str) -> Callable[[], bool]:
     def found() -> bool:
         try:
@@ -106,7 +112,13 @@ BLENDER_MODULE = [
     }.items()
 ]  # fmt: skip
 
-CPP_TESTS = [Need("GoogleTest", "libgtest-dev", "https://github.com/google/googletest", header("gtest/gtest.h"))]
+# Of umockdev's headers only pkg-config tells: they lie in a folder of its own.
+UMOCKDEV = Need("umockdev", "umockdev", "https://github.com/martinpitt/umockdev", program("umockdev-wrapper"))
+CPP_TESTS = [
+    Need("GoogleTest", "libgtest-dev", "https://github.com/google/googletest", header("gtest/gtest.h")),
+    Need("pkg-config of umockdev", "libumockdev-dev", UMOCKDEV.where, described("umockdev-1.0")),
+    UMOCKDEV,
+]  # fmt: skip
 
 BLENDER_WINDOW = [
     Need("Blender with a window", "blender", "https://www.blender.org/download/", program("blender")),

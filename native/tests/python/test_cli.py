@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import riffler
 from commands import ENVIRONMENT, RIFFLER, result, riffle
-from riffler.command import console, doctor, tools
+from riffler.command import console, tools
 
 SLOT = "G21 G90 G94\nG0 X-10 Y10 Z5\nG1 Z4 F500\nX50\nG0 Z20\nM30\n"
 
@@ -390,31 +390,6 @@ def test_ctrl_c_while_writing_leaves_the_old_file(tmp_path):
         beside.write_text("new")
     assert out.read_text() == "new" and said.written == "part.stl"
     assert [p.name for p in tmp_path.iterdir()] == ["part.stl"]
-
-
-def test_devices_are_named_and_say_why_they_do_not_open(tmp_path, monkeypatch):
-    dev, system = tmp_path / "dev", tmp_path / "sys"
-    dev.mkdir()
-    assert doctor.devices(dev, system) == []
-    for k in (10, 2):
-        (dev / f"hidraw{k}").write_bytes(b"")
-    (system / "hidraw2" / "device").mkdir(parents=True)
-    (system / "hidraw2" / "device" / "uevent").write_text(
-        "HID_ID=0003:0000256F:0000C635\nHID_NAME=3Dconnexion SpaceMouse\n"
-    )
-    two, ten = doctor.devices(dev, system)
-    assert (two["path"], ten["path"]) == (str(dev / "hidraw2"), str(dev / "hidraw10"))
-    assert (two["name"], two["id"], two["problem"]) == ("3Dconnexion SpaceMouse", "256f:c635", None)
-    assert ten["name"] == "unnamed device"
-
-    for code, words in ((errno.EACCES, "permission"), (errno.EBUSY, "busy"), (errno.EIO, os.strerror(errno.EIO))):
-
-        def refuse(*_, code=code):
-            raise OSError(code, os.strerror(code))
-
-        with monkeypatch.context() as patch:
-            patch.setattr(os, "open", refuse)
-            assert words in doctor.devices(dev, system)[0]["problem"]
 
 
 def test_angles_are_degrees_on_the_command_line_and_rad_in_files():

@@ -6,7 +6,6 @@ riffler doctor
 from __future__ import annotations
 
 import argparse
-import errno
 import importlib.metadata
 import importlib.util
 import os
@@ -16,20 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from .. import __version__, _core
+from .. import __version__, _core, pen
 from .console import Console, number
+from .pen import describe
 
 HELP = "versions, instruction set, devices found and why one did not open"
 
 # The ones that matter for arithmetic, best first.
 INSTRUCTION_SETS = ("avx512f", "avx2", "avx", "sse4_2", "asimd")
-REASONS = {
-    errno.EACCES: "permission denied: a udev rule or group must give this user the device",
-    errno.EPERM: "permission denied by the system (a container or sandbox?)",
-    errno.EBUSY: "busy: another program has it open",
-    errno.ENODEV: "it was unplugged",
-    errno.ENXIO: "it was unplugged",
-}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     data = report()
-    devices = [(d["path"], f"{d['name']} {d['id']}: " + (d["problem"] or "can be opened")) for d in data["devices"]]
+    devices = [(d["path"], describe(d)) for d in data["devices"]]
     memory = data["memory"]
     cpu = data["cpu"]
     rows = [
@@ -66,7 +59,7 @@ def report() -> dict[str, Any]:
         "threads": _core.thread_count(),
         "memory": memory(),
         "bpy": bpy_version(),
-        "devices": devices(),
+        "devices": pen.devices(),
     }
 
 
@@ -110,29 +103,6 @@ def bpy_version() -> str | None:
         return "bpy " + importlib.metadata.version("bpy")
     except importlib.metadata.PackageNotFoundError:
         return "bpy, version unknown"
-
-
-def devices(folder: Path = Path("/dev"), system: Path = Path("/sys/class/hidraw")) -> list[dict[str, Any]]:
-    """Every hidraw device, what it says it is, and why it cannot be opened, or None."""
-    found = []
-    for path in sorted(folder.glob("hidraw*"), key=lambda p: (len(p.name), p.name)):
-        pairs = (line.partition("=") for line in read(system / path.name / "device" / "uevent").splitlines())
-        fields = {key: value for key, _, value in pairs}
-        # HID_ID=0003:0000256F:0000C635 is bus, vendor and product.
-        vendor, product = (fields.get("HID_ID", "") + "::").split(":")[1:3]
-        name = fields.get("HID_NAME") or "unnamed device"
-        identity = f"{vendor[-4:]}:{product[-4:]}".lower() if vendor else "of unknown maker"
-        found.append({"path": str(path), "name": name, "id": identity, "problem": why_not(path)})
-    return found
-
-
-def why_not(path: Path) -> str | None:
-    """Why the device cannot be opened for reading and writing; None if it can."""
-    try:
-        os.close(os.open(path, os.O_RDWR | os.O_NONBLOCK | os.O_CLOEXEC))
-    except OSError as error:
-        return REASONS.get(error.errno or 0, error.strerror or str(error))
-    return None
 
 
 def read(path: Path) -> str:

@@ -1,0 +1,204 @@
+// riffler.pen: what is plugged in, and a device that is open.
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "bindings/bindings.hpp"
+#include "pen/open_error.hpp"
+#include "pen/playback.hpp"
+#include "pen/pointer.hpp"
+#include "pen/registry.hpp"
+
+namespace riffler {
+namespace {
+
+using namespace py::literals;
+
+/// A device that was stopped, or whose Python object is gone, does not push.
+using SharedPen = std::shared_ptr<Pen>;
+
+py::object or_none(const std::string& text) {
+  return text.empty() ? py::object(py::none()) : py::object(py::str(text));
+}
+
+py::dict dict_of(const FoundDevice& found) {
+  py::dict out;
+  out["path"] = found.info.path;
+  out["name"] = found.info.name.empty() ? "unnamed device" : found.info.name;
+  out["maker"] = found.info.maker;
+  out["id"] = found.info.id();
+  out["serial"] = found.info.serial;
+  out["kind"] = found.family == nullptr ? py::object(py::none()) : py::object(py::str(found.family->kind));
+  out["tried"] = found.tried;
+  out["problem"] =
+      found.problem == OpenProblem::None ? py::object(py::none()) : py::object(py::str(problem_text(found.problem)));
+  out["text"] = or_none(found.text);
+  out["capability"] = or_none(found.capability);
+  out["about"] = or_none(found.about);
+  return out;
+}
+
+py::list devices() {
+  std::vector<FoundDevice> found;
+  {
+    const py::gil_scoped_release release;
+    found = find_devices();
+  }
+  py::list out;
+  for (const FoundDevice& device : found) out.append(dict_of(device));
+  return out;
+}
+
+py::dict families() {
+  py::dict out;
+  for (const PenFamily& family : pen_families()) out[family.kind] = family.what;
+  return out;
+}
+
+SharedPen open_device(const std::string& what, const std::string& geometry, double bubble, double exponent,
+                      double speed, double turn_rate, bool hold_orientation, const std::array<int, 6>& signs) {
+  PenOptions options;
+  options.geometry = geometry;
+  options.rate = {bubble, exponent, speed, turn_rate, hold_orientation, false, signs};
+  options.rate.validate();
+  const py::gil_scoped_release release;
+  return open_pen(what, options);
+}
+
+SharedPen play(const std::vector<std::pair<Doubles, std::vector<double>>>& strokes, double speed) {
+  std::vector<RecordedStroke> recorded;
+  for (const auto& [poses, times] : strokes) recorded.push_back({to_poses(poses, "poses"), times});
+  return std::make_shared<PlaybackPen>(std::move(recorded), speed);
+}
+
+Wrench to_wrench(const py::object& force, const py::object& torque) {
+  return {to_vec3(force, "force"), to_vec3(torque, "torque")};
+}
+
+py::dict limits(const Pen& pen) {
+  const char* const names = "xyzabc";
+  py::dict out;
+  for (std::size_t k = 0; k < kCoordinates; ++k) {
+    const CoordinateCapability& c = pen.capability().coordinates[k];
+    py::dict one;
+    one["senses"] = c.sensing == Sensing::None       ? py::object(py::none())
+                    : c.sensing == Sensing::Position ? py::object(py::str("position"))
+                                                     : py::object(py::str("rate"));
+    one["pushes"] = c.pushes;
+    one["low"] = c.low;
+    one["high"] = c.high;
+    one["resolution"] = c.resolution;
+    one["peak"] = c.peak;
+    one["continuous"] = c.continuous;
+    out[py::str(std::string(1, names[k]))] = one;
+  }
+  return out;
+}
+
+py::dict health(const Pen& pen) {
+  const LinkStatus link = pen.status();
+  py::dict out;
+  out["state"] = link_text(link.state);
+  out["problem"] = or_none(pen.problem());
+  out["fault"] = link.sample.fault;
+  out["homed"] = link.sample.homed;
+  out["force"] = from_vec3(link.wrench.force);
+  out["torque"] = from_vec3(link.wrench.torque);
+  const LinkCounts& c = link.counts;
+  out["reports"] = c.reports;
+  out["superseded"] = c.superseded;
+  out["lost"] = c.lost;
+  out["malformed"] = c.malformed;
+  out["timeouts"] = c.timeouts;
+  out["writes"] = c.writes;
+  out["read_errors"] = c.read_errors;
+  out["write_errors"] = c.write_errors;
+  out["silences"] = c.silences;
+  out["connections"] = c.connections;
+  out["attempts"] = c.attempts;
+  return out;
+}
+
+py::dict push(Pen& pen, const py::object& force, const py::object& torque) {
+  const PushAnswer answer = pen.push(to_wrench(force, torque));
+  py::dict out;
+  out["force"] = from_vec3(answer.felt.force);
+  out["torque"] = from_vec3(answer.felt.torque);
+  out["missing_force"] = from_vec3(answer.missing.force);
+  out["missing_torque"] = from_vec3(answer.missing.torque);
+  out["reason"] = or_none(not_pushed_text(answer.reason));
+  return out;
+}
+
+/// A sample, and how old it was when it was asked for.
+struct State {
+  PenSample sample;
+  double age;
+};
+
+void bind_state(py::module_& m) {
+  py::class_<State>(m, "PenState", "Where the hand was, as of one report.")
+      .def_property_readonly(
+          "pose", [](const State& s) { return from_poses({s.sample.pose}).reshape({6}); },
+          "(6,): point and axis of the grip.")
+      .def_property_readonly(
+          "spin", [](const State& s) { return s.sample.spin; }, "rad, of the grip about its axis.")
+      .def_property_readonly(
+          "velocity", [](const State& s) { return from_vec3(s.sample.velocity); }, "(3,) mm/s.")
+      .def_property_readonly(
+          "turning", [](const State& s) { return from_vec3(s.sample.turning); }, "(3,) rad/s.")
+      .def_property_readonly(
+          "buttons", [](const State& s) { return s.sample.buttons; }, "Bit 0 is button 1.")
+      .def_property_readonly(
+          "age_s", [](const State& s) { return s.age; }, "s since it was measured; inf before the first report.")
+      .def_property_readonly(
+          "sequence", [](const State& s) { return s.sample.sequence; }, "Of the report; 0 before the first.")
+      .def_property_readonly(
+          "homed", [](const State& s) { return s.sample.homed; }, "Whether the pose is sure.")
+      .def_property_readonly(
+          "fault", [](const State& s) { return s.sample.fault; }, "The device's own code, or 0.")
+      .def_property_readonly(
+          "stretch", [](const State& s) { return s.sample.stretch; }, "mm between two measurements of one length.");
+}
+
+void bind_device(py::module_& m) {
+  py::class_<Pen, SharedPen>(m, "PenDevice", R"(A device that is open: a pen, a puck, a recording. Context manager.
+
+Reports are read, and forces written, in a thread of its own; a device that goes away is looked for until it is back.)")
+      .def_property_readonly("kind", &Pen::kind)
+      .def_property_readonly("about", &Pen::about)
+      .def_property_readonly("limits", &limits, R"(dict: "x", "y", "z" and turns "a", "b", "c", each a dict of senses
+("position", "rate" or None), pushes, low, high, resolution (mm, rad, or a second of them), peak, continuous (N, N·mm).)")
+      .def(
+          "state", [](const Pen& p) { return State{p.newest(), p.age()}; }, "PenState: the newest sample.")
+      .def("health", &health, "dict: state, problem, what was last pushed with, and counts since the start.")
+      .def("push", &push, "force"_a, "torque"_a = py::make_tuple(0, 0, 0), R"(Pushes for 20 ms with a force (N) and a
+torque (N·mm) about the grip's point. dict: force, torque that will be felt, missing_force, missing_torque, reason or
+None.)")
+      .def("home", &Pen::home, "The device stands in its home posture. False where nothing has to be homed.")
+      .def("stop", &Pen::stop, py::call_guard<py::gil_scoped_release>(),
+           "No force, and closed. False where the device could not be told in time.")
+      .def("__enter__", [](py::object self) { return self; })
+      .def("__exit__", [](Pen& p, const py::args&) {
+        const py::gil_scoped_release release;
+        p.stop();
+      });
+}
+
+}  // namespace
+
+void bind_pen_device(py::module_& m) {
+  py::register_exception<OpenError>(m, "PenError", PyExc_RuntimeError).attr("__doc__") =
+      "A device that does not open: says exactly why, and what to do.";
+  bind_state(m);
+  bind_device(m);
+  m.def("_pen_devices", &devices);
+  m.def("_pen_families", &families);
+  const RateSettings rate;
+  m.def("_open_pen", &open_device, "what"_a, py::kw_only(), "geometry"_a = "woodenhaptics", "bubble"_a = rate.bubble,
+        "exponent"_a = rate.exponent, "speed"_a = rate.speed, "turn_rate"_a = rate.turn_rate,
+        "hold_orientation"_a = rate.hold_orientation, "signs"_a = rate.signs);
+  m.def("_play_pen", &play, "strokes"_a, "speed"_a);
+}
+
+}  // namespace riffler

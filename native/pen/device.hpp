@@ -1,0 +1,61 @@
+// One interface for everything that a hand can hold: pens with motors, pucks, recordings, tablets, mice.
+#pragma once
+
+#include <string>
+
+#include "pen/capability.hpp"
+#include "pen/driver_loop.hpp"
+#include "pen/sample.hpp"
+
+namespace riffler {
+
+enum class NotPushed : unsigned char {
+  None,          // all of it will be felt
+  NoMotors,      // some or all of it has no motor: `missing`
+  NotConnected,  // the device is gone
+  NotHomed,      // it does not know where it is
+  NotPowered,    // it reports a fault, or is not ready
+  BadWrench,     // not finite
+};
+const char* not_pushed_text(NotPushed reason) noexcept;
+
+struct PushAnswer {
+  Wrench felt{}, missing{};  // their sum is what was asked for
+  NotPushed reason = NotPushed::None;
+};
+
+/// Destroying one stops it. Where nothing else is said, functions are for one thread.
+class Pen {
+ public:
+  virtual ~Pen() = default;
+
+  /// As families are called: "riffler-pen", "spacemouse", "recording", "tablet" …
+  virtual std::string kind() const = 0;
+  /// Which coordinates are sensed and which can push. Does not change.
+  virtual const DeviceCapability& capability() const noexcept = 0;
+  /// Of the device itself, for people.
+  virtual std::string about() const { return {}; }
+
+  /// The newest sample; sample.time is in seconds of `now`. Any thread; never waits.
+  virtual PenSample newest() const noexcept = 0;
+  /// s of the clock that samples are dated by. Any thread.
+  virtual double now() const noexcept = 0;
+  /// s since the newest sample was measured; infinite before the first. Any thread.
+  double age() const noexcept;
+
+  /// Asks for a wrench about the grip's pivot, in the frame of poses, and says what of it the hand will feel. It holds
+  /// for 20 ms: whoever pushes goes on asking. By one thread; never waits. Ignored, and the answer says why, where the
+  /// device cannot push.
+  virtual PushAnswer push(const Wrench& wrench) noexcept;
+
+  /// The device stands in its home posture. False where nothing has to be homed.
+  virtual bool home() noexcept { return false; }
+  /// Any thread; never waits.
+  virtual LinkStatus status() const noexcept;
+  /// Why the device is not there, or nothing.
+  virtual std::string problem() const { return {}; }
+  /// The device does not push any more, and is closed. False where it could not be told in time.
+  virtual bool stop() { return true; }
+};
+
+}  // namespace riffler

@@ -1,0 +1,160 @@
+#include "pen/driver.hpp"
+
+#include <pthread.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace riffler {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+/// A signal that this thread took would end its poll() with an error, which means to hidapi that the device is gone.
+class WithoutSignals {
+ public:
+  WithoutSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  WithoutSignals(const WithoutSignals&) = delete;
+  WithoutSignals& operator=(const WithoutSignals&) = delete;
+  ~WithoutSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
+}  // namespace
+
+double steady_seconds() noexcept {
+  return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// What both threads use. They hold it, so that it outlives a driver whose threads do not end in time.
+struct Driver::Shared final : Connector, Clock {
+  Shared(std::shared_ptr<HidModel> m, std::shared_ptr<PenStep> s, std::unique_ptr<Transport> transport, Open o,
+         const DriverSettings& settings)
+      : model(std::move(m)),
+        step(std::move(s)),
+        open(std::move(o)),
+        loop(*model, *step, *this, *this, std::move(transport), settings) {}
+
+  // Connector; called by the driver's thread while it has no device.
+  void begin() noexcept override {
+    const std::lock_guard lock(mutex);
+    wanted = true;
+    changed.notify_all();
+  }
+
+  Answer poll(std::unique_ptr<Transport>& transport, OpenProblem& problem) noexcept override {
+    const std::lock_guard lock(mutex);
+    if (!answer) return Answer::Pending;
+    transport = std::move(found);
+    problem = *std::exchange(answer, std::nullopt);
+    return transport ? Answer::Opened : Answer::Failed;
+  }
+
+  // Clock
+  double now() noexcept override { return steady_seconds(); }
+  void wait(double seconds) noexcept override {
+    std::unique_lock lock(mutex);
+    changed.wait_for(lock, Seconds(seconds), [&] { return stopping.load() || answer.has_value(); });
+  }
+
+  void drive() {
+    while (!stopping.load()) loop.tick();
+    loop.stop();
+    ended();
+  }
+
+  void connect() {
+    std::unique_lock lock(mutex);
+    for (;;) {
+      changed.wait(lock, [&] { return stopping.load() || wanted; });
+      if (stopping.load()) break;
+      wanted = false;
+      lock.unlock();
+      std::unique_ptr<Transport> transport;
+      OpenProblem why = OpenProblem::None;
+      std::string words;
+      try {
+        transport = open();
+      } catch (const OpenError& error) {
+        why = error.problem(), words = error.what();
+      } catch (const std::exception& error) {
+        why = OpenProblem::Other, words = error.what();
+      }
+      lock.lock();
+      found = std::move(transport);
+      text = std::move(words);
+      answer = why;
+      changed.notify_all();
+    }
+    lock.unlock();
+    ended();
+  }
+
+  void ended() {
+    const std::lock_guard lock(mutex);
+    ++threads_ended;
+    changed.notify_all();
+  }
+
+  const std::shared_ptr<HidModel> model;
+  const std::shared_ptr<PenStep> step;
+  const Open open;
+  std::atomic<bool> stopping{false};
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  bool wanted = false;
+  std::optional<OpenProblem> answer;
+  std::unique_ptr<Transport> found;
+  std::string text;
+  int threads_ended = 0;
+
+  DriverLoop loop;  // last: it uses the others from the start
+};
+
+Driver::Driver(std::shared_ptr<HidModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
+               Open open, const DriverSettings& settings)
+    : shared_(std::make_shared<Shared>(std::move(model), std::move(step), std::move(transport), std::move(open),
+                                       settings)) {
+  const WithoutSignals masked;  // threads inherit it
+  try {
+    std::thread([s = shared_] { s->drive(); }).detach();
+    std::thread([s = shared_] { s->connect(); }).detach();
+  } catch (...) {
+    shared_->stopping = true;
+    throw;
+  }
+}
+
+Driver::~Driver() {
+  stop();
+}
+
+bool Driver::stop(double seconds) {
+  std::unique_lock lock(shared_->mutex);
+  shared_->stopping = true;
+  shared_->changed.notify_all();
+  return shared_->changed.wait_for(lock, Seconds(seconds), [&] { return shared_->threads_ended == 2; });
+}
+
+LinkStatus Driver::status() const noexcept {
+  return shared_->loop.status();
+}
+
+std::string Driver::problem() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->text;
+}
+
+}  // namespace riffler

@@ -1,0 +1,179 @@
+#include "pen/driver_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace riffler {
+namespace {
+
+void require_positive(const char* field, double value) {
+  if (!std::isfinite(value) || value <= 0)
+    throw std::invalid_argument(std::string(field) + " of the driver must be positive");
+}
+
+}  // namespace
+
+void DriverSettings::validate() const {
+  require_positive("read_timeout", read_timeout);
+  require_positive("silence", silence);
+  require_positive("first_retry", first_retry);
+  require_positive("longest_retry", longest_retry);
+  require_positive("poll", poll);
+  require_positive("most_reads", most_reads);
+  if (longest_retry < first_retry) throw std::invalid_argument("longest_retry of the driver is less than first_retry");
+}
+
+const char* link_text(LinkState state) noexcept {
+  switch (state) {
+    case LinkState::Stopped:
+      return "stopped";
+    case LinkState::Connected:
+      return "connected";
+    case LinkState::Waiting:
+      return "waiting";
+    case LinkState::Connecting:
+      break;
+  }
+  return "connecting";
+}
+
+DriverLoop::DriverLoop(HidModel& model, PenStep& step, Connector& connector, Clock& clock,
+                       std::unique_ptr<Transport> transport, const DriverSettings& settings)
+    : model_(model), step_(step), connector_(connector), clock_(clock), settings_(settings) {
+  settings_.validate();
+  status_.retry = settings_.first_retry;
+  next_attempt_ = clock_.now();
+  if (transport) open(std::move(transport));
+  publish();
+}
+
+DriverLoop::~DriverLoop() {
+  stop();
+}
+
+void DriverLoop::tick() noexcept {
+  if (status_.state == LinkState::Stopped) return;
+  if (status_.state == LinkState::Connected)
+    drive();
+  else
+    look();
+  publish();
+}
+
+void DriverLoop::stop() noexcept {
+  if (transport_) release();
+  transport_.reset();
+  status_.state = LinkState::Stopped;
+  status_.wrench = {};
+  publish();
+}
+
+void DriverLoop::open(std::unique_ptr<Transport> transport) noexcept {
+  transport_ = std::move(transport);
+  const double now = clock_.now();
+  model_.begin(now);
+  heard_ = now;
+  has_stepped_ = false;
+  ++status_.counts.connections;
+  status_.problem = OpenProblem::None;
+  status_.state = LinkState::Connected;
+  // A device that pushed for whoever had it before stops now; one that waits for a first word speaks.
+  release();
+}
+
+/// One tick of an open device.
+void DriverLoop::drive() noexcept {
+  LinkCounts& counts = status_.counts;
+  ++counts.ticks;
+  if (!drain()) return lose(counts.read_errors);
+  const double now = clock_.now();
+  if (model_.period() > 0 && now - heard_ > settings_.silence) return lose(counts.silences);
+  status_.sample = model_.sample(now);
+  const double dt = has_stepped_ ? now - stepped_ : 0;
+  has_stepped_ = true;
+  stepped_ = now;
+  if (!put(step_.step(status_.sample, now, dt), now)) lose(counts.write_errors);
+}
+
+/// Waits for a report, and takes all that have come since: only the newest counts, and a queue is delay that the hand
+/// feels. False where the device is gone.
+bool DriverLoop::drain() noexcept {
+  LinkCounts& counts = status_.counts;
+  unsigned reports = 0, reads = 0;
+  double wait = settings_.read_timeout;
+  for (; reads < settings_.most_reads; ++reads, wait = 0) {
+    const int n = transport_->read(buffer_, wait);
+    if (n < 0) return false;
+    if (n == 0) break;
+    const double now = clock_.now();
+    const auto size = std::min(static_cast<std::size_t>(n), buffer_.size());
+    const Taken taken = model_.take(std::span(buffer_).first(size), now);
+    reports += taken.reports;
+    counts.lost += taken.lost;
+    counts.old += taken.old;
+    counts.malformed += taken.malformed;
+    // Garbage is no sign of life: a device that sends nothing else is as good as gone.
+    if (taken.reports > 0) heard_ = now;
+  }
+  counts.reports += reports;
+  if (reports > 1) counts.superseded += reports - 1;
+  if (reports == 0) ++counts.timeouts;
+  return true;
+}
+
+/// False where the device is gone.
+bool DriverLoop::put(const Wrench& wrench, double now) noexcept {
+  std::array<std::uint8_t, 65> bytes{};
+  const bool good = finite(wrench);
+  if (!good) ++status_.counts.bad_wrenches;
+  status_.wrench = good ? wrench : Wrench{};
+  const std::size_t size = good ? model_.push(wrench, now, bytes) : model_.release(now, bytes);
+  if (size == 0) return true;
+  ++status_.counts.writes;
+  return transport_->write(std::span(bytes).first(size));
+}
+
+/// Nothing more can be done where this fails: the watchdog of the device does the rest.
+void DriverLoop::release() noexcept {
+  std::array<std::uint8_t, 65> bytes{};
+  const std::size_t size = model_.release(clock_.now(), bytes);
+  if (size == 0) return;
+  ++status_.counts.writes;
+  transport_->write(std::span(bytes).first(size));
+}
+
+void DriverLoop::lose(std::uint32_t& count) noexcept {
+  ++count;
+  release();
+  transport_.reset();
+  status_.wrench = {};
+  status_.state = LinkState::Waiting;
+  status_.retry = settings_.first_retry;
+  next_attempt_ = clock_.now() + status_.retry;
+}
+
+/// Not connected.
+void DriverLoop::look() noexcept {
+  const double now = clock_.now();
+  if (status_.state == LinkState::Waiting) {
+    if (now < next_attempt_) return clock_.wait(std::min(settings_.poll, next_attempt_ - now));
+    ++status_.counts.attempts;
+    connector_.begin();
+    status_.state = LinkState::Connecting;
+  }
+  std::unique_ptr<Transport> transport;
+  switch (connector_.poll(transport, status_.problem)) {
+    case Connector::Answer::Opened:
+      return open(std::move(transport));
+    case Connector::Answer::Failed:
+      status_.state = LinkState::Waiting;
+      status_.retry = std::min(2 * status_.retry, settings_.longest_retry);
+      next_attempt_ = now + status_.retry;
+      return;
+    case Connector::Answer::Pending:
+      return clock_.wait(settings_.poll);
+  }
+}
+
+}  // namespace riffler

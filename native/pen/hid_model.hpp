@@ -1,0 +1,57 @@
+// What a family of HID devices says and understands: between the bytes of its reports and samples and wrenches. A new
+// family is one file with one of these, and one line in registry.cpp.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "pen/capability.hpp"
+#include "pen/open_error.hpp"
+#include "pen/sample.hpp"
+#include "pen/transport.hpp"
+
+namespace riffler {
+
+/// What one read brought.
+struct Taken {
+  unsigned reports = 0;    // samples that it held
+  unsigned malformed = 0;  // pieces that are no report: too short, with an impossible field
+  unsigned lost = 0;       // reports that the numbers say were sent before these and never came
+  unsigned old = 0;        // reports that came again or in the wrong order; left out
+};
+
+class HidModel {
+ public:
+  virtual ~HidModel() = default;
+
+  virtual const DeviceCapability& capability() const noexcept = 0;
+  /// s between its reports; 0 for a device that only speaks while it is touched, whose silence means nothing.
+  virtual double period() const noexcept = 0;
+  /// Its own limits and identity, for people; may be empty.
+  virtual std::string about() const { return {}; }
+
+  /// Whether what was just opened is this very device, in the state that the model expects. Throws OpenError. Not in
+  /// the driver's thread, and never while that thread uses the model.
+  virtual void check(Transport& transport) = 0;
+
+  /// The device stands where its homing says: from the next report on the pose is sure. Any thread. False for a device
+  /// that needs no homing.
+  virtual bool home() noexcept { return false; }
+
+  // In the driver's thread: these allocate nothing, throw nothing and wait for nothing.
+
+  /// After opening, before the first report: forget what came before.
+  virtual void begin(double now) noexcept = 0;
+  /// What one read gave: a report, or several one after the other as a slow system may deliver them, or garbage.
+  virtual Taken take(std::span<const std::uint8_t> bytes, double now) noexcept = 0;
+  /// The hand at `now`. Between reports only what is integrated from a rate goes on.
+  virtual PenSample sample(double now) noexcept = 0;
+  /// The report that pushes with `wrench` about the grip's pivot, in the frame of poses; its size. 0 for a device that
+  /// takes no reports. `bytes` holds 65.
+  virtual std::size_t push(const Wrench& wrench, double now, std::span<std::uint8_t> bytes) noexcept = 0;
+  /// The report after which the device does not push, whatever it was told before.
+  virtual std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept = 0;
+};
+
+}  // namespace riffler

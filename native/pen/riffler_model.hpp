@@ -1,0 +1,61 @@
+// Riffler's own pen: device/protocol on the wire, and the kinematics of the geometry that the pen names.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "device/protocol/pen_protocol.h"
+#include "pen/count_speed.hpp"
+#include "pen/hid_model.hpp"
+#include "pen/kinematics.hpp"
+
+namespace riffler {
+
+class RifflerModel final : public HidModel {
+ public:
+  /// Asks the pen who it is. Throws OpenError: not a Riffler pen, another version of the protocol, a descriptor that
+  /// differs, limits that cannot be, a geometry that is not known here.
+  explicit RifflerModel(Transport& transport);
+
+  const DeviceCapability& capability() const noexcept override { return capability_; }
+  double period() const noexcept override { return 1e-6 * limits_.period_us; }
+  std::string about() const override;
+  void check(Transport& transport) override;
+  /// Counters count from where they were when power came on: somebody has to hold the pen in its home posture and say
+  /// so.
+  bool home() noexcept override;
+
+  void begin(double now) noexcept override;
+  Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
+  PenSample sample(double) noexcept override { return sample_; }
+  /// The pen pushes once it is told so after it was told not to: reports enable only from the moment on in which there
+  /// is something to push with, and not in any state in which the pen would not take it.
+  std::size_t push(const Wrench& wrench, double now, std::span<std::uint8_t> bytes) noexcept override;
+  std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
+
+ private:
+  void take_report(const riffler_pen_input& report, double now, Taken& taken) noexcept;
+  void place(const riffler_pen_input& report, double now) noexcept;
+  bool may_enable(bool pushes, double now) noexcept;
+  std::size_t send(riffler_pen_output report, double now, std::span<std::uint8_t> bytes) noexcept;
+
+  riffler_pen_identity identity_{};
+  riffler_pen_limits limits_{};
+  PenGeometry geometry_;
+  DeviceCapability capability_;
+  PenKinematics kinematics_;
+  CountSpeed speed_;
+  PenPosture posture_{};
+  PenSample sample_{};
+  riffler_pen_input last_{};
+  bool heard_ = false;  // since the device was opened
+  bool ever_heard_ = false;
+  double last_time_ = 0;    // of the driver's clock, when last_ came
+  double device_time_ = 0;  // s of the pen's clock since the first report; does not wrap
+  double pushed_ = 0;       // when there was last something to push with
+  bool pushing_ = false;
+  std::uint16_t sent_ = 0;
+  std::atomic<bool> home_asked_{false};
+};
+
+}  // namespace riffler

@@ -1,0 +1,9 @@
+// How often a thread of this program has asked for memory, in whatever language.
+#pragma once
+
+namespace riffler::test {
+
+/// By the calling thread, since it began.
+long allocations() noexcept;
+
+}  // namespace riffler::test

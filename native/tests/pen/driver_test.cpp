@@ -1,0 +1,207 @@
+// The driver's threads, against a device in memory: start, loss, return, and an end in bounded time.
+#include "pen/driver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "pen/hid_pen.hpp"
+#include "pen/published.hpp"
+
+namespace riffler {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Shared by the threads: a report each millisecond while it is plugged in.
+struct Plug {
+  std::atomic<bool> in{true}, stuck{false};
+  std::atomic<int> writes{0}, released{0}, open{0};
+};
+
+class PlugTransport final : public Transport {
+ public:
+  explicit PlugTransport(std::shared_ptr<Plug> plug) : plug_(std::move(plug)) { ++plug_->open; }
+  ~PlugTransport() override { --plug_->open; }
+  int read(std::span<std::uint8_t> bytes, double seconds) noexcept override {
+    if (seconds == 0) return 0;
+    std::this_thread::sleep_for(1ms);
+    while (plug_->stuck) std::this_thread::sleep_for(1ms);
+    if (!plug_->in) return -1;
+    bytes[0] = 1;
+    return 1;
+  }
+  bool write(std::span<const std::uint8_t> bytes) noexcept override {
+    ++plug_->writes;
+    if (bytes[0] == 0) ++plug_->released;
+    return plug_->in;
+  }
+  int get_feature(std::span<std::uint8_t>) noexcept override { return -1; }
+  std::span<const std::uint8_t> descriptor() const noexcept override { return {}; }
+
+ private:
+  std::shared_ptr<Plug> plug_;
+};
+
+/// One byte each way: 1 pushes, 0 does not.
+class ByteModel final : public HidModel {
+ public:
+  ByteModel() { capability_.coordinates[0].pushes = true; }
+  const DeviceCapability& capability() const noexcept override { return capability_; }
+  double period() const noexcept override { return 1e-3; }
+  void check(Transport&) override {}
+  void begin(double) noexcept override {}
+  Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override {
+    sample_.sequence += bytes.size();
+    sample_.time = now;
+    sample_.homed = sample_.powered = true;
+    // All fields tell the same, so that a torn copy shows.
+    sample_.pose.tip = Vec3(static_cast<double>(sample_.sequence));
+    sample_.buttons = static_cast<std::uint32_t>(sample_.sequence);
+    return {static_cast<unsigned>(bytes.size()), 0, 0, 0};
+  }
+  PenSample sample(double) noexcept override { return sample_; }
+  std::size_t push(const Wrench& wrench, double, std::span<std::uint8_t> bytes) noexcept override {
+    bytes[0] = wrench.force.x != 0;
+    return 1;
+  }
+  std::size_t release(double, std::span<std::uint8_t> bytes) noexcept override {
+    bytes[0] = 0;
+    return 1;
+  }
+
+ private:
+  DeviceCapability capability_;
+  PenSample sample_{};
+};
+
+bool eventually(const std::function<bool()>& what, std::chrono::seconds within = 10s) {
+  const auto end = std::chrono::steady_clock::now() + within;
+  while (std::chrono::steady_clock::now() < end) {
+    if (what()) return true;
+    std::this_thread::sleep_for(1ms);
+  }
+  return what();
+}
+
+std::unique_ptr<HidPen> pen_on(const std::shared_ptr<Plug>& plug) {
+  const auto open = [plug]() -> std::unique_ptr<Transport> {
+    if (!plug->in) throw OpenError(OpenProblem::NoFile, "it is not plugged in");
+    return std::make_unique<PlugTransport>(plug);
+  };
+  return std::make_unique<HidPen>("test", std::make_shared<ByteModel>(), std::make_unique<PlugTransport>(plug), open);
+}
+
+TEST(Driver, ReadsStepsAndWritesInAThreadOfItsOwn) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  EXPECT_TRUE(eventually([&] { return pen->newest().sequence >= 20; }));
+  EXPECT_EQ(pen->status().state, LinkState::Connected);
+  EXPECT_LT(pen->age(), 5);
+  EXPECT_TRUE(pen->stop());
+  EXPECT_EQ(plug->open, 0);
+}
+
+TEST(Driver, EveryCopyOfTheSampleIsWhole) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  std::atomic<int> torn{0};
+  std::vector<std::thread> readers;
+  for (int t = 0; t < 3; ++t)
+    readers.emplace_back([&] {
+      for (int k = 0; k < 20000; ++k) {
+        const PenSample s = pen->newest();
+        if (s.pose.tip.x != static_cast<double>(s.sequence) || s.pose.tip.z != s.pose.tip.x || s.buttons != s.sequence)
+          ++torn;
+      }
+    });
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(torn, 0);
+}
+
+TEST(Driver, PushHoldsForAMomentOnly) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  ASSERT_TRUE(eventually([&] { return pen->newest().sequence > 0; }));
+  Wrench wrench;
+  wrench.force.x = 1;
+  EXPECT_EQ(pen->push(wrench).reason, NotPushed::None);
+  EXPECT_TRUE(eventually([&] { return pen->status().wrench.force.x == 1 || plug->writes > plug->released; }));
+  std::this_thread::sleep_for(50ms);
+  EXPECT_TRUE(eventually([&] { return pen->status().wrench.force.x == 0; }));
+}
+
+TEST(Driver, FindsTheDeviceAgain) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  ASSERT_TRUE(eventually([&] { return pen->newest().sequence > 0; }));
+  plug->in = false;
+  EXPECT_TRUE(eventually([&] { return pen->status().state != LinkState::Connected; }));
+  EXPECT_TRUE(eventually([&] { return pen->problem() == "it is not plugged in"; }));
+  EXPECT_EQ(pen->push({}).reason, NotPushed::NotConnected);
+  plug->in = true;
+  EXPECT_TRUE(eventually([&] { return pen->status().state == LinkState::Connected; }));
+  EXPECT_EQ(pen->status().counts.connections, 2U);
+  EXPECT_TRUE(pen->stop());
+  EXPECT_EQ(plug->open, 0);
+  EXPECT_EQ(pen->status().state, LinkState::Stopped);
+}
+
+TEST(Driver, TheLastWordIsNotToPush) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  ASSERT_TRUE(eventually([&] { return plug->writes > 10; }));
+  const int before = plug->released;
+  EXPECT_TRUE(pen->stop());
+  EXPECT_GT(plug->released, before);
+}
+
+TEST(Driver, ASystemCallThatDoesNotComeBackCannotHoldUpTheEnd) {
+  const auto plug = std::make_shared<Plug>();
+  auto driver =
+      std::make_unique<Driver>(std::make_shared<ByteModel>(), std::make_shared<HeldPush>(),
+                               std::make_unique<PlugTransport>(plug), [] { return std::unique_ptr<Transport>(); });
+  ASSERT_TRUE(eventually([&] { return plug->writes > 3; }));
+  plug->stuck = true;
+  std::this_thread::sleep_for(20ms);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_FALSE(driver->stop(0.1));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 5s);
+  plug->stuck = false;
+  EXPECT_TRUE(driver->stop(10)) << "it ends by itself when the call does";
+  driver.reset();
+  EXPECT_TRUE(eventually([&] { return plug->open == 0; }));
+}
+
+TEST(Published, ReadersNeverSeeAMixture) {
+  struct Four {
+    std::uint64_t a = 0, b = 0, c = 0, d = 0;
+  };
+  Published<Four> published;
+  std::atomic<bool> done{false};
+  std::atomic<int> torn{0}, changes{0};
+  std::thread reader([&] {
+    std::uint64_t last = 0;
+    // Until it has seen the writer at work, whenever the system lets both run.
+    const auto end = std::chrono::steady_clock::now() + 20s;
+    while (changes < 100 && std::chrono::steady_clock::now() < end) {
+      const Four f = published.get();
+      if (f.a != f.b || f.b != f.c || f.c != f.d) ++torn;
+      if (f.a != last) ++changes;
+      last = f.a;
+    }
+    done = true;
+  });
+  std::uint64_t k = 0;
+  while (!done) ++k, published.set({k, k, k, k});
+  reader.join();
+  EXPECT_EQ(torn, 0);
+  EXPECT_EQ(changes, 100);
+  EXPECT_EQ(published.get().d, k);
+}
+
+}  // namespace
+}  // namespace riffler

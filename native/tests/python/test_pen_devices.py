@@ -1,0 +1,149 @@
+"""riffler pen and riffler doctor on machines without devices, and with devices of umockdev; recordings as devices."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import riffler
+from commands import ENVIRONMENT, RIFFLER, riffle
+
+virtual = pytest.mark.skipif(
+    sys.platform != "linux" or shutil.which("umockdev-run") is None,
+    reason="umockdev is not installed (Debian: umockdev)",
+)
+# A multi-axis controller, six axes of 16 bits in report 1.
+PUCK = bytes.fromhex(
+    "05010908a101a100850116a2fe265e01751009300931093209330934093595068106c0"
+    "a1028503050919012902150025017501950281029 50e8103c0c0".replace(" ", "")
+)
+# "Raw HID" of a Teensy board.
+BOARD = bytes.fromhex("06abff0a0002a101750815002 6ff00954009018102954009029102c0".replace(" ", ""))
+
+
+def device(number: int, vendor: int, product: int, name: str, descriptor: bytes) -> str:
+    """A device of umockdev: the hidraw node, its HID device, its interface, its USB device."""
+    usb = f"/devices/pci0000:00/usb1/1-{number + 1}"
+    hid = f"{usb}/1-{number + 1}:1.0/0003:{vendor:04X}:{product:04X}.000{number}"
+    return (
+        f"P: {hid}/hidraw/hidraw{number}\nN: hidraw{number}\nE: DEVNAME=/dev/hidraw{number}\nE: MAJOR=240\n"
+        f"E: MINOR={number}\nE: SUBSYSTEM=hidraw\nL: device=../../../{hid.rpartition('/')[2]}\n"
+        f"A: dev=240:{number}\\n\n\n"
+        f"P: {hid}\nE: SUBSYSTEM=hid\nE: HID_ID=0003:0000{vendor:04X}:0000{product:04X}\nE: HID_NAME={name}\n"
+        f"E: HID_UNIQ=\nH: report_descriptor={descriptor.hex().upper()}\n\n"
+        f"P: {hid.rpartition('/')[0]}\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=00\\n\n\n"
+        f"P: {usb}\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nA: idVendor={vendor:04x}\\n\n"
+        f"A: idProduct={product:04x}\\n\nA: product={name}\\n\n\n"
+    )
+
+
+def answers(number: int, descriptor: bytes, features: tuple[bytes, ...] = ()) -> str:
+    """Its ioctls."""
+    size = struct.pack("<I", len(descriptor))
+    lines = [f"@DEV /dev/hidraw{number}", f"HIDIOCGRDESCSIZE 0 {size.hex().upper()}"]
+    lines += [f"HIDIOCGRDESC 0 {(size + descriptor.ljust(4096, bytes(1))).hex().upper()}"]
+    lines += [f"HIDIOCGFEATURE {len(f)} {f.hex().upper()}" for f in features]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.fixture
+def plugged(tmp_path):
+    """Runs a command of riffler where the devices are plugged in: (vendor, product, name, descriptor, *features)."""
+
+    def run(*words: str, devices: list[tuple]) -> subprocess.CompletedProcess:
+        command = ["umockdev-run"]
+        for number, (vendor, product, name, descriptor, *features) in enumerate(devices):
+            described, answered = tmp_path / f"{number}.umockdev", tmp_path / f"{number}.ioctl"
+            described.write_text(device(number, vendor, product, name, descriptor))
+            answered.write_text(answers(number, descriptor, tuple(features)))
+            command += ["-d", str(described), "-i", f"/dev/hidraw{number}={answered}"]
+        command += ["--", *RIFFLER, *words]
+        return subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=120, check=False)
+
+    return run
+
+
+def listed(done: subprocess.CompletedProcess) -> list[dict]:
+    assert done.returncode == 0, done.stderr + done.stdout
+    return json.loads(done.stdout)["devices"]
+
+
+def test_kinds_are_listed_where_nothing_is_plugged_in(tmp_path):
+    done = riffle("pen", "list", "--json", cwd=tmp_path)
+    assert done.returncode == 0 and done.stderr == ""
+    assert set(json.loads(done.stdout)["kinds"]) == set(riffler.pen.kinds()) >= {"riffler-pen", "spacemouse", "polhem"}
+    assert riffle("pen", cwd=tmp_path).returncode == 2
+    assert riffle("pen", "lsit", cwd=tmp_path).returncode == 2
+
+
+@virtual
+def test_a_puck_is_listed_with_what_it_can_do(plugged):
+    puck = (0x256F, 0xC631, "SpaceMouse Pro Wireless", PUCK)
+    (found,) = listed(plugged("pen", "list", "--json", devices=[puck]))
+    assert (found["path"], found["id"], found["kind"]) == ("/dev/hidraw0", "256f:c631", "spacemouse")
+    assert found["problem"] is None and "senses" in found["capability"]
+    table = plugged("pen", "list", devices=[puck]).stdout
+    assert "/dev/hidraw0" in table and "sets speeds; no force" in table
+
+
+@virtual
+def test_each_reason_is_told(plugged):
+    identity = (b"\x03RPen" + bytes([7, 0, 0, 1, 0]) + b"riffler".ljust(24, b"\0") + b"12".ljust(16, b"\0")).ljust(50)
+    devices = [
+        (0x1209, 0x0001, "Riffler pen", PUCK, identity[:50]),
+        (0x256F, 0xC635, "SpaceMouse Compact", PUCK[:6] + b"\xc0"),
+        (0x16C0, 0x0486, "Teensyduino RawHID", BOARD),
+        (0x046D, 0xC31C, "Keyboard", b"\x05\x01\x09\x06\xa1\x01\xc0"),
+        (0x1209, 0x0001, "Riffler pen", PUCK),
+    ]
+    version, descriptor, board, mute = listed(plugged("pen", "list", "--json", devices=devices))
+    assert version["problem"] == "other version of the protocol" and "version 7.0" in version["text"]
+    assert descriptor["problem"] == "wrong report descriptor" and "/dev/hidraw1: " in descriptor["text"]
+    assert board["kind"] == "polhem" and not board["tried"] and board["problem"] is None
+    assert mute["problem"] == "no answer"
+
+    done = plugged("doctor", "--json", devices=devices)
+    all_of_them = listed(done)
+    assert len(all_of_them) == 5 and all_of_them[3]["kind"] is None and all_of_them[3]["problem"] is None
+    table = plugged("doctor", devices=devices).stdout
+    assert "/dev/hidraw3" in table and "Keyboard 046d:c31c: can be opened" in table
+
+
+def test_what_is_not_there_does_not_open():
+    with pytest.raises(riffler.pen.PenError, match=r"/dev/hidraw99: no such device"):
+        riffler.pen.open("/dev/hidraw99")
+    with pytest.raises(riffler.pen.PenError, match=r"/dev/null: not a HID device"):
+        riffler.pen.open("/dev/null")
+    with pytest.raises(ValueError, match="bubble"):
+        riffler.pen.open("spacemouse", bubble=2)
+
+
+def test_a_recording_opens_as_a_device(tmp_path):
+    journal = riffler.Journal()
+    journal.set_stock([0, 0, 0], [10, 10, 10], 1)
+    journal.add_tool(1, riffler.Tool.ball(2, length=20))
+    journal.add_stroke(1, [[0, 0, 5, 0, 0, 1], [9, 0, 5, 0, 0, 1]], [0.0, 1e-3])
+    path = tmp_path / "a.rjournal"
+    journal.write(path)
+    with riffler.pen.open(path) as pen:
+        assert pen.kind == "recording" and pen.limits["x"]["senses"] == "position" and not pen.limits["x"]["pushes"]
+        assert pen.state().sequence == 1
+        while pen.health()["state"] != "stopped":
+            pass
+        state = pen.state()
+        np.testing.assert_allclose(state.pose, [9, 0, 5, 0, 0, 1])
+        assert state.buttons == 0 and state.age_s == pytest.approx(0, abs=0.1)
+        answer = pen.push([0, 0, 1])
+        assert answer["reason"] == "the device has no motors for all of it" and answer["missing_force"][2] == 1
+        assert pen.push([0, 0, 0])["reason"] is None
+    with pytest.raises(ValueError, match="no option"):
+        riffler.pen.open(path, bubble=0.1)
+    journal.add_stroke(1, [[0, 0, 5, 0, 0, 1]])
+    journal.write(path)
+    with pytest.raises(ValueError, match="stroke 1 has no times"):
+        riffler.pen.open(path)
