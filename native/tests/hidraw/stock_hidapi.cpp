@@ -11,7 +11,6 @@
 #include <atomic>
 #include <chrono>
 #include <clocale>
-#include <cstring>
 #include <functional>
 #include <thread>
 
@@ -44,7 +43,6 @@ class CountingStep final : public PenStep {
 VirtualSpec pen_spec() {
   riffler_pen_config config{};
   riffler_pen_reference_config(&config);
-  std::strcpy(config.identity.geometry, "riffler");
   VirtualSpec spec{
       RIFFLER_PEN_VENDOR_ID, RIFFLER_PEN_PRODUCT_ID, "Riffler", RIFFLER_PEN_PRODUCT, "7", pen_descriptor(), {}};
   Bytes identity(RIFFLER_PEN_IDENTITY_SIZE), limits(RIFFLER_PEN_LIMITS_SIZE);
