@@ -29,6 +29,7 @@ void bind_program_file(py::module_& m);
 void bind_verify(py::module_& m);
 void bind_cluster(py::module_& m);
 void bind_pen(py::module_& m);
+void bind_pen_device(py::module_& m);
 void bind_journal(py::module_& m);
 void bind_collide(py::module_& m);
 void bind_path(py::module_& m);

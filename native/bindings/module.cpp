@@ -25,6 +25,7 @@ PYBIND11_MODULE(_core, m) {
   bind_verify(m);
   bind_cluster(m);
   bind_pen(m);
+  bind_pen_device(m);
   bind_journal(m);
   bind_collide(m);
   bind_path(m);
