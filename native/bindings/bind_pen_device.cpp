@@ -100,6 +100,8 @@ py::dict health(const Pen& pen) {
   py::dict out;
   out["state"] = link_text(link.state);
   out["problem"] = or_none(pen.problem());
+  out["force_state"] = name(pen.force_state());
+  out["cause"] = pen.cause() == Cause::None ? py::object(py::none()) : py::object(py::str(sentence(pen.cause())));
   out["fault"] = link.sample.fault;
   out["homed"] = link.sample.homed;
   out["force"] = from_vec3(link.wrench.force);
@@ -171,11 +173,13 @@ Reports are read, and forces written, in a thread of its own; a device that goes
 ("position", "rate" or None), pushes, low, high, resolution (mm, rad, or a second of them), peak, continuous (N, N·mm).)")
       .def(
           "state", [](const Pen& p) { return State{p.newest(), p.age()}; }, "PenState: the newest sample.")
-      .def("health", &health, "dict: state, problem, what was last pushed with, and counts since the start.")
+      .def("health", &health,
+           "dict: state, problem, force_state, cause, what was last pushed with, and counts since the start.")
       .def("push", &push, "force"_a, "torque"_a = py::make_tuple(0, 0, 0), R"(Pushes for 20 ms with a force (N) and a
 torque (N·mm) about the grip's point. dict: force, torque that will be felt, missing_force, missing_torque, reason or
 None.)")
       .def("home", &Pen::home, "The device stands in its home posture. False where nothing has to be homed.")
+      .def("reset", &Pen::reset, "Clears a trip that does not heal by itself: health()['cause'] says what it was.")
       .def("stop", &Pen::stop, py::call_guard<py::gil_scoped_release>(),
            "No force, and closed. False where the device could not be told in time.")
       .def("__enter__", [](py::object self) { return self; })

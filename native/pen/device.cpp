@@ -16,6 +16,8 @@ const char* not_pushed_text(NotPushed reason) noexcept {
       return "the device reports a fault or is not ready";
     case NotPushed::BadWrench:
       return "the wrench is not finite";
+    case NotPushed::Tripped:
+      return "a check of the safety failed";
     case NotPushed::None:
       break;
   }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "haptics/states.hpp"
 #include "pen/capability.hpp"
 #include "pen/driver_loop.hpp"
 #include "pen/sample.hpp"
@@ -16,11 +17,12 @@ enum class NotPushed : unsigned char {
   NotHomed,      // it does not know where it is
   NotPowered,    // it reports a fault, or is not ready
   BadWrench,     // not finite
+  Tripped,       // a check of the safety failed: cause() says which
 };
 const char* not_pushed_text(NotPushed reason) noexcept;
 
 struct PushAnswer {
-  Wrench felt{}, missing{};  // their sum is what was asked for
+  Wrench felt{}, missing{};  // at full gain; their sum is what was asked for
   NotPushed reason = NotPushed::None;
 };
 
@@ -47,6 +49,12 @@ class Pen {
   /// for 20 ms: whoever pushes goes on asking. By one thread; never waits. Ignored, and the answer says why, where the
   /// device cannot push.
   virtual PushAnswer push(const Wrench& wrench) noexcept;
+
+  /// What lets push() through: it ramps up from the first call on, and is taken away where a check fails. Trips that do
+  /// not heal by themselves are cleared by reset(). Any thread.
+  virtual ForceState force_state() const noexcept { return ForceState::Off; }
+  virtual Cause cause() const noexcept { return Cause::None; }
+  virtual void reset() noexcept {}
 
   /// The device stands in its home posture. False where nothing has to be homed.
   virtual bool home() noexcept { return false; }

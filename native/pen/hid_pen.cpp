@@ -4,9 +4,22 @@
 
 namespace riffler {
 
-Wrench HeldPush::step(const PenSample&, double now, double) noexcept {
+Wrench HeldPush::step(const PenSample& sample, double now, double dt) noexcept {
   const Asked asked = asked_.get();
-  return now - asked.time <= kHeld ? asked.wrench : Wrench{};
+  const bool fresh = now - asked.time <= kHeld;
+  if (reset_.exchange(false)) safety_.reset();
+  safety_.observe({.dt = dt,
+                   .age = now - sample.time,
+                   .pose = sample.pose,
+                   .twist = {sample.velocity, sample.turning},
+                   .redundancy = sample.stretch,
+                   .homed = sample.homed,
+                   .dead_man = fresh,
+                   .device_fault = sample.fault});
+  const Wrench wrench = safety_.release(fresh ? asked.wrench : Wrench{}).wrench();
+  state_.store(safety_.state());
+  cause_.store(safety_.cause());
+  return wrench;
 }
 
 HidPen::HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
@@ -28,6 +41,7 @@ PushAnswer HidPen::push(const Wrench& wrench) noexcept {
   if (link.state != LinkState::Connected) return refused(NotPushed::NotConnected);
   if (!link.sample.powered) return refused(NotPushed::NotPowered);
   if (!link.sample.homed) return refused(NotPushed::NotHomed);
+  if (held_->state() == ForceState::Tripped) return refused(NotPushed::Tripped);
   const Wrench felt = renderable(pushed(capability(), link.sample.pose.axis), wrench), missing = wrench - felt;
   return {felt, missing, missing == Wrench{} ? NotPushed::None : NotPushed::NoMotors};
 }

@@ -134,6 +134,66 @@ TEST(Driver, PushHoldsForAMomentOnly) {
   EXPECT_TRUE(eventually([&] { return pen->status().wrench.force.x == 0; }));
 }
 
+/// A step each millisecond of a device that is homed, and asked for 1 N along x as long as `asks`.
+struct Held {
+  void run(int milliseconds) {
+    for (int k = 0; k < milliseconds; ++k) {
+      now += 1e-3;
+      if (asks) push.ask({{1, 0, 0}, {}}, now);
+      sample.time = now;
+      force = push.step(sample, now, 1e-3).force.x;
+    }
+  }
+  Held() {
+    sample.sequence = 1;
+    sample.homed = sample.powered = true;
+  }
+  HeldPush push;
+  PenSample sample{};
+  double now = 5, force = 0;
+  bool asks = true;
+};
+
+TEST(HeldPush, RampsUpAndEndsWithTheAsking) {
+  Held held;
+  held.run(100);
+  EXPECT_GT(held.force, 0.1);
+  EXPECT_LT(held.force, 0.25);
+  held.run(500);
+  EXPECT_EQ(held.force, 1);
+  held.asks = false;
+  held.run(25);
+  EXPECT_EQ(held.force, 0);
+  held.asks = true;
+  held.run(50);
+  EXPECT_LT(held.force, 0.15) << "and ramps again";
+}
+
+TEST(HeldPush, AJumpTakesItAwayUntilItIsReset) {
+  Held held;
+  held.run(1000);
+  held.sample.pose.tip.x += 50;
+  held.run(1);
+  EXPECT_EQ(held.force, 0);
+  EXPECT_EQ(held.push.state(), ForceState::Tripped);
+  EXPECT_EQ(held.push.cause(), Cause::Jump);
+  held.run(3000);
+  EXPECT_EQ(held.force, 0);
+  held.push.reset();
+  held.run(1000);
+  EXPECT_EQ(held.force, 1);
+}
+
+TEST(HeldPush, NothingPushesWithoutAHome) {
+  Held held;
+  held.sample.homed = false;
+  held.run(1000);
+  EXPECT_EQ(held.force, 0);
+  held.sample.homed = true;
+  held.run(1000);
+  EXPECT_EQ(held.force, 1);
+}
+
 TEST(Driver, FindsTheDeviceAgain) {
   const auto plug = std::make_shared<Plug>();
   const auto pen = pen_on(plug);
