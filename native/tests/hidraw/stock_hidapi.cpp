@@ -129,6 +129,13 @@ bool eventually(const std::function<bool()>& what) {
   return what();
 }
 
+/// A machine that is busy with other things does not make the device go away.
+PenOptions patient() {
+  PenOptions options;
+  options.driver.silence = 10;
+  return options;
+}
+
 OpenProblem problem_of(const std::function<void()>& call, std::string& text) {
   try {
     call();
@@ -202,7 +209,7 @@ TEST_F(StockHidapi, NamesBeyondAsciiComeThroughInTheCLocale) {
 
 TEST_F(StockHidapi, StreamsAPen) {
   const std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen("riffler-pen");
+  const auto pen = open_pen("riffler-pen", patient());
   EXPECT_EQ(pen->kind(), "riffler-pen");
   EXPECT_TRUE(pen->capability().has_force());
   // 10 000 of the wrap as well: the numbers begin at 60 000.
@@ -219,7 +226,7 @@ TEST_F(StockHidapi, StreamsAPen) {
 TEST_F(StockHidapi, TheDriversThreadAllocatesNothing) {
   const std::string path = bus->plug(pen_spec());
   const auto step = std::make_shared<CountingStep>();
-  const auto pen = open_pen(path, {}, step);
+  const auto pen = open_pen(path, patient(), step);
   pen->home();
   FarEnd far(*bus, path);
   for (int k = 1; k <= 1000; ++k) {
@@ -238,13 +245,13 @@ TEST_F(StockHidapi, TheDriversThreadAllocatesNothing) {
 
 TEST_F(StockHidapi, StreamsReportsThatReadsMerge) {
   const std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen("riffler-pen");
+  const auto pen = open_pen("riffler-pen", patient());
   stream(*pen, path, [](int k) { return pen_report(static_cast<std::uint16_t>(k)); }, 10);
 }
 
 TEST_F(StockHidapi, StreamsAPuckOfSplitReports) {
   const std::string path = bus->plug(puck_spec(false));
-  const auto pen = open_pen(path);
+  const auto pen = open_pen(path, patient());
   EXPECT_EQ(pen->kind(), "spacemouse");
   EXPECT_EQ(pen->capability().name, "SpaceMouse Compact");
   stream(*pen, path, [](int k) { return puck_report(static_cast<std::uint8_t>(1 + k % 2), {200, 0, 0}); });
@@ -255,7 +262,7 @@ TEST_F(StockHidapi, StreamsAPuckOfSplitReports) {
 
 TEST_F(StockHidapi, StreamsAPuckOfJoinedReports) {
   const std::string path = bus->plug(puck_spec(true));
-  const auto pen = open_pen(path);
+  const auto pen = open_pen(path, patient());
   stream(*pen, path, [](int k) { return puck_report(1, {0, 0, -(k % 350), 0, 0, 0}); });
 }
 
@@ -264,7 +271,7 @@ TEST_F(StockHidapi, StreamsAPolhemThatIsAskedForByName) {
   std::string text;
   EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::UnknownDevice);
   EXPECT_NE(text.find("\"polhem\""), std::string::npos) << text;
-  const auto pen = open_pen("polhem");
+  const auto pen = open_pen("polhem", patient());
   stream(*pen, path, [](int k) { return polhem_report({k % 100, -(k % 100), 6000, 0, 0, 0, 0}); });
   ASSERT_FALSE(told.empty());
   for (const Bytes& report : told) EXPECT_EQ(report, Bytes(65)) << "not homed: no current";
@@ -272,7 +279,7 @@ TEST_F(StockHidapi, StreamsAPolhemThatIsAskedForByName) {
 
 TEST_F(StockHidapi, ShortReportsAreLeftOut) {
   const std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen(path);
+  const auto pen = open_pen(path, patient());
   FarEnd far(*bus, path);
   Bytes cut = pen_report(2);
   cut.resize(30);
@@ -286,7 +293,7 @@ TEST_F(StockHidapi, ShortReportsAreLeftOut) {
 
 TEST_F(StockHidapi, APenThatIsPluggedOutAndInGoesOn) {
   std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen(path);
+  const auto pen = open_pen(path, patient());
   {
     FarEnd far(*bus, path);
     for (int k = 1; k <= 100; ++k) far.send(pen_report(static_cast<std::uint16_t>(k)));
@@ -337,7 +344,7 @@ TEST_F(StockHidapi, ADeviceThatAnotherProgramDrivesIsBusy) {
     EXPECT_NE(text.find("another program drives it"), std::string::npos) << text;
     close(other);
   }
-  const auto pen = open_pen(path);
+  const auto pen = open_pen(path, patient());
   EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::Busy) << "we ourselves";
   ASSERT_EQ(find_devices().size(), 1U);
   EXPECT_EQ(find_devices()[0].problem, OpenProblem::Busy);

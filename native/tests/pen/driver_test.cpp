@@ -92,7 +92,10 @@ std::unique_ptr<HidPen> pen_on(const std::shared_ptr<Plug>& plug) {
     if (!plug->in) throw OpenError(OpenProblem::NoFile, "it is not plugged in");
     return std::make_unique<PlugTransport>(plug);
   };
-  return std::make_unique<HidPen>("test", std::make_shared<ByteModel>(), std::make_unique<PlugTransport>(plug), open);
+  DriverSettings settings;
+  settings.silence = 10;  // a busy machine does not make the device go away
+  return std::make_unique<HidPen>("test", std::make_shared<ByteModel>(), std::make_unique<PlugTransport>(plug), open,
+                                  nullptr, settings);
 }
 
 TEST(Driver, ReadsStepsAndWritesInAThreadOfItsOwn) {
