@@ -1,18 +1,9 @@
 #include "pen/driver_loop.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace riffler {
-namespace {
-
-void require_positive(const char* field, double value) {
-  if (!std::isfinite(value) || value <= 0)
-    throw std::invalid_argument(std::string(field) + " of the driver must be positive");
-}
-
-}  // namespace
 
 void DriverSettings::validate() const {
   require_positive("read_timeout", read_timeout);
@@ -123,12 +114,10 @@ bool DriverLoop::drain() noexcept {
 }
 
 /// False where the device is gone.
-bool DriverLoop::put(const Wrench& wrench, double now) noexcept {
+bool DriverLoop::put(const SafeWrench& safe, double now) noexcept {
   std::array<std::uint8_t, 65> bytes{};
-  const bool good = finite(wrench);
-  if (!good) ++status_.counts.bad_wrenches;
-  status_.wrench = good ? wrench : Wrench{};
-  const std::size_t size = good ? model_.push(wrench, now, bytes) : model_.release(now, bytes);
+  status_.wrench = safe.wrench();
+  const std::size_t size = model_.push(status_.wrench, now, bytes);
   if (size == 0) return true;
   ++status_.counts.writes;
   return transport_->write(std::span(bytes).first(size));

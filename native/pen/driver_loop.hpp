@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "haptics/safety.hpp"
 #include "pen/hid_model.hpp"
 #include "pen/open_error.hpp"
 #include "pen/published.hpp"
@@ -21,15 +22,14 @@ const char* link_text(LinkState state) noexcept;
 
 /// What happened since the start.
 struct LinkCounts {
-  std::uint64_t ticks = 0;         // of an open device
-  std::uint64_t reports = 0;       // read and understood
-  std::uint64_t superseded = 0;    // of them, those that a newer one had overtaken before a step saw them
-  std::uint64_t lost = 0;          // that were sent, by their numbers, and never came
-  std::uint64_t old = 0;           // that came again or too late
-  std::uint64_t malformed = 0;     // pieces that are no report
-  std::uint64_t timeouts = 0;      // ticks without a report
-  std::uint64_t writes = 0;        // reports sent
-  std::uint64_t bad_wrenches = 0;  // steps whose wrench was not finite: the device was told not to push
+  std::uint64_t ticks = 0;       // of an open device
+  std::uint64_t reports = 0;     // read and understood
+  std::uint64_t superseded = 0;  // of them, those that a newer one had overtaken before a step saw them
+  std::uint64_t lost = 0;        // that were sent, by their numbers, and never came
+  std::uint64_t old = 0;         // that came again or too late
+  std::uint64_t malformed = 0;   // pieces that are no report
+  std::uint64_t timeouts = 0;    // ticks without a report
+  std::uint64_t writes = 0;      // reports sent
   std::uint32_t read_errors = 0, write_errors = 0, silences = 0;  // each ended a connection
   std::uint32_t connections = 0, attempts = 0;
 };
@@ -50,7 +50,7 @@ class PenStep {
   virtual ~PenStep() = default;
   /// The wrench to push with until the next step. `now` and `dt`, the time since the last step, are the driver's
   /// clock's; sample.time says how old the sample is. The first step after a connection has dt = 0.
-  virtual Wrench step(const PenSample& sample, double now, double dt) noexcept = 0;
+  virtual SafeWrench step(const PenSample& sample, double now, double dt) noexcept = 0;
 };
 
 /// Finds and opens the device again, in another thread.
@@ -99,7 +99,7 @@ class DriverLoop {
   void open(std::unique_ptr<Transport> transport) noexcept;
   void drive() noexcept;
   bool drain() noexcept;
-  bool put(const Wrench& wrench, double now) noexcept;
+  bool put(const SafeWrench& safe, double now) noexcept;
   void release() noexcept;
   void lose(std::uint32_t& count) noexcept;
   void look() noexcept;

@@ -4,7 +4,7 @@
 
 namespace riffler {
 
-Wrench HeldPush::step(const PenSample& sample, double now, double dt) noexcept {
+SafeWrench HeldPush::step(const PenSample& sample, double now, double dt) noexcept {
   const Asked asked = asked_.get();
   const bool fresh = now - asked.time <= kHeld;
   if (reset_.exchange(false)) safety_.reset();
@@ -16,10 +16,10 @@ Wrench HeldPush::step(const PenSample& sample, double now, double dt) noexcept {
                    .homed = sample.homed,
                    .dead_man = fresh,
                    .device_fault = sample.fault});
-  const Wrench wrench = safety_.release(fresh ? asked.wrench : Wrench{}).wrench();
+  const SafeWrench safe = safety_.release(fresh ? asked.wrench : Wrench{});
   state_.store(safety_.state());
   cause_.store(safety_.cause());
-  return wrench;
+  return safe;
 }
 
 HidPen::HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,

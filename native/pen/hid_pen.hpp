@@ -23,7 +23,7 @@ class HeldPush final : public PenStep {
   void ask(const Wrench& wrench, double now) noexcept { asked_.set({wrench, now}); }
   /// Clears a trip with the next step. Any thread.
   void reset() noexcept { reset_.store(true); }
-  Wrench step(const PenSample& sample, double now, double dt) noexcept override;
+  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
 
   /// As of the last step. Any thread.
   ForceState state() const noexcept { return state_.load(); }

@@ -29,14 +29,17 @@ using namespace std::chrono_literals;
 /// Counts the allocations of the driver's thread, which is the one that steps.
 class CountingStep final : public PenStep {
  public:
-  Wrench step(const PenSample&, double, double) noexcept override {
+  CountingStep() { safety_.switch_on(); }
+  SafeWrench step(const PenSample&, double, double) noexcept override {
+    safety_.observe({.dt = 1e-3, .homed = true, .dead_man = true});
     if (++steps_ == 100) before_ = allocations();
     since_ = steps_ > 100 ? allocations() - before_ : 0;
-    return {{0, 0, 1}, {}};
+    return safety_.release({{0, 0, 1}, {}});
   }
   std::atomic<long> steps_{0}, since_{-1};
 
  private:
+  Safety safety_{{}};
   long before_ = 0;
 };
 

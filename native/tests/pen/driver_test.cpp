@@ -144,7 +144,7 @@ struct Held {
       now += 1e-3;
       if (asks) push.ask({{1, 0, 0}, {}}, now);
       sample.time = now;
-      force = push.step(sample, now, 1e-3).force.x;
+      force = push.step(sample, now, 1e-3).wrench().force.x;
     }
   }
   Held() {

@@ -147,17 +147,22 @@ class FirmwarePen {
   double time_;
 };
 
-/// A step that always asks for the same, and counts.
+/// A step that always asks for the same, and counts. Its gate opens at once, from the second step on.
 class ConstantPush final : public PenStep {
  public:
-  Wrench step(const PenSample& sample, double now, double dt) noexcept override {
+  ConstantPush() { safety_.switch_on(); }
+  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override {
     ++steps, last = sample, last_now = now, last_dt = dt;
-    return wrench;
+    safety_.observe({.dt = 1e-3, .homed = true, .dead_man = true});
+    return safety_.release(wrench);
   }
   Wrench wrench{};
   int steps = 0;
   PenSample last{};
   double last_now = 0, last_dt = 0;
+
+ private:
+  Safety safety_{{.ramp = 1e-4, .rest = 0}};
 };
 
 }  // namespace riffler::test
