@@ -16,7 +16,8 @@ struct Puck {
   const char* name;
 };
 
-// Numbers and names as in the list of USB IDs (linux-usb.org/usb.ids). Logitech's are from before 2013.
+// Numbers as in the list of USB IDs (linux-usb.org/usb.ids of 2025-07-26), but for the module and the two by Bluetooth,
+// which are not in it. Logitech's are from before 2013.
 constexpr Puck kPucks[] = {
     {kLogitech, 0xC603, "SpaceMouse Plus"},
     {kLogitech, 0xC605, "CADman"},

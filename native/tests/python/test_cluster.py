@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pytest
 import riffler
+from commands import result, riffle
 from riffler import _core, cluster
 from verify_reference import state
 
@@ -282,3 +283,18 @@ def test_damaged_packets_are_refused_and_change_nothing():
     with pytest.raises(ValueError, match="finished"):
         plan.accept(slab, result, True)
     assert state(plan.finish()) == state(riffler.verify(*given))
+
+
+def test_the_command_says_the_same_with_a_scheduler(tmp_path, workers):
+    code = ["G21 G90 G94", "T1 M6", "M3 S8000", "G0 X-10 Y10 Z25", "G1 Z17 F500", "X50", "X20 Y15", "G0 X5", "M30"]
+    (tmp_path / "p.ngc").write_text("\n".join(code) + "\n")
+    words = ["verify", "p.ngc", "--stock", "40x30x20", "--pitch", "0.5", "--tool", "ball:6:30", "--out", "left.rvol"]
+    left, said = [], []
+    for more in ([], ["--scheduler", workers.scheduler.address]):
+        said.append(result(*words, *more, cwd=tmp_path, status=1))
+        left.append((tmp_path / "left.rvol").read_bytes())
+        assert [f["kind"] for f in said[-1]["findings"]] == ["rapid"]
+        said[-1] = {k: v for k, v in said[-1].items() if k not in ("seconds", "stats")}
+    assert said[0] == said[1] and left[0] == left[1]
+    missing = riffle(*words, "--scheduler", "nowhere:1", cwd=tmp_path)
+    assert missing.returncode == 2 and "Dask scheduler" in missing.stderr
