@@ -121,7 +121,7 @@ def judge(program: riffler.Program, code: Path, piece) -> None:
         piece.note("NC code judged", "left out: no LinuxCNC here")
         return
     _, joints = nc_judge.interpreted(code)
-    off = nc_judge.between(joints, program.poses, nc_judge.tilting_table("A", **TABLE), ~program.rapid)
+    off = nc_judge.between(joints, program.poses, nc_judge.tilting_table("A", **TABLE), ~program.rapid, program.tool)
     piece.note("by LinuxCNC: tip off at rows", f"{off['at_mm']:.2g} mm")
     piece.note("between blocks", f"{off['tip_mm']:.2g} mm, {np.degrees(off['axis_rad']):.2g}°")
     # The interpreter prints four decimals, of degrees too.

@@ -93,17 +93,28 @@ def ends(at: np.ndarray, wanted: np.ndarray) -> list[int]:
     return found
 
 
-def between(joints: np.ndarray, wanted: np.ndarray, axes: Axes, tied: np.ndarray | None = None) -> dict[str, float]:
+def between(
+    joints: np.ndarray,
+    wanted: np.ndarray,
+    axes: Axes,
+    tied: np.ndarray | None = None,
+    tools: np.ndarray | None = None,
+) -> dict[str, float]:
     """How far blocks are off the poses ``wanted`` at which they end (``at_mm``, ``at_rad``) and, with all axes moving
     evenly from block to block, off the lines and great circles between them (``tip_mm``, ``axis_rad``). ``tied`` (n,):
-    on the way to which of them the tool must keep to the great circle; None: all."""
+    on the way to which of them the tool must keep to the great circle; None: all. ``tools`` (n,): with which they are
+    reached; where one is changed, nobody knows from where the next comes, and the way is not judged."""
     at = poses(joints, axes)
     found = ends(at, wanted)
     off = at[found] - wanted
     tip = axis = 0.0
     share = np.linspace(0, 1, BETWEEN, endpoint=False)[None, :, None]
     must = np.ones(len(wanted), bool) if tied is None else tied
-    for first, last, a, b, held in zip(found, found[1:], wanted, wanted[1:], must[1:], strict=False):
+    known = np.ones(len(wanted), bool) if tools is None else np.append(True, np.diff(tools) == 0)
+    ways = zip(found, found[1:], wanted, wanted[1:], must[1:], known[1:], strict=False)
+    for first, last, a, b, held, judged in ways:
+        if not judged:
+            continue
         begin, end = joints[first:last, None], joints[first + 1 : last + 1, None]
         dense = poses((begin + share * (end - begin)).reshape(-1, 6), axes)
         way = b[:3] - a[:3]
