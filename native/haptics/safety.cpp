@@ -3,15 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/directions.hpp"
+
 namespace riffler {
-
-namespace {
-
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
-
-}  // namespace
 
 void SafetySettings::validate() const {
   require_positive("ramp", ramp);

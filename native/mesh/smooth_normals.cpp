@@ -28,7 +28,7 @@ struct Fans {
 
 double angle_at(const std::array<Vec3, 3>& p, int k) {
   const Vec3 a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+  return angle_between(a, b);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "verify/timing.hpp"
 
-#include <cmath>
+#include "geom/directions.hpp"
 
 namespace riffler {
 
@@ -9,7 +9,7 @@ double seconds_of(const Pose& from, const Program& program, std::size_t row, dou
   const Pose& to = program.poses()[row];
   const double way = glm::length(to.tip - from.tip);
   if (way == 0) {
-    const double angle = std::atan2(glm::length(glm::cross(from.axis, to.axis)), glm::dot(from.axis, to.axis));
+    const double angle = angle_between(from.axis, to.axis);
     return 60 * angle * degrees / kRotaryRate;
   }
   return 60 * way / (program.rapid()[row] ? rapid_feed : program.feed()[row]);

@@ -13,6 +13,7 @@
 #include "geom/io.hpp"
 #include "nc/machines.hpp"
 #include "nc/post.hpp"
+#include "support/damaged.hpp"
 
 namespace riffler {
 namespace {
@@ -128,17 +129,10 @@ TEST(Description, NamesTheLineThatIsWrong) {
 
 TEST(Description, AnyDamageIsAMachineOrAnError) {
   std::mt19937 random(4);
-  std::uniform_int_distribution<int> byte(0, 255);
   const std::string good = kMill;
   int machines = 0;
   for (int round = 0; round < 4000; ++round) {
-    std::string text = good;
-    for (int k = 1 + round % 4; k > 0; --k) {
-      const std::size_t at = static_cast<std::size_t>(random()) % text.size();
-      if (round % 3 == 0) text.erase(at, 1 + static_cast<std::size_t>(random()) % 12);
-      if (round % 3 == 1) text[at] = static_cast<char>(byte(random));
-      if (round % 3 == 2) text.insert(at, good.substr(static_cast<std::size_t>(random()) % good.size(), 9));
-    }
+    const std::string text = test::damaged(good, round, random);
     try {
       const Machine machine(describe(text));
       EXPECT_TRUE(finite(machine.pose({1, 2, 3, 4, 5, 6}).axis));
