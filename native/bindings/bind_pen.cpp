@@ -250,7 +250,7 @@ py::list channels(const PenKinematics& pen) {
                         "steps"_a = c.steps, "ratio"_a = c.ratio, "sign"_a = c.sign, "home"_a = c.home, "low"_a = c.low,
                         "high"_a = c.high, "torque_constant"_a = c.torque_constant, "peak_current"_a = c.peak_current,
                         "continuous_current"_a = c.continuous_current, "coulomb"_a = c.coulomb, "viscous"_a = c.viscous,
-                        "gravity"_a = c.gravity));
+                        "gravity"_a = c.gravity, "inertia"_a = c.inertia, "resistance"_a = c.resistance));
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
 #include "pen/registry.hpp"
+#include "pen/simulated_device.hpp"
 
 namespace riffler {
 namespace {
@@ -52,6 +53,7 @@ py::list devices() {
 py::dict families() {
   py::dict out;
   for (const PenFamily& family : pen_families()) out[family.kind] = family.what;
+  out[kSimulatedKind] = kSimulatedWhat;
   return out;
 }
 
@@ -189,6 +191,21 @@ None.)")
       });
 }
 
+void aim(SimulatedDevice& pen, const Doubles& pose, double spin, double grip, std::uint32_t buttons) {
+  if (pose.size() != 6) throw std::invalid_argument("pose must be six numbers: a point and an axis");
+  const double* const p = pose.data();
+  pen.aim({.pose = {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}}, .spin = spin, .grip = grip, .buttons = buttons});
+}
+
+void bind_simulated(py::module_& m) {
+  py::class_<SimulatedDevice, Pen, std::shared_ptr<SimulatedDevice>>(
+      m, "SimulatedPen", "A pen without hardware: arms, motors, firmware and cable are simulated, and a hand moves it.")
+      .def("aim", &aim, "pose"_a, py::kw_only(), "spin"_a = 0.0, "grip"_a = 1.0, "buttons"_a = 0U,
+           R"(The hand goes to `pose`, (6,) point and axis, at up to 300 mm/s and 5 rad/s, as far as the arms reach;
+with `grip` below 1 it holds more loosely, with 0 not at all. `spin` in rad about the axis.)")
+      .def("wander", &SimulatedDevice::wander, "The hand goes round on its own curve again.");
+}
+
 }  // namespace
 
 void bind_pen_device(py::module_& m) {
@@ -196,6 +213,7 @@ void bind_pen_device(py::module_& m) {
       "A device that does not open: says exactly why, and what to do.";
   bind_state(m);
   bind_device(m);
+  bind_simulated(m);
   m.def("_pen_devices", &devices);
   m.def("_pen_families", &families);
   const RateSettings rate;

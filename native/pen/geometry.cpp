@@ -13,9 +13,11 @@ namespace riffler {
 
 namespace {
 
-constexpr double kSquare = 1e-6;     // by which axes may miss unit length and right angles
-constexpr double kLongest = 1e4;     // mm: of a link, far beyond what a desk holds
-constexpr double kMostAmperes = 32;  // reports carry mA in 16 bits
+constexpr double kSquare = 1e-6;      // by which axes may miss unit length and right angles
+constexpr double kLongest = 1e4;      // mm: of a link, far beyond what a desk holds
+constexpr double kHeaviest = 100;     // kg: nobody holds more
+constexpr double kMostInertia = 1e9;  // kg·mm²
+constexpr double kMostAmperes = 32;   // reports carry mA in 16 bits
 
 std::string in_digits(double value) {
   char text[32];
@@ -86,10 +88,12 @@ class PenReader : TomlReader {
   }
 
   void grip(const toml::table& table) {
-    allow(table, {"length", "tolerance", "tip"});
+    allow(table, {"length", "tolerance", "mass", "inertia", "tip"});
     pen_.grip_length = positive(table, "length", kLongest);
     pen_.grip_tolerance = positive(table, "tolerance", kLongest);
     if (!(pen_.grip_tolerance < pen_.grip_length)) fail(needed(table, "tolerance"), "tolerance must be below length");
+    pen_.grip_mass = positive(table, "mass", kHeaviest);
+    pen_.grip_inertia = positive(table, "inertia", kMostInertia);
     needed(table, "tip");
     pen_.tip = word(table, "tip", {"R", "L"}, "") == "R" ? Arm::R : Arm::L;
   }
@@ -120,7 +124,7 @@ class PenReader : TomlReader {
 
   void channels(const toml::table& table) {
     allow(table, {"order", "lines", "motor_teeth", "joint_teeth", "sign", "home", "low", "high", "torque_constant",
-                  "peak_current", "continuous_current", "coulomb", "viscous", "gravity"});
+                  "peak_current", "continuous_current", "coulomb", "viscous", "gravity", "inertia", "resistance"});
     order(six(table, "order"));
     const auto each = [&](std::string_view key, auto&& take) {
       const toml::array& list = six(table, key);
@@ -175,6 +179,11 @@ class PenReader : TomlReader {
       c.gravity = not_negative(n, key);
       if (c.joint == 0 && c.gravity != 0) fail(n, key + " must be 0: joint 1 turns about the upright");
     });
+    each("inertia", [&](PenChannel& c, const toml::node& n, const std::string& key) {
+      c.inertia = positive(n, key, kMostInertia);
+    });
+    each("resistance",
+         [&](PenChannel& c, const toml::node& n, const std::string& key) { c.resistance = positive(n, key, 1e6); });
   }
 
   void order(const toml::array& list) {

@@ -37,6 +37,8 @@ struct PenChannel {
   double torque_constant = 0, peak_current = 0, continuous_current = 0;  // N·mm/A, A
   double coulomb = 0, viscous = 0;                                       // N·mm and N·mm·s/rad at the motor
   double gravity = 0;                                                    // N·mm at the joint, where its link lies level
+  double inertia = 0;     // kg·mm² at the joint: rotor through the gear, and links
+  double resistance = 0;  // Ω of the winding
 
   double peak_torque() const { return torque_constant * peak_current; }  // N·mm at the motor
   double continuous_torque() const { return torque_constant * continuous_current; }
@@ -59,6 +61,7 @@ struct PenGeometry {
   Vec3 origin{0};  // p
   std::array<ArmLinks, 2> arms{};
   double grip_length = 0, grip_tolerance = 0;  // mm
+  double grip_mass = 0, grip_inertia = 0;      // kg; kg·mm² about a line square to it through its middle
   Arm tip = Arm::L;                            // whose end is nearer the tool's tip
   double probe_steps = 0;                      // counts per turn
   std::int32_t probe_home = 0;

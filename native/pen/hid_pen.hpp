@@ -41,7 +41,7 @@ class HeldPush final : public PenStep {
   std::atomic<bool> reset_{false};
 };
 
-class HidPen final : public Pen {
+class HidPen : public Pen {
  public:
   /// `transport` is open and checked by the model; `open` finds, opens and checks it again. `step` computes the wrench
   /// in the driver's thread; without one, push() says it.

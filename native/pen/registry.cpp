@@ -8,6 +8,7 @@
 #include "pen/hid_pen.hpp"
 #include "pen/polhem_model.hpp"
 #include "pen/riffler_model.hpp"
+#include "pen/simulated_device.hpp"
 #include "pen/spacemouse_model.hpp"
 
 namespace riffler {
@@ -161,6 +162,7 @@ std::vector<FoundDevice> find_devices() {
 }
 
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options, std::shared_ptr<PenStep> step) {
+  if (what == kSimulatedKind) return SimulatedDevice::open({}, std::move(step), options.driver);
   if (const PenFamily* const family = family_named(what)) return open_kind(*family, options, std::move(step));
   return open_path(what, options, std::move(step));
 }

@@ -10,6 +10,8 @@ Devices that are plugged in are listed by ``devices`` and opened by ``open``; a 
     with riffler.pen.open("riffler-pen") as device:
         state = device.state()
         device.push([0.0, 0.0, 1.0])
+
+Without hardware there is ``riffler.pen.open("simulated")``: the same firmware and driver, arms and hand simulated.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from ._core import (
     PenError,
     PenGeometry,
     PenState,
+    SimulatedPen,
     _open_pen,
     _pen_devices,
     _pen_families,
@@ -32,7 +35,7 @@ from ._core import (
     _play_pen,
 )
 
-__all__ = ["PenDevice", "PenError", "PenGeometry", "PenState", "devices", "kinds", "names", "open"]
+__all__ = ["PenDevice", "PenError", "PenGeometry", "PenState", "SimulatedPen", "devices", "kinds", "names", "open"]
 
 _open_devices: weakref.WeakSet[PenDevice] = weakref.WeakSet()
 

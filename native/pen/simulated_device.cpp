@@ -1,0 +1,83 @@
+#include "pen/simulated_device.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "pen/riffler_model.hpp"
+#include "pen/simulated_transport.hpp"
+
+namespace riffler {
+
+namespace {
+
+class SystemClock final : public Clock {
+ public:
+  double now() noexcept override { return steady_seconds(); }
+  void wait(double seconds) noexcept override {
+    if (seconds > 0) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  }
+};
+
+}  // namespace
+
+/// What the hand was told, and what it does by itself.
+struct SimulatedDevice::Hand {
+  struct Told {
+    HandWish wish{};
+    bool wanders = true;
+  };
+  Published<Told> told;
+  HandPath curve;
+
+  HandWish wish(double seconds) const {
+    const Told now = told.get();
+    return now.wanders ? curve(seconds) : now.wish;
+  }
+};
+
+std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
+                                                       std::shared_ptr<PenStep> step, const DriverSettings& driver) {
+  auto hand = std::make_shared<Hand>();
+  auto pen = std::make_shared<SimulatedPen>(settings);
+  hand->curve = hand_on_a_curve(pen->arms().posture().pose);
+  pen->hand().follow([hand](double seconds) { return hand->wish(seconds); });
+  const auto clock = std::make_shared<SystemClock>();
+  const double start = clock->now();
+  auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
+  auto model = std::make_shared<RifflerModel>(*transport);
+  // It begins in its home posture, and the hand rests there for longer than the first report takes.
+  model->home();
+  auto again = [pen, clock, start, model]() -> std::unique_ptr<Transport> {
+    auto next = std::make_unique<SimulatedTransport>(pen, clock, start);
+    model->check(*next);
+    return next;
+  };
+  return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(std::move(hand), std::move(model), std::move(transport),
+                                                              std::move(again), std::move(step), driver));
+}
+
+SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<HidModel> model,
+                                 std::unique_ptr<Transport> transport, Driver::Open open, std::shared_ptr<PenStep> step,
+                                 const DriverSettings& driver)
+    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), std::move(step), driver),
+      hand_(std::move(hand)) {}
+
+void SimulatedDevice::aim(const HandWish& wish) {
+  HandWish checked = wish;
+  const double length = glm::length(wish.pose.axis);
+  if (!finite(wish.pose.tip)) throw std::invalid_argument("pose: the point must be finite");
+  if (!std::isfinite(length) || length == 0) throw std::invalid_argument("pose: the axis must be finite, not zero");
+  if (!std::isfinite(wish.spin)) throw std::invalid_argument("spin must be finite");
+  require_between("grip", wish.grip, 0, 1);
+  checked.pose.axis /= length;
+  hand_->told.set({checked, false});
+}
+
+void SimulatedDevice::wander() noexcept {
+  hand_->told.set({{}, true});
+}
+
+}  // namespace riffler

@@ -1,0 +1,35 @@
+// The simulated pen as a device that anyone can pick: on the clock of the system, in the driver's own thread.
+#pragma once
+
+#include <memory>
+
+#include "pen/hid_pen.hpp"
+#include "pen/simulated_pen.hpp"
+
+namespace riffler {
+
+inline constexpr const char* kSimulatedKind = "simulated";
+inline constexpr const char* kSimulatedWhat = "Riffler's pen without hardware, moved by a hand of its own";
+
+class SimulatedDevice final : public HidPen {
+ public:
+  /// Homed. Its hand goes round on a curve (hand_on_a_curve) until it is told where to go. `step` as in HidPen.
+  static std::unique_ptr<SimulatedDevice> open(const SimulatedPenSettings& settings = {},
+                                               std::shared_ptr<PenStep> step = nullptr,
+                                               const DriverSettings& driver = {});
+
+  /// The hand goes there at its own haste, as far as the arms reach; it lets go where the grip is 0. By one thread;
+  /// never waits. std::invalid_argument for what is not finite, an axis without length, a grip outside 0 to 1.
+  void aim(const HandWish& wish);
+  /// On the curve again. By the same thread.
+  void wander() noexcept;
+
+ private:
+  struct Hand;
+  SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
+                  Driver::Open open, std::shared_ptr<PenStep> step, const DriverSettings& driver);
+
+  std::shared_ptr<Hand> hand_;
+};
+
+}  // namespace riffler
