@@ -39,7 +39,18 @@ double beyond(double angle, double low, double high) {
   return std::min(angle - low, 0.0) + std::max(angle - high, 0.0);
 }
 
+Vec3 at_most(const Vec3& v, double most) {
+  const double length = glm::length(v);
+  return length > most ? most / length * v : v;
+}
+
 }  // namespace
+
+Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept {
+  const Vec3 normal = glm::cross(from, to);
+  const double sine = glm::length(normal);
+  return sine > 0 ? std::atan2(sine, glm::dot(from, to)) / sine * normal : Vec3(0);
+}
 
 /// What the joints move: columns of the grip's middle and of r_L − r_R, base frame.
 struct PenDynamics::Reach {
@@ -201,6 +212,15 @@ JointVector PenDynamics::weight_torques() const {
   return out;
 }
 
+/// All that does not depend on the speed.
+Wrench PenDynamics::hand(const PenLoad& load) const {
+  const Pose& is = posture_.pose;
+  const Vec3 force = load.stiffness.linear * (load.aim.tip - is.tip);
+  const Vec3 torque = load.stiffness.angular * turn_between(is.axis, load.aim.axis);
+  return load.wrench + Wrench{at_most(force, load.strength.linear) + load.damping.linear * load.drift.linear,
+                              at_most(torque, load.strength.angular) + load.damping.angular * load.drift.angular};
+}
+
 JointVector PenDynamics::pushed(const Reach& reach, const Wrench& wrench) const {
   const Wrench in_base{pen_.to_base(wrench.force), pen_.to_base(wrench.torque)};
   // A torque turns the ends about each other: as a force on r_L − r_R it is τ × r / |r|².
@@ -250,8 +270,7 @@ void PenDynamics::kick(const PenLoad& load, double time) {
   const Mobility mobility = this->mobility(reach, &load, time);
   const JointVector before = vector_of(rates_), drags = drag(load), weight = weight_torques(), stops = stop_torques();
   const JointVector motors = vector_of(joint_torques(pen_.geometry(), load.motors));
-  JointVector hand = pushed(
-      reach, load.wrench + Wrench{load.damping.linear * load.drift.linear, load.damping.angular * load.drift.angular});
+  const JointVector hand = pushed(reach, this->hand(load));
   const auto held_back = [&](const JointVector& v) {
     return reach.back(load.damping.linear, reach.of_middle(v), load.damping.angular, reach.of_apart(v));
   };

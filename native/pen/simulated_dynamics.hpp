@@ -18,6 +18,9 @@
 
 namespace riffler {
 
+/// The rotation vector that brings one unit vector to the other by the shortest way; none for opposite ones.
+Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept;
+
 using JointVector = std::array<double, 6>;  // θ1 θ2 θ3 of R, then of L
 
 /// What acts on the pen during a step. Wrench and damping are about the grip's pivot, in the frame of poses.
@@ -25,6 +28,9 @@ struct PenLoad {
   MotorTorques motors{};  ///< N·mm at the motors
   bool brake = false;     ///< windings shorted
   Wrench wrench{};
+  /// A spring that draws the grip to `aim`, and gives way beyond its strength: N/mm, N·mm/rad; N, N·mm.
+  Bounds stiffness{0, 0}, strength{0, 0};
+  Pose aim{};
   Bounds damping{0, 0};  ///< N·s/mm, N·mm·s/rad: against motion other than `drift`
   Twist drift{};
   double mass = 0, inertia = 0;  ///< kg, kg·mm² square to the grip: of what holds it
@@ -35,7 +41,7 @@ struct PenLoad {
 struct PenEnergy {
   double kinetic = 0, potential = 0;
   double motors = 0;  ///< done by the motors
-  double hand = 0;    ///< done by wrench and damping of the load
+  double hand = 0;    ///< done by wrench, spring and damping of the load
   double borne = 0;   ///< by the load's bearing of weight
   double lost = 0;    ///< to friction, brake and stops
 };
@@ -63,6 +69,7 @@ class PenDynamics {
   JointVector drag(const PenLoad& load) const;
   JointVector stop_torques() const;
   JointVector weight_torques() const;
+  Wrench hand(const PenLoad& load) const;
   JointVector pushed(const Reach& reach, const Wrench& wrench) const;
   double kinetic() const;
   double potential() const;

@@ -16,13 +16,6 @@ Vec3 at_most(const Vec3& v, double most) {
   return length > most ? most / length * v : v;
 }
 
-/// The rotation vector that brings one unit vector to the other by the shortest way.
-Vec3 turn_between(const Vec3& from, const Vec3& to) {
-  const Vec3 normal = glm::cross(from, to);
-  const double sine = glm::length(normal);
-  return sine > 0 ? std::atan2(sine, glm::dot(from, to)) / sine * normal : Vec3(0);
-}
-
 /// A unit vector turned by a rotation vector square to it.
 Vec3 turned(const Vec3& axis, const Vec3& by) {
   const double angle = glm::length(by);
@@ -105,15 +98,14 @@ Twist SimulatedHand::aim(double dt) {
 void SimulatedHand::hold(const PenDynamics& pen, double seconds, double dt, PenLoad& load) {
   if (path_) wish_ = path_(seconds);
   const double grip = std::clamp(wish_.grip, 0.0, 1.0);
-  const Pose& is = pen.posture().pose;
   if (!(grip > 0)) {
-    aim_ = is;  // it takes hold where the grip is then
+    aim_ = pen.posture().pose;  // it takes hold where the grip is then
     return;
   }
   const Twist drift = aim(dt);
-  const Vec3 way = aim_.tip + tremor(seconds) - is.tip, turn = turn_between(is.axis, aim_.axis);
-  load.wrench.force += at_most(grip * settings_.stiffness.linear * way, settings_.strength.linear);
-  load.wrench.torque += at_most(grip * settings_.stiffness.angular * turn, settings_.strength.angular);
+  load.aim = {aim_.tip + tremor(seconds), aim_.axis};
+  load.stiffness = {grip * settings_.stiffness.linear, grip * settings_.stiffness.angular};
+  load.strength = settings_.strength;
   load.damping = {grip * settings_.damping.linear, grip * settings_.damping.angular};
   load.drift = drift;
   load.mass = grip * settings_.mass, load.inertia = grip * settings_.inertia;

@@ -1,9 +1,12 @@
 // The whole stack on a virtual clock: firmware, cable, codec, model, driver's loop, gate, step.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 
+#include "haptics/safety.hpp"
+#include "pen/driver_loop.hpp"
 #include "pen/riffler_model.hpp"
 #include "pen/simulated_transport.hpp"
 
