@@ -196,6 +196,10 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.velocity = speed.twist.linear;
   sample_.turning = speed.twist.angular;
   sample_.stretch = check_grip(kinematics_, posture_).stretch;
+  MotorTorques applied{};
+  for (std::size_t k = 0; k < kPenChannels; ++k)
+    applied[k] = 1e-3 * report.applied[k] * geometry_.channels[k].torque_constant;
+  sample_.applied = felt_wrench(kinematics_, posture_, joint_torques(geometry_, applied));
   sample_.time = now;
   sample_.buttons = report.buttons;
   sample_.fault = report.state == RIFFLER_PEN_FAULT ? report.fault : 0U;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "geom/pose.hpp"
+#include "haptics/wrench.hpp"
 
 namespace riffler {
 
@@ -19,8 +20,12 @@ struct PenSample {
   std::uint32_t buttons = 0;  ///< bit 0 is button 1
   std::uint32_t fault = 0;    ///< the device's own code; 0 is none
   double stretch = 0;         ///< mm between two measurements of one length; 0 where nothing is measured twice
-  bool homed = false;         ///< the pose is sure
-  bool powered = false;       ///< the device is ready to push
+  /// What the hand felt of the motors when the report was sent, about the grip's pivot, as the device says; zero where
+  /// it does not. A wrench comes to the motors frames after the step that asked for it, behind the device's own ramps
+  /// and limits: an account of energy is right with this, and wrong with what was asked for.
+  Wrench applied{};
+  bool homed = false;    ///< the pose is sure
+  bool powered = false;  ///< the device is ready to push
 };
 
 }  // namespace riffler

@@ -34,4 +34,14 @@ PenEffort pen_effort(const PenKinematics& pen, const PenPosture& posture, const 
   return out;
 }
 
+Wrench felt_wrench(const PenKinematics& pen, const PenPosture& posture, const JointAngles& torques) noexcept {
+  constexpr double kSingular = 1e-3;  // of arm_dexterity
+  ArmForces forces{Vec3(0), Vec3(0)};
+  for (std::size_t arm = 0; arm < 2; ++arm)
+    if (std::abs(arm_dexterity(pen.geometry().arms[arm], posture.angles[arm])) > kSingular)
+      forces[arm] = torques[arm] * glm::inverse(posture.arms[arm].jacobian);
+  const Wrench in_base = wrench_of(forces, posture.apart);
+  return {pen.from_base(in_base.force), pen.from_base(in_base.torque)};
+}
+
 }  // namespace riffler

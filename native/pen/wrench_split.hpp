@@ -37,4 +37,8 @@ struct PenEffort {
 PenEffort pen_effort(const PenKinematics& pen, const PenPosture& posture, const Wrench& wrench,
                      const Vec3& at) noexcept;
 
+/// And back: the wrench about the grip's pivot, frame of poses, that the hand feels of joint torques. An arm that is
+/// singular, and could bear any force, counts as bearing none.
+Wrench felt_wrench(const PenKinematics& pen, const PenPosture& posture, const JointAngles& torques) noexcept;
+
 }  // namespace riffler

@@ -148,6 +148,10 @@ TEST(PenGeometry, RefusesValuesThatCannotBe) {
   expect("coulomb = [1.5,", "coulomb = [-1.5,", "coulomb, entry 1 must not be negative");
   expect("gravity = [60.0, 30.0, 0.0,", "gravity = [60.0, 30.0, 5.0,",
          "gravity, entry 3 must be 0: joint 1 turns about the upright");
+  expect("inertia = [260.0,", "inertia = [0.0,", "inertia, entry 1 must be positive, at most 1e+09");
+  expect("resistance = [2.0,", "resistance = [-2.0,", "resistance, entry 1 must be positive, at most 1e+06");
+  expect("mass = 0.02", "mass = 200.0", "mass must be positive, at most 100");
+  expect("inertia = 3.0", "inertia = nan", "inertia must be a finite number");
   expect("bits = 12", "bits = 24", "bits must be a whole number from 2 to 16");
   expect("slope = [22.0,", "slope = [0,", "slope, entry 1 must not be 0");
   expect("slope = [22.0,", "slope = [-23.0,",

@@ -104,5 +104,28 @@ TEST(WrenchSplit, EffortDoesTheWorkOfTheWrenchAtItsPoint) {
   EXPECT_GT(reached, 1000);
 }
 
+TEST(WrenchSplit, WhatTheHandFeelsOfTheEffortIsWhatWasAskedForLessWhatIsMissing) {
+  stress::Random random(47);
+  int round = 0;
+  while (round < 2000) {
+    const PenGeometry geometry = round % 2 ? test::turned_pen() : load_pen("riffler");
+    const PenKinematics pen(geometry);
+    const PenInverse found = pen.inverse(test::random_pose(random, geometry));
+    if (!found.reached()) continue;
+    ++round;
+    const PenPosture posture = pen.posture(found.angles);
+    const Wrench asked{5.0 * random.direction(), 80.0 * random.direction()};
+    const PenEffort effort = pen_effort(pen, posture, asked, posture.pose.tip);
+    const Wrench felt = felt_wrench(pen, posture, effort.torques);
+    EXPECT_LT(glm::length(felt.force - asked.force), 1e-10);
+    EXPECT_LT(glm::length(felt.torque + effort.missing - asked.torque), 1e-9);
+  }
+  // A straight arm could bear anything, and is said to bear nothing.
+  const PenKinematics pen(load_pen("riffler"));
+  const PenPosture straight = pen.posture(JointAngles{Vec3(0, 0, -1.5707963267948966), Vec3(0, 0.3, 0.1)});
+  const Wrench felt = felt_wrench(pen, straight, {Vec3(5, 5, 5), Vec3(0)});
+  EXPECT_EQ(felt.force, Vec3(0));
+}
+
 }  // namespace
 }  // namespace riffler

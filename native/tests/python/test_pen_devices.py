@@ -7,6 +7,7 @@ import shutil
 import struct
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -147,3 +148,29 @@ def test_a_recording_opens_as_a_device(tmp_path):
     journal.write(path)
     with pytest.raises(ValueError, match="stroke 1 has no times"):
         riffler.pen.open(path)
+
+
+def test_a_simulated_pen_opens_moves_and_goes_where_its_hand_is_told():
+    def wait(what) -> bool:
+        end = time.monotonic() + 20
+        while not what() and time.monotonic() < end:
+            time.sleep(0.01)
+        return what()
+
+    assert "simulated" in riffler.pen.kinds()
+    with riffler.pen.open("simulated") as device:
+        assert isinstance(device, riffler.pen.SimulatedPen)
+        assert device.kind == "simulated"
+        assert wait(lambda: device.state().homed)
+        goal = device.state().pose.copy()
+        goal[:3] += [6.0, 3.0, -4.0]
+        device.aim(goal, buttons=1)
+        assert wait(lambda: np.allclose(device.state().pose[:3], goal[:3], atol=0.5))
+        assert device.state().buttons == 1
+        with pytest.raises(ValueError, match="pose must be six numbers"):
+            device.aim([1.0, 2.0, 3.0])
+        with pytest.raises(ValueError, match="grip must be a number"):
+            device.aim(goal, grip=-1)
+        device.wander()
+        assert wait(lambda: not np.allclose(device.state().pose[:3], goal[:3], atol=3))
+    assert device.health()["state"] == "stopped"

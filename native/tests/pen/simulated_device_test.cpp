@@ -1,0 +1,77 @@
+// The simulated pen on the system's clock, in the driver's own thread.
+#include "pen/simulated_device.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <thread>
+
+#include "pen/registry.hpp"
+#include "support/error_of.hpp"
+
+namespace riffler {
+namespace {
+
+/// Up to 20 s, for machines that are busy.
+bool comes_true(const std::function<bool()>& what) {
+  for (int k = 0; k < 4000; ++k) {
+    if (what()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return false;
+}
+
+TEST(SimulatedDevice, OpensByItsKindHomedAndMovesByItself) {
+  const std::unique_ptr<Pen> pen = open_pen(kSimulatedKind);
+  EXPECT_EQ(pen->kind(), "simulated");
+  EXPECT_TRUE(pen->capability().has_force());
+  ASSERT_TRUE(comes_true([&] { return pen->newest().homed; }));
+  const Vec3 home = pen->newest().pose.tip;
+  EXPECT_TRUE(comes_true([&] { return glm::distance(pen->newest().pose.tip, home) > 5; }));
+  EXPECT_TRUE(comes_true([&] { return pen->newest().buttons == 1; }));
+  EXPECT_TRUE(pen->stop());
+  EXPECT_EQ(pen->status().state, LinkState::Stopped);
+}
+
+TEST(SimulatedDevice, TheHandGoesWhereItIsToldAndBackToItsCurve) {
+  const auto pen = SimulatedDevice::open();
+  ASSERT_TRUE(comes_true([&] { return pen->newest().homed; }));
+  HandWish wish{.pose = pen->newest().pose, .spin = 0.3, .buttons = 2};
+  wish.pose.tip += Vec3(8, -5, 4);
+  pen->aim(wish);
+  EXPECT_TRUE(comes_true([&] {
+    const PenSample now = pen->newest();
+    return glm::distance(now.pose.tip, wish.pose.tip) < 0.5 && now.buttons == 2 && std::abs(now.spin - 0.3) < 0.01;
+  }));
+  pen->wander();
+  EXPECT_TRUE(comes_true([&] { return glm::distance(pen->newest().pose.tip, wish.pose.tip) > 5; }));
+}
+
+TEST(SimulatedDevice, PushesTheHandAway) {
+  const auto pen = SimulatedDevice::open();
+  ASSERT_TRUE(comes_true([&] { return pen->newest().homed; }));
+  const Pose rest = pen->newest().pose;
+  pen->aim({.pose = rest});
+  // A machine that is late takes the force away for a while: asked for until it is there.
+  EXPECT_TRUE(comes_true([&] {
+    if (!heals(pen->cause())) pen->reset();
+    pen->push({{0, 0, 0.7}, {}});
+    return pen->newest().pose.tip.z > rest.tip.z + 0.5;
+  }));
+}
+
+TEST(SimulatedDevice, WishesThatCannotBeAreRefused) {
+  const auto pen = SimulatedDevice::open();
+  const auto refused = [&](const HandWish& wish) { return test::error_of([&] { pen->aim(wish); }); };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refused({.pose = {{0, nan, 0}, {0, 0, 1}}}), "pose: the point must be finite");
+  EXPECT_EQ(refused({.pose = {{0, 0, 0}, {0, 0, 0}}}), "pose: the axis must be finite, not zero");
+  EXPECT_EQ(refused({.spin = nan}), "spin must be finite");
+  EXPECT_EQ(refused({.grip = 2}), "grip must be a number between 0.000000 and 1.000000");
+}
+
+}  // namespace
+}  // namespace riffler
