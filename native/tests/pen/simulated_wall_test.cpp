@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "haptics/limits.hpp"
 #include "haptics/passivity.hpp"
@@ -40,7 +41,7 @@ Touch touch(const Wall& wall) {
   const double surface = home.tip.z - 2;
   SimulatedBench b(settings, [home](double t) {
     HandWish wish{.pose = home};
-    wish.pose.tip.z -= 3 * (1 - std::cos(M_PI * std::max(0.0, t - 1)));
+    wish.pose.tip.z -= 3 * (1 - std::cos(std::numbers::pi * std::max(0.0, t - 1)));
     return wish;
   });
   const PenKinematics host(load_pen("riffler"));
