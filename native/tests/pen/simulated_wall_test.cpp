@@ -88,7 +88,7 @@ Touch touch(const Wall& wall) {
 }
 
 /// Up to what is let go before the account has it: the reserve, and a frame's worth of debt.
-TEST(SimulatedWall, MotorsNeverGiveMoreThanTheyTookWithTheControllerOnWhatTheyWereTold) {
+TEST(SimulatedPenWall, MotorsNeverGiveMoreThanTheyTookWithTheControllerOnWhatTheyWereTold) {
   for (const double stiffness : {1.0, 3.0, 10.0, 30.0})
     for (const std::int64_t jitter : {0, 1500}) {
       const Touch touched = touch({stiffness, true, jitter, true});
@@ -98,12 +98,12 @@ TEST(SimulatedWall, MotorsNeverGiveMoreThanTheyTookWithTheControllerOnWhatTheyWe
     }
 }
 
-TEST(SimulatedWall, WithoutTheControllerAStiffWallGivesMuch) {
+TEST(SimulatedPenWall, WithoutTheControllerAStiffWallGivesMuch) {
   for (const double stiffness : {10.0, 30.0}) EXPECT_GT(touch({stiffness, false, 0, false}).gained, 100);
 }
 
 /// Of a wall that the pen bears by itself the controller leaves everything.
-TEST(SimulatedWall, ASoftWallIsLeftAlone) {
+TEST(SimulatedPenWall, ASoftWallIsLeftAlone) {
   const Touch with = touch({1, true, 0, true}), without = touch({1, false, 0, true});
   EXPECT_EQ(with.gained, without.gained);
   EXPECT_EQ(with.deepest, without.deepest);
@@ -112,7 +112,7 @@ TEST(SimulatedWall, ASoftWallIsLeftAlone) {
 
 /// Why samples carry what was applied: with what the host asked for, which the motors have a frame later, the account
 /// stays above zero while the motors give a hundred times the reserve.
-TEST(SimulatedWall, AnAccountOfWhatWasAskedForIsDeceivedByTheCable) {
+TEST(SimulatedPenWall, AnAccountOfWhatWasAskedForIsDeceivedByTheCable) {
   const Touch touched = touch({30, true, 0, false});
   EXPECT_GT(touched.account, 0);
   EXPECT_GT(touched.gained, 50);
