@@ -115,6 +115,18 @@ Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optiona
 
 Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget,
                         Counts& counts) const {
+  Contact out;
+  query(assembly, pose, budget, counts, out);
+  return out;
+}
+
+void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Contact& contact) const {
+  Counts counts;
+  query(assembly, pose, budget, counts, contact);
+}
+
+void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts,
+                     Contact& out) const {
   // Most of a budget is for the depth: what is not summed of the force is taken from coarser points.
   const auto until = [start = Deadline::Clock::now(), &budget](double share) {
     return budget ? Deadline(start + std::chrono::duration_cast<Deadline::Clock::duration>(
@@ -123,12 +135,13 @@ Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optiona
   };
   const ToolFrame frame(pose);
   const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), counts);
-  Contact out;
+  out.force = out.torque = Vec3(0), out.stiffness = {};
+  out.points.clear(), out.touches.clear();
   out.depth = std::max(0.0, -found.least.distance), out.checked = found.checked;
   // Nothing of the tool is deeper than it is wide; and the search's own slack is part of what may be missed.
   const double most = std::min(-found.low + found.slack, assembly.max_radius());
   out.missed_depth_bound = std::max(0.0, most - out.depth);
-  if (!(found.least.distance < 0)) return out;
+  if (!(found.least.distance < 0)) return;
   out.points.push_back(frame.to_part(found.least.point));
   out.touches.push_back(found.surface > 0 ? Touch::Fixture : static_cast<Touch>(assembly.part_at(found.least.point.z)));
   const Settings& s = data_->settings;
@@ -136,7 +149,6 @@ Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optiona
   add_force(assembly, frame, data_->points, {s.stiffness, s.holder_stiffness}, s.coarse, deadline, out, counts);
   for (const Fixture& f : data_->fixtures)
     if (f.near(assembly, frame, 0)) f.add_force(assembly, frame, s.fixture_stiffness, deadline, out, counts);
-  return out;
 }
 
 Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const {

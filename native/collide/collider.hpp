@@ -39,6 +39,8 @@ class Collider {
   /// same.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget = {}) const;
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts) const;
+  /// Writes over `contact`: asked again and again by one thread, it soon asks the system for no memory.
+  void query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Contact& contact) const;
 
   /// Least signed distance between the part's surface and the union of cutter, shank and holder; negative where they
   /// overlap, to the union's outer surface. mm, exact to 1e-9 or rounding; to 1e-3 where
@@ -72,6 +74,9 @@ class Collider {
   std::size_t fixtures() const;
 
  private:
+  void query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts,
+             Contact& out) const;
+
   struct Data;
   std::unique_ptr<Data> data_;
 };

@@ -1,6 +1,7 @@
 // What a tool meets at a pose.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "geom/vec.hpp"
@@ -19,10 +20,17 @@ struct Counts {
   std::size_t dexels = 0;     ///< rays of fixtures
 };
 
+/// How force (N) and torque about the tip (N·mm) fall when the tool is moved by a small displacement: its translation
+/// at the tip (mm), then its rotation vector (rad). Symmetric; nothing resists what slides along the surfaces.
+using ContactStiffness = std::array<std::array<double, 6>, 6>;
+
 /// Force and torque act on the tool. All in the part frame.
 struct Contact {
   Vec3 force{0};   ///< N, out of what is touched
   Vec3 torque{0};  ///< N·mm, about the tip
+  /// Σ |f|/Δ over the forces f, each along itself: the derivative of the force where the tool's surface runs along the
+  /// part's. Δ of a point is its depth, of a dexel that of the whole contact.
+  ContactStiffness stiffness{};
   /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
   double depth = 0;
   /// Without a budget rounding, 1e-10 mm and more far from the origin; up to about 1e-3 mm deep in a tool where three
@@ -32,6 +40,20 @@ struct Contact {
   double checked = 1;          ///< share of the candidates that was looked at
   std::vector<Vec3> points;    ///< contact points, the deepest first; empty where nothing touches
   std::vector<Touch> touches;  ///< of the points
+
+  /// Adds the force on the tool's point that is `arm` away from its tip, which pushes it out of a depth `deep`, mm.
+  void push(const Vec3& arm, const Vec3& pushing, double deep);
 };
+
+inline void Contact::push(const Vec3& arm, const Vec3& pushing, double deep) {
+  const Vec3 turning = glm::cross(arm, pushing);
+  force += pushing, torque += turning;
+  const double size = glm::length(pushing);
+  if (!(size > 0 && deep > 0)) return;
+  const Vec3 n = pushing / size, m = turning / size;
+  const double w[6] = {n.x, n.y, n.z, m.x, m.y, m.z};
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) stiffness[i][j] += size / deep * w[i] * w[j];
+}
 
 }  // namespace riffler

@@ -136,7 +136,7 @@ void Fixture::add_dexel(const Assembly& assembly, const ToolFrame& frame, const 
   const double away = glm::length(towards), pitch = volume_.frame().pitch;
   if (away == 0) return;
   const Vec3 force = frame.turned(stiffness * length * pitch * pitch / away * towards);
-  contact.force += force, contact.torque += glm::cross(at, force);
+  contact.push(at, force, std::max(contact.depth, 1e-2 * pitch));
 }
 
 void Fixture::add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, Deadline& deadline,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/block_pool.hpp"
+
 namespace riffler {
 
 namespace {
@@ -61,7 +63,7 @@ class Sum {
     const Vec3 point = points_.tree().group(group).sphere(k).centre;
     const double z = glm::dot(point - frame_.tip, frame_.axis);
     const Vec3 force = -distance * weight * stiffness_at(z) * points_.areas(group).area[k];
-    contact_.force += force, contact_.torque += glm::cross(point - frame_.tip, force);
+    contact_.push(point - frame_.tip, force, -distance);
     if (weight < 0.5) return;
     contact_.points.push_back(point), contact_.touches.push_back(static_cast<Touch>(assembly_.part_at(z)));
   }
@@ -91,7 +93,7 @@ class Sum {
   Stiffness stiffness_;
   double widest_, cutter_top_ = 0;
   Contact& contact_;
-  std::vector<Node> stack_;
+  BlockVector<Node> stack_;
 };
 
 }  // namespace

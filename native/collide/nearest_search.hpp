@@ -2,12 +2,12 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "collide/assembly.hpp"
 #include "collide/contact.hpp"
 #include "collide/deadline.hpp"
 #include "collide/surface.hpp"
+#include "geom/block_pool.hpp"
 
 namespace riffler {
 
@@ -52,7 +52,7 @@ class NearestSearch {
   const ToolFrame& frame_;
   TriangleSearch triangles_;
   double limit_ = std::numeric_limits<double>::infinity(), enough_ = -limit_, slack_;
-  std::vector<Entry> heap_;
+  BlockVector<Entry> heap_;
   std::size_t best_surface_ = 0;
 };
 

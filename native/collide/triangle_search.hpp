@@ -3,11 +3,11 @@
 
 #include <array>
 #include <limits>
-#include <vector>
 
 #include "collide/deadline.hpp"
 #include "collide/drift.hpp"
 #include "collide/outline_runs.hpp"
+#include "geom/block_pool.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {
@@ -89,9 +89,9 @@ class TriangleSearch {
 
   const OutlineRuns& runs_;
   const Drift* drift_ = nullptr;        // that bounds are to allow for
-  std::vector<OutlineRuns::RunAt> at_;  // of the last look
+  BlockVector<OutlineRuns::RunAt> at_;  // of the last look
   Least least_;
-  std::vector<Cell> heap_;
+  BlockVector<Cell> heap_;
   std::size_t cells_ = 0;
   double left_ = std::numeric_limits<double>::infinity(), enough_ = -left_;
 };

@@ -1,0 +1,188 @@
+#include "haptics/sculpt_step.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace riffler {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Pose moved(const Pose& from, const Twist& way) {
+  const double angle = glm::length(way.angular);
+  if (angle == 0) return {from.tip + way.linear, from.axis};
+  const Vec3 side = glm::cross(way.angular / angle, from.axis);
+  return {from.tip + way.linear, glm::normalize(std::cos(angle) * from.axis + std::sin(angle) * side)};
+}
+
+/// As a displacement about `from`'s tip.
+Twist way_between(const Pose& from, const Pose& to) {
+  const Stretch s = stretch(to, from);
+  return {s.translation, s.rotation};
+}
+
+/// Between two poses of the grip; of opposite axes the later one.
+Pose between(const Pose& from, const Pose& to, double t) {
+  if (t >= 1 || glm::dot(from.axis, to.axis) < -0.99) return {glm::mix(from.tip, to.tip, std::min(t, 1.0)), to.axis};
+  return Motion(from, to).at(t);
+}
+
+bool usable(const Pose& p) {
+  return finite(p.tip) && std::abs(glm::length(p.axis) - 1) < 1e-6;
+}
+
+Wrench times(const ContactStiffness& k, const Twist& way) {
+  Wrench out;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) out[i] += k[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * way[j];
+  return out;
+}
+
+}  // namespace
+
+void SculptSettings::validate() const {
+  coupling.validate();
+  require_positive("coupling.stiffness", coupling.stiffness);
+  require_positive("coupling.turn_stiffness", coupling.turn_stiffness);
+  require_positive("memory", memory);
+  require_not_negative("damping", damping);
+  require_between("parts", parts, 1, 64);
+  require_between("queries", queries, 1, 64);
+  require_not_negative("settled", settled);
+  require_positive("most.linear", most.linear);
+  require_between("most.angular", most.angular, 0, 1);
+  require_positive("missed", missed);
+  if (budget) require_not_negative("budget", *budget);
+}
+
+/// One part of a step.
+struct SculptStep::Part {
+  Pose grip;     // at its end
+  Twist moving;  // of the grip, about its own point
+  double dt;
+  double share;                  // of the step
+  std::optional<double> budget;  // for queries
+};
+
+SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCarver* stock, const Collider* obstacles)
+    : settings_(settings),
+      assembly_(tool),
+      cutting_reach_(std::max(tool.length(), 0.5 * tool.diameter())),
+      stock_(stock),
+      obstacles_(obstacles),
+      resistance_((settings.validate(), settings.memory), settings.damping) {
+  if (obstacles) assembly_.deepest();  // found now, not in a step
+}
+
+void SculptStep::place(const Pose& pose) {
+  tool_ = grip_ = pose;
+  fresh_ = true, touching_ = false, bound_ = 0;
+  resistance_.forget();
+}
+
+/// Where everything that is known now balances, as a displacement of the tool.
+Twist SculptStep::balanced(const Part& part) const {
+  const CouplingSettings& c = settings_.coupling;
+  const Stretch ahead = stretch(part.grip, tool_);
+  // The spring as it is at this stretch: where it pulls less than in proportion, it is softer.
+  const CouplingWrenches pull = couple(c, ahead, {}, {});
+  const auto stiffness = [](double force, double length, double small) { return length > 0 ? force / length : small; };
+  const Twist far{ahead.translation, ahead.rotation};
+  Balance balance(tool_.axis, part.dt);
+  balance.add_spring(stiffness(glm::length(pull.on_tool.force), glm::length(far.linear), c.stiffness),
+                     stiffness(glm::length(pull.on_tool.torque), glm::length(far.angular), c.turn_stiffness), far);
+  balance.add_damper({ahead.translation, c.damping, c.turn_damping}, part.moving);
+  balance.add_damper(resistance_.damper());
+  Twist way = balance.solve();
+  if (touching_) {
+    const Wrench contact{contact_.force, contact_.torque};
+    const Twist from_asked = way_between(tool_, asked_);
+    balance.add_contact(contact + times(contact_.stiffness, from_asked), contact_.stiffness);
+    const Twist kept = balance.solve();
+    // What is touched pushes and does not pull: where the hand lifts the tool off, it is gone.
+    const Wrench left = contact - times(contact_.stiffness, kept - from_asked);
+    if (glm::dot(left.force, contact.force) >= 0) way = kept;
+  }
+  const auto factor = [](double length, double limit) { return length > limit ? limit / length : 1; };
+  return std::min(factor(glm::length(way.linear), part.share * settings_.most.linear),
+                  factor(glm::length(way.angular), part.share * settings_.most.angular)) *
+         way;
+}
+
+/// Asks what is touched at the end of that way; false where too much of the answer is missing.
+bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
+  asked_ = moved(tool_, way);
+  obstacles_->query(assembly_, asked_, part.budget, contact_);
+  touching_ = contact_.depth > 0;
+  ++result.queries;
+  return contact_.missed_depth_bound <= settings_.missed;
+}
+
+Twist SculptStep::advance(const Part& part, Result& result) {
+  Twist way = balanced(part);
+  if (!obstacles_) return way;
+  const auto size = [&](const Twist& w) { return glm::length(w.linear) + glm::length(w.angular) * assembly_.reach(); };
+  for (int k = 0; k < settings_.queries; ++k) {
+    if (!look(way, part, result)) {
+      result.held = true, touching_ = false;
+      return {};
+    }
+    const Twist before = way;
+    way = balanced(part);
+    const double change = size(way - before);
+    // A distance changes by no more than the tool's points move.
+    bound_ = contact_.depth + contact_.missed_depth_bound + change;
+    if (change <= settings_.settled) break;
+  }
+  return way;
+}
+
+void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result) {
+  if (!stock_ || way.linear + way.angular == Vec3(0)) return;
+  const Clock::time_point start = Clock::now();
+  const MoveCarver::Taken taken = stock_->move(tool_, to, dt);
+  if (settings_.budget) cut_seconds_ = seconds_since(start);
+  ++result.cuts;
+  result.removed += taken.removed;
+  if (!fresh_) resistance_.learn(way, {taken.force, taken.torque}, dt, cutting_reach_);
+  fresh_ = false;
+}
+
+SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double dt) {
+  Result result;
+  result.tool = tool_, result.depth_bound = bound_;
+  if (!usable(grip) || !finite(twist) || !(dt > 0) || !std::isfinite(dt)) return result;
+  const Clock::time_point start = Clock::now();
+  const Pose last = grip_;
+  Twist rate;
+  double gone = 0;
+  for (int parts = settings_.parts, k = 1; k <= parts; ++k) {
+    const double share = (1 - gone) / (parts - k + 1);
+    Part part{between(last, grip, gone + share), twist, share * dt, share, {}};
+    if (settings_.budget) {
+      const double left = *settings_.budget - seconds_since(start) - cut_seconds_;
+      part.budget = std::max(0.0, left / settings_.queries);
+    }
+    const Twist way = advance(part, result);
+    const Pose to = moved(tool_, way);
+    cut(to, way, part.dt, result);
+    tool_ = to, rate = 1 / part.dt * way, gone += share;
+    const double each = seconds_since(start) / k;
+    if (settings_.budget && k < parts - 1 && seconds_since(start) + 2 * each > *settings_.budget)
+      parts = k + 1, result.shortened = true;  // what is left in one
+  }
+  grip_ = grip;
+  const Stretch ahead = stretch(grip, tool_);
+  const Twist at_grip{rate.linear + glm::cross(rate.angular, ahead.translation), rate.angular};
+  result.on_grip = couple(settings_.coupling, ahead, twist, at_grip).on_device;
+  result.tool = tool_, result.depth_bound = bound_;
+  return result;
+}
+
+}  // namespace riffler
