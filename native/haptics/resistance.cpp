@@ -5,15 +5,22 @@
 
 namespace riffler {
 
-namespace {
-
-/// Mean over the last `memory` of what was met evenly along a way, 1 − e^(−way/memory) of it new, per unit of its
-/// integral. Of no way the limit.
-double share(double way, double memory) {
-  return way > 1e-9 * memory ? -std::expm1(-way / memory) / way : 1 / memory;
+void Resistance::PerWay::add(double amount, double length, double memory) {
+  if (way == 0) {
+    if (!(amount > 0)) return;
+    way = 0.02;
+  }
+  // Of what was met evenly along the way, 1 − e^(−length/memory) stays. Of no way the limit.
+  const double kept = std::exp(-length / memory);
+  const double share = length > 1e-9 * memory ? -std::expm1(-length / memory) / length : 1 / memory;
+  sum = kept * sum + share * amount;
+  way = kept * way + (1 - kept);
 }
 
-}  // namespace
+void Resistance::forget() {
+  area_ = turning_ = engaged_ = {};
+  arm_ = Vec3(0), idle_ = 0;
+}
 
 void Resistance::learn(const Twist& way, const Wrench& wrench, double dt, double reach) {
   const double force = glm::length(wrench.force), turn = glm::length(way.angular);
@@ -23,18 +30,20 @@ void Resistance::learn(const Twist& way, const Wrench& wrench, double dt, double
   if (const double far = glm::length(arm); far > reach) arm *= reach / far;
   const Vec3 there = way.linear + glm::cross(way.angular, arm);
   const Vec3 couple = wrench.torque - glm::cross(arm, wrench.force);
+  const double slid = glm::length(there), swung = turn * reach;
+  idle_ = force > 0 ? 0 : idle_ + std::max(slid, swung);
+  if (idle_ > memory_) return forget();
 
-  const double slid = glm::length(there), kept = std::exp(-slid / memory_);
   const double against = slid > 0 ? std::max(0.0, -glm::dot(wrench.force, there) / slid) : force;
-  const double met = share(slid, memory_) * against * dt;
-  impulse_ *= kept;
-  if (met > 0) arm_ = (impulse_ * arm_ + met * arm) / (impulse_ + met);
-  impulse_ += met;
-  engaged_ = kept * engaged_ + (force > 0 ? 1 - kept : 0);
-
-  const double swung = turn * reach, twist = turn > 0 ? std::max(0.0, -glm::dot(couple, way.angular) / turn) : 0;
-  const double forgotten = std::exp(-std::max(slid, swung) / memory_);
-  turning_ = forgotten * turning_ + share(swung, memory_) * twist * reach * dt;
+  const double before = area_.sum;
+  area_.add(against * dt, slid, memory_);
+  if (const double now = area_.sum; now > 0 && force > 0) {
+    const double old = std::min(1.0, before * std::exp(-slid / memory_) / now);
+    arm_ = old * arm_ + (1 - old) * arm;
+  }
+  engaged_.add(force > 0 ? slid : 0, slid, memory_);
+  const double twist = turn > 0 ? std::max(0.0, -glm::dot(couple, way.angular) / turn) : 0;
+  turning_.add(twist * reach * dt, std::max(slid, swung), memory_);
 }
 
 }  // namespace riffler

@@ -25,14 +25,24 @@ class Resistance {
   /// from the tip within which it cuts; turns are counted as way at that distance.
   void learn(const Twist& way, const Wrench& wrench, double dt, double reach);
   /// The tool is elsewhere.
-  void forget() { impulse_ = turning_ = engaged_ = 0, arm_ = Vec3(0); }
+  void forget();
 
-  Damper damper() const { return {arm_, impulse_ + damping_ * engaged_, turning_}; }
+  Damper damper() const { return {arm_, area_.mean() + damping_ * engaged_.mean(), turning_.mean()}; }
 
  private:
+  /// Mean per way over the last `memory` of it. A mean of less way than that is of this way alone, so what begins is
+  /// known at once; but never of less than a fiftieth, in which one row of rays may have come together.
+  struct PerWay {
+    double sum = 0, way = 0;
+
+    void add(double amount, double length, double memory);
+    double mean() const { return way > 0 ? sum / way : 0; }
+  };
+
   double memory_, damping_;
-  double impulse_ = 0, turning_ = 0, engaged_ = 0;  // N·s/mm, N·mm·s/rad, share of the way
+  PerWay area_, turning_, engaged_;  // N·s/mm, N·mm·s/rad, share of the way
   Vec3 arm_{0};
+  double idle_ = 0;  // mm without a cut
 };
 
 }  // namespace riffler

@@ -10,6 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kPoints = 4096;  // of a contact, for which there is room from the start
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -77,7 +79,9 @@ SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCar
       stock_(stock),
       obstacles_(obstacles),
       resistance_((settings.validate(), settings.memory), settings.damping) {
-  if (obstacles) assembly_.deepest();  // found now, not in a step
+  if (!obstacles) return;
+  assembly_.deepest();  // found now, not in a step
+  contact_.points.reserve(kPoints), contact_.touches.reserve(kPoints);
 }
 
 void SculptStep::place(const Pose& pose) {

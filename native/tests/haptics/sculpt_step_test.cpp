@@ -65,7 +65,8 @@ TEST(SculptStep, AFlatCutterFedDownwardsIsResistedByConstantTimesAreaTimesSpeed)
       if (k > 20) worst = std::max(worst, std::abs(r.on_grip.force.z - exact));
     });
     EXPECT_NEAR(last.force.z, lag * speed, 3e-3 * lag * speed) << speed;
-    EXPECT_LT(worst, 0.02 * lag * speed) << speed;
+    // It meets the surface unwarned, and is that far ahead until the area is known.
+    EXPECT_LT(worst, 3 * speed * kTick) << speed;
     EXPECT_LT(std::hypot(last.force.x, last.force.y), 1e-9);
     EXPECT_LT(glm::length(last.torque), 1e-3);
   }
@@ -133,24 +134,25 @@ TEST(SculptStep, ConvergesToTheBalanceThatIsSolvedDenselyAsItsPartsGetSmaller) {
     const Tool ball = cutters::ball(8, 40);
     MoveCarver carver(volume, ball, {.tolerance = 1e-3, .removal_constant = 2e-4});
     SculptSettings settings = springs_only();
-    settings.parts = parts, settings.memory = 0.02;
+    settings.parts = parts, settings.memory = 2e-4;  // a grid gives depths exactly
     SculptStep step(settings, ball, &carver, nullptr);
     Plunge exact(4, 2e-4, 1);
     step.place({{20, 20, height(0)}, kUp});
     double square = 0, largest = 0;
-    follow(step, 400, [&](double t) { return Pose{{20, 20, height(t)}, kUp}; },
-           [&](int k, const SculptStep::Result& r) {
-             const double force = exact.advance((k - 1) * kTick, kTick, height);
-             square += (r.on_grip.force.z - force) * (r.on_grip.force.z - force);
-             largest = std::max(largest, std::abs(force));
-           });
+    follow(
+        step, 400, [&](double t) { return Pose{{20, 20, height(t)}, kUp}; },
+        [&](int k, const SculptStep::Result& r) {
+          const double force = exact.advance((k - 1) * kTick, kTick, height);
+          square += (r.on_grip.force.z - force) * (r.on_grip.force.z - force);
+          largest = std::max(largest, std::abs(force));
+        });
     const double rms = std::sqrt(square / 400) / largest;
     RecordProperty("parts" + std::to_string(parts), std::to_string(rms));
     std::printf("parts %d: force error %.4f of the largest, %.3f N\n", parts, rms, largest);
     EXPECT_LT(rms, 0.8 * last) << parts;
     last = rms;
   }
-  EXPECT_LT(last, 0.01);
+  EXPECT_LT(last, 4e-3);
 }
 
 TEST(SculptStep, WhateverResistsTheCouplingsEnergyFallsInEveryStep) {
@@ -188,13 +190,11 @@ double cap_force(double radius, double d, double k) {
 TEST(SculptStep, ATracedPlaneHoldsTheToolWhereCouplingAndSurfaceBalance) {
   const Tool ball = cutters::ball(6, 30);
   for (const double stiffness : {0.3, 3.0, 300.0}) {
-    const Collider part(box({-40, -40, -30}, {40, 40, 0}), {}, {.spacing = 0.1, .stiffness = stiffness});
+    const Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1, .stiffness = stiffness});
     SculptStep step(springs_only(), ball, nullptr, &part);
     step.place({{0, 0, 1}, kUp});
     // Down to −1, then aside: nothing holds it back there.
-    const auto grip = [](double t) {
-      return Pose{{30 * std::max(0.0, t - 0.2), 0, std::max(-1.0, 1 - 20 * t)}, kUp};
-    };
+    const auto grip = [](double t) { return Pose{{30 * std::max(0.0, t - 0.2), 0, std::max(-1.0, 1 - 20 * t)}, kUp}; };
     double low = 0, high = 1;
     for (int i = 0; i < 60; ++i) {
       const double d = 0.5 * (low + high);
@@ -218,11 +218,12 @@ TEST(SculptStep, ATracedPlaneHoldsTheToolWhereCouplingAndSurfaceBalance) {
 
 TEST(SculptStep, ALiftedToolLeavesWhatItTouchedAtOnce) {
   const Tool ball = cutters::ball(6, 30);
-  const Collider part(box({-40, -40, -30}, {40, 40, 0}), {}, {.spacing = 0.1, .stiffness = 10});
+  const Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1, .stiffness = 10});
   SculptStep step(springs_only(), ball, nullptr, &part);
   step.place({{0, 0, 1}, kUp});
-  follow(step, 100, [](double t) { return Pose{{0, 0, 1 - 20 * t}, kUp}; },
-         [](int, const SculptStep::Result& r) { EXPECT_GE(r.on_grip.force.z, 0); });
+  follow(
+      step, 100, [](double t) { return Pose{{0, 0, 1 - 20 * t}, kUp}; },
+      [](int, const SculptStep::Result& r) { EXPECT_GE(r.on_grip.force.z, 0); });
   EXPECT_TRUE(step.contact().depth > 0);
   for (int k = 0; k < 3; ++k) {
     const SculptStep::Result r = step.step({{0, 0, 1}, kUp}, {}, kTick);
@@ -236,12 +237,12 @@ TEST(SculptStep, ALiftedToolLeavesWhatItTouchedAtOnce) {
 TEST(SculptStep, ContactsOfAnyStiffnessStayQuietUnderAnyHand) {
   // A holder between two walls and a ball on a floor, part and fixture.
   const Tool tool = cutters::ball(6, 20).with_holder({{20, 15, 40, 15}});
-  for (const double stiffness : {0.1, 10.0, 1e4}) {
+  for (const double stiffness : {0.1, 10.0, 1e3}) {
     std::vector<Volume> fixtures;
-    fixtures.push_back(Volume::block({{{-40, -40, -10}, {40, -14, 30}}, 1, "z"}));
-    const Collider part(box({-40, -40, -10}, {40, 40, 0}), std::move(fixtures),
-                        {.spacing = 0.3, .stiffness = stiffness, .holder_stiffness = stiffness,
-                         .fixture_stiffness = stiffness});
+    fixtures.push_back(Volume::block({{{-40, -40, -10}, {40, -15.5, 30}}, 0.5, "z"}));
+    const Collider part(
+        box({-20, -20, -5}, {20, 20, 0}), std::move(fixtures),
+        {.spacing = 0.3, .stiffness = stiffness, .holder_stiffness = stiffness, .fixture_stiffness = stiffness});
     SculptStep step(springs_only(), tool, nullptr, &part);
     stress::Random random(9);
     Pose grip{{0, 0, 1}, kUp};
@@ -260,23 +261,26 @@ TEST(SculptStep, ContactsOfAnyStiffnessStayQuietUnderAnyHand) {
       last = force, touched += step.contact().depth > 0;
     }
     EXPECT_GT(touched, 500) << stiffness;
+    std::printf("stiffness %g: blow %.3f N, touched %d\n", stiffness, blow, touched);
     EXPECT_LT(blow, 0.15) << stiffness;
   }
 }
 
 TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
   const Tool ball = cutters::ball(6, 30);
-  const Collider part(box({-40, -40, -30}, {40, 40, 0}), {}, {.spacing = 0.1});
+  const Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1});
   SculptSettings settings = springs_only();
   settings.budget = 0, settings.missed = 1e-6;
   SculptStep step(settings, ball, nullptr, &part);
   step.place({{0, 0, 0.01}, kUp});
   int held = 0;
-  follow(step, 50, [](double t) { return Pose{{0, 0, 0.01 - 20 * t}, kUp}; }, [&](int k, const SculptStep::Result& r) {
-    if (!r.held) return;
-    ++held;
-    EXPECT_LE(-part.clearance(Assembly(ball), r.tool), r.depth_bound + 1e-9) << k;
-  });
+  follow(
+      step, 50, [](double t) { return Pose{{0, 0, 0.01 - 20 * t}, kUp}; },
+      [&](int k, const SculptStep::Result& r) {
+        if (!r.held) return;
+        ++held;
+        EXPECT_LE(-part.clearance(Assembly(ball), r.tool), r.depth_bound + 1e-9) << k;
+      });
   RecordProperty("held", held);
 }
 
@@ -285,7 +289,7 @@ TEST(SculptStep, AsksForNoMemoryOnceItIsWarm) {
   Volume volume = block(0.2);
   std::vector<Volume> fixtures;
   fixtures.push_back(Volume::block({{{0, 0, 14}, {40, 9, 30}}, 0.5, "z"}));
-  const Collider part(box({0, 0, -20}, {40, 40, -3}), std::move(fixtures), {.spacing = 0.1});
+  const Collider part(box({8, 8, -6}, {32, 32, -3}), std::move(fixtures), {.spacing = 0.1});
   MoveCarver carver(volume, tool, {});
   SculptStep step(springs_only(), tool, &carver, &part);
   const auto grip = [](double t) {
@@ -314,8 +318,7 @@ TEST(SculptStep, NothingMovesWithoutTimeOrNumbers) {
   const Pose start{{20, 20, 1}, kUp};
   step.place(start);
   const double before = volume.volume();
-  for (const double dt : {0.0, -1.0, std::nan("")})
-    EXPECT_EQ(step.step({{20, 20, -3}, kUp}, {}, dt).on_grip, Wrench{});
+  for (const double dt : {0.0, -1.0, std::nan("")}) EXPECT_EQ(step.step({{20, 20, -3}, kUp}, {}, dt).on_grip, Wrench{});
   EXPECT_EQ(step.step({{std::nan(""), 0, 0}, kUp}, {}, kTick).on_grip, Wrench{});
   EXPECT_EQ(step.step({{0, 0, 0}, {0, 0, 2}}, {}, kTick).on_grip, Wrench{});
   EXPECT_EQ(step.step(start, {{INFINITY, 0, 0}, {}}, kTick).on_grip, Wrench{});

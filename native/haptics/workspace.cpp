@@ -1,0 +1,82 @@
+#include "haptics/workspace.hpp"
+
+#include <cmath>
+
+#include "haptics/coupling.hpp"
+#include "haptics/settings.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// The rotation by a rotation vector (Rodrigues).
+Mat3 rotation(const Vec3& turn) {
+  const double angle = glm::length(turn);
+  if (angle == 0) return Mat3(1);
+  const Vec3 n = turn / angle;
+  const Mat3 cross(Vec3(0, n.z, -n.y), Vec3(-n.z, 0, n.x), Vec3(n.y, -n.x, 0));
+  return Mat3(1) + std::sin(angle) * cross + (1 - std::cos(angle)) * cross * cross;
+}
+
+}  // namespace
+
+void WorkspaceSettings::validate() const {
+  require_positive("scale", scale);
+  const Mat3 square = glm::transpose(turn) * turn - Mat3(1);
+  double off = 0;
+  for (int i = 0; i < 3; ++i) off += glm::length(square[i]);
+  if (!(off < 1e-9) || glm::determinant(turn) < 0)
+    throw std::invalid_argument("turn must be orthonormal and right-handed");
+  if ((clutch_mask & dead_man_mask) != 0)
+    throw std::invalid_argument("clutch_mask must share no button with dead_man_mask");
+}
+
+Workspace::Workspace(const WorkspaceSettings& settings) : settings_(settings) {
+  settings.validate();
+}
+
+void Workspace::place(const Pose& target) {
+  target_ = target, begun_ = false;
+}
+
+void Workspace::set(const WorkspaceSettings& settings) {
+  settings.validate();
+  settings_ = settings;
+  pair_here();
+}
+
+void Workspace::pair_here() {
+  grip_pair_ = grip_, target_pair_ = target_;
+  // The shortest turn that is still missing, after the one there was: turns on the way are kept as they are.
+  const Vec3 shown = glm::normalize(aslant_ * (settings_.turn * grip_.axis));
+  aslant_ = rotation(stretch(Pose{Vec3(0), target_.axis}, Pose{Vec3(0), shown}).rotation) * aslant_;
+  // Rounding must not gather.
+  aslant_[0] = glm::normalize(aslant_[0]);
+  aslant_[1] = glm::normalize(aslant_[1] - glm::dot(aslant_[0], aslant_[1]) * aslant_[0]);
+  aslant_[2] = glm::cross(aslant_[0], aslant_[1]);
+}
+
+Pose Workspace::target(const Pose& grip, std::uint32_t buttons) {
+  if (!finite(grip.tip) || !(std::abs(glm::length(grip.axis) - 1) < 1e-6)) return target_;
+  const bool clutch = (buttons & settings_.clutch_mask) != 0;
+  grip_ = grip;
+  // While it is pressed the pair goes along; the tick in which it is let go is still of it.
+  if (!begun_ || clutch || clutched_) pair_here();
+  begun_ = true, clutched_ = clutch;
+  target_.tip = target_pair_.tip + settings_.scale * (settings_.turn * (grip.tip - grip_pair_.tip));
+  target_.axis = glm::normalize(aslant_ * (settings_.turn * grip.axis));
+  return target_;
+}
+
+Twist Workspace::to_target(const Twist& grip) const {
+  if (clutched_) return {};
+  return {settings_.scale * (settings_.turn * grip.linear), aslant_ * (settings_.turn * grip.angular)};
+}
+
+Wrench Workspace::to_grip(const Wrench& w) const {
+  if (clutched_) return {};
+  const Mat3 back = glm::transpose(settings_.turn);
+  return {settings_.scale * (back * w.force), back * (glm::transpose(aslant_) * w.torque)};
+}
+
+}  // namespace riffler
