@@ -28,8 +28,8 @@ using ContactStiffness = std::array<std::array<double, 6>, 6>;
 struct Contact {
   Vec3 force{0};   ///< N, out of what is touched
   Vec3 torque{0};  ///< N·mm, about the tip
-  /// Σ |f|/Δ over the forces f, each along itself: the derivative of the force where the tool's surface runs along the
-  /// part's. Δ of a point is its depth, of a dexel that of the whole contact.
+  /// Σ |f|/Δ over the forces f, each along itself. Δ of a point is its depth: the derivative of the force where the
+  /// tool's surface runs along the part's. Δ of a dexel is half the depth of the whole contact: an estimate.
   ContactStiffness stiffness{};
   /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
   double depth = 0;

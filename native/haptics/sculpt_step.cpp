@@ -35,6 +35,12 @@ Pose between(const Pose& from, const Pose& to, double t) {
   return Motion(from, to).at(t);
 }
 
+/// Shrunk to the bounds.
+Twist within(const Twist& way, const Bounds& most) {
+  const auto factor = [](double length, double limit) { return length > limit ? limit / length : 1; };
+  return std::min(factor(glm::length(way.linear), most.linear), factor(glm::length(way.angular), most.angular)) * way;
+}
+
 bool usable(const Pose& p) {
   return finite(p.tip) && std::abs(glm::length(p.axis) - 1) < 1e-6;
 }
@@ -59,6 +65,8 @@ void SculptSettings::validate() const {
   require_not_negative("settled", settled);
   require_positive("most.linear", most.linear);
   require_between("most.angular", most.angular, 0, 1);
+  require_positive("rest.linear", rest.linear);
+  require_positive("rest.angular", rest.angular);
   require_positive("missed", missed);
   if (budget) require_not_negative("budget", *budget);
 }
@@ -68,7 +76,7 @@ struct SculptStep::Part {
   Pose grip;     // at its end
   Twist moving;  // of the grip, about its own point
   double dt;
-  double share;                  // of the step
+  Bounds most;                   // that the tool moves
   std::optional<double> budget;  // for queries
 };
 
@@ -86,6 +94,7 @@ SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCar
 
 void SculptStep::place(const Pose& pose) {
   tool_ = grip_ = pose;
+  rate_ = {};
   fresh_ = true, touching_ = false, bound_ = 0;
   resistance_.forget();
 }
@@ -109,14 +118,18 @@ Twist SculptStep::balanced(const Part& part) const {
     const Twist from_asked = way_between(tool_, asked_);
     balance.add_contact(contact + times(contact_.stiffness, from_asked), contact_.stiffness);
     const Twist kept = balance.solve();
-    // What is touched pushes and does not pull: where the hand lifts the tool off, it is gone.
-    const Wrench left = contact - times(contact_.stiffness, kept - from_asked);
-    if (glm::dot(left.force, contact.force) >= 0) way = kept;
+    // What is touched pushes and does not pull: where the hand lifts the tool off, the tool goes no further with it
+    // than where it stops to push, unless it is free there.
+    const auto push = [&](const Twist& w) {
+      return glm::dot((contact - times(contact_.stiffness, w - from_asked)).force, contact.force);
+    };
+    const double held = push(kept), off = push(way);
+    if (held >= 0)
+      way = kept;
+    else if (off > 0)
+      way = kept - held / (held - off) * (kept - way);
   }
-  const auto factor = [](double length, double limit) { return length > limit ? limit / length : 1; };
-  return std::min(factor(glm::length(way.linear), part.share * settings_.most.linear),
-                  factor(glm::length(way.angular), part.share * settings_.most.angular)) *
-         way;
+  return within(way, part.most);
 }
 
 /// Asks what is touched at the end of that way; false where too much of the answer is missing.
@@ -158,17 +171,27 @@ void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result
   fresh_ = false;
 }
 
+/// A tool that was at rest does not fly off, whatever has let it go: it may go twice as far as the grip, and as itself
+/// before. What it flies into has then been asked about in time.
+Bounds SculptStep::most_of(const Pose& grip, double share, double dt) const {
+  const Twist hand = way_between(grip_, grip), own = dt * rate_;
+  const auto bound = [&](const Vec3& a, const Vec3& b, double rest, double most) {
+    return share * std::min(most, 2 * glm::length(a) + 2 * glm::length(b) + rest);
+  };
+  return {bound(hand.linear, own.linear, settings_.rest.linear, settings_.most.linear),
+          bound(hand.angular, own.angular, settings_.rest.angular, settings_.most.angular)};
+}
+
 SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double dt) {
   Result result;
   result.tool = tool_, result.depth_bound = bound_;
   if (!usable(grip) || !finite(twist) || !(dt > 0) || !std::isfinite(dt)) return result;
   const Clock::time_point start = Clock::now();
   const Pose last = grip_;
-  Twist rate;
   double gone = 0;
   for (int parts = settings_.parts, k = 1; k <= parts; ++k) {
     const double share = (1 - gone) / (parts - k + 1);
-    Part part{between(last, grip, gone + share), twist, share * dt, share, {}};
+    Part part{between(last, grip, gone + share), twist, share * dt, most_of(grip, share, dt), {}};
     if (settings_.budget) {
       const double left = *settings_.budget - seconds_since(start) - cut_seconds_;
       part.budget = std::max(0.0, left / settings_.queries);
@@ -176,14 +199,14 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
     const Twist way = advance(part, result);
     const Pose to = moved(tool_, way);
     cut(to, way, part.dt, result);
-    tool_ = to, rate = 1 / part.dt * way, gone += share;
+    tool_ = to, rate_ = 1 / part.dt * way, gone += share;
     const double each = seconds_since(start) / k;
     if (settings_.budget && k < parts - 1 && seconds_since(start) + 2 * each > *settings_.budget)
       parts = k + 1, result.shortened = true;  // what is left in one
   }
   grip_ = grip;
   const Stretch ahead = stretch(grip, tool_);
-  const Twist at_grip{rate.linear + glm::cross(rate.angular, ahead.translation), rate.angular};
+  const Twist at_grip{rate_.linear + glm::cross(rate_.angular, ahead.translation), rate_.angular};
   result.on_grip = couple(settings_.coupling, ahead, twist, at_grip).on_device;
   result.tool = tool_, result.depth_bound = bound_;
   return result;

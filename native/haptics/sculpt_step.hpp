@@ -19,6 +19,7 @@ struct SculptSettings {
   int parts = 1;                   ///< of which a step consists, each with a cut of its own
   int queries = 2;                 ///< of obstacles in each part, at most
   double settled = 1e-3;           ///< mm: a pose that changes less by what a query found is not asked about again
+  Bounds rest{0.02, 2e-3};         ///< mm, rad that it moves from rest in one, while the grip stands
   Bounds most{2, 0.2};             ///< mm, rad that the tool moves in a step
   double missed = 0.05;            ///< mm of depth that a query may have missed; otherwise the tool stays where it is
   std::optional<double> budget{};  ///< s for a step; without one a step is the same on any machine
@@ -64,6 +65,7 @@ class SculptStep {
  private:
   struct Part;
   Twist balanced(const Part& part) const;
+  Bounds most_of(const Pose& grip, double share, double dt) const;
   Twist advance(const Part& part, Result& result);
   bool look(const Twist& way, const Part& part, Result& result);
   void cut(const Pose& to, const Twist& way, double dt, Result& result);
@@ -75,6 +77,7 @@ class SculptStep {
   const Collider* obstacles_;
   Resistance resistance_;
   Pose tool_, grip_;
+  Twist rate_;  // of the tool, per second
   bool fresh_ = true;
   Contact contact_;
   Pose asked_;  // where contact_ is

@@ -147,8 +147,6 @@ TEST(SculptStep, ConvergesToTheBalanceThatIsSolvedDenselyAsItsPartsGetSmaller) {
           largest = std::max(largest, std::abs(force));
         });
     const double rms = std::sqrt(square / 400) / largest;
-    RecordProperty("parts" + std::to_string(parts), std::to_string(rms));
-    std::printf("parts %d: force error %.4f of the largest, %.3f N\n", parts, rms, largest);
     EXPECT_LT(rms, 0.8 * last) << parts;
     last = rms;
   }
@@ -257,11 +255,10 @@ TEST(SculptStep, ContactsOfAnyStiffnessStayQuietUnderAnyHand) {
       ASSERT_TRUE(finite(r.on_grip));
       const double force = glm::length(r.on_grip.force);
       // The hand moves by |speed| in a tick: a coupling of 1 N/mm cannot change by much more where nothing jumps.
-      if (k > 10) blow = std::max(blow, std::abs(force - last) - 4 * kTick * glm::length(speed));
+      if (k > 10) blow = std::max(blow, force - last - 4 * kTick * glm::length(speed));
       last = force, touched += step.contact().depth > 0;
     }
     EXPECT_GT(touched, 500) << stiffness;
-    std::printf("stiffness %g: blow %.3f N, touched %d\n", stiffness, blow, touched);
     EXPECT_LT(blow, 0.15) << stiffness;
   }
 }
@@ -281,7 +278,7 @@ TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
         ++held;
         EXPECT_LE(-part.clearance(Assembly(ball), r.tool), r.depth_bound + 1e-9) << k;
       });
-  RecordProperty("held", held);
+  EXPECT_GT(held, 0);
 }
 
 TEST(SculptStep, AsksForNoMemoryOnceItIsWarm) {
@@ -354,6 +351,38 @@ TEST(SculptStep, SettingsNameTheFieldThatIsWrong) {
   EXPECT_EQ(message([](auto& s) { s.coupling.stiffness = 0; }), "coupling.stiffness must be positive");
   EXPECT_EQ(message([](auto& s) { s.budget = NAN; }), "budget must not be negative");
   EXPECT_NE(message([](auto& s) { s.parts = 0; }).find("parts must be a number between"), std::string::npos);
+}
+
+TEST(SculptStep, GivesNoEnergyToAnyHandOnceTheControllerStandsBehindIt) {
+  // A grip without damping that the hand shakes, over stock and part.
+  for (const double constant : {1e-3, 1.0}) {
+    Volume volume = block(0.4);
+    const Tool ball = cutters::ball(6, 30);
+    const Collider part(box({8, 8, -6}, {32, 32, -2}), {}, {.spacing = 0.2, .stiffness = 100});
+    MoveCarver carver(volume, ball, {.tolerance = 0.02, .removal_constant = constant});
+    SculptSettings settings;
+    settings.coupling.stiffness = 20;
+    SculptStep step(settings, ball, &carver, &part);
+    Passivity passivity{PassivitySettings{}};
+    stress::Random random(4);
+    Vec3 x(20, 20, 0.5), v(0), hand(0);
+    step.place({x, kUp});
+    long double delivered = 0;
+    Wrench held;
+    double stiffest = 0;
+    for (int k = 0; k < 10'000; ++k) {
+      if (k % 64 == 0) hand = random.uniform(0, 1.5) * random.direction();
+      const Vec3 push = hand - 1e-3 * v - 0.05 * (x - Vec3(20, 20, -2));
+      const Vec3 a = (held.force + push) / 1.5e-4, way = kTick * v + 0.5 * kTick * kTick * a;
+      for (int i = 0; i < 3; ++i) delivered += static_cast<long double>(held.force[i]) * way[i];
+      x += way, v += kTick * a;
+      passivity.observe(held, {way, {}}, kTick);
+      held = passivity.control(step.step({x, kUp}, {v, {}}, kTick).on_grip, {});
+      stiffest = std::max(stiffest, glm::length(held.force));
+      ASSERT_LE(delivered, PassivitySettings{}.reserve + 1e-9L) << constant << ", " << k;
+    }
+    EXPECT_GT(stiffest, 0.5) << constant;
+  }
 }
 
 }  // namespace
