@@ -94,7 +94,7 @@ SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCar
 
 void SculptStep::place(const Pose& pose) {
   tool_ = grip_ = pose;
-  rate_ = {};
+  rate_ = {}, slowing_ = {};
   fresh_ = true, touching_ = false, bound_ = 0;
   resistance_.forget();
 }
@@ -117,6 +117,7 @@ Twist SculptStep::balanced(const Part& part) const {
     const Wrench contact{contact_.force, contact_.torque};
     const Twist from_asked = way_between(tool_, asked_);
     balance.add_contact(contact + times(contact_.stiffness, from_asked), contact_.stiffness);
+    balance.add_contact({}, slowing_);
     const Twist kept = balance.solve();
     // What is touched pushes and does not pull: where the hand lifts the tool off, the tool goes no further with it
     // than where it stops to push, unless it is free there.
@@ -129,7 +130,7 @@ Twist SculptStep::balanced(const Part& part) const {
     else if (off > 0)
       way = kept - held / (held - off) * (kept - way);
   }
-  return within(way, part.most);
+  return way;
 }
 
 /// Asks what is touched at the end of that way; false where too much of the answer is missing.
@@ -137,12 +138,17 @@ bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
   asked_ = moved(tool_, way);
   obstacles_->query(assembly_, asked_, part.budget, contact_);
   touching_ = contact_.depth > 0;
+  // Dexels come into a tool one by one, so between two of them no pose balances. What resisted lately slows the tool
+  // down, along the same directions, and it stays there instead of going to and fro.
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j)
+      slowing_[i][j] = touching_ ? 0.75 * slowing_[i][j] + 0.25 * contact_.stiffness[i][j] : 0;
   ++result.queries;
   return contact_.missed_depth_bound <= settings_.missed;
 }
 
 Twist SculptStep::advance(const Part& part, Result& result) {
-  Twist way = balanced(part);
+  Twist way = within(balanced(part), part.most);
   if (!obstacles_) return way;
   const auto size = [&](const Twist& w) { return glm::length(w.linear) + glm::length(w.angular) * assembly_.reach(); };
   for (int k = 0; k < settings_.queries; ++k) {
@@ -151,7 +157,11 @@ Twist SculptStep::advance(const Part& part, Result& result) {
       return {};
     }
     const Twist before = way;
-    way = balanced(part);
+    if (touching_) {
+      // From where it was asked about as far again, and out of what was found there.
+      const Bounds most{part.most.linear + contact_.depth, part.most.angular + contact_.depth / assembly_.max_radius()};
+      way = before + within(balanced(part) - before, most);
+    }
     const double change = size(way - before);
     // A distance changes by no more than the tool's points move.
     bound_ = contact_.depth + contact_.missed_depth_bound + change;

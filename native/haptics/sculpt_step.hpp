@@ -82,6 +82,7 @@ class SculptStep {
   Contact contact_;
   Pose asked_;  // where contact_ is
   bool touching_ = false;
+  ContactStiffness slowing_{};
   double bound_ = 0;        // of the depth at tool_
   double cut_seconds_ = 0;  // of the last cut, by the clock
 };

@@ -30,6 +30,7 @@ struct Twist {
 
   double operator[](int k) const { return k < 3 ? linear[k] : angular[k - 3]; }
   double& operator[](int k) { return k < 3 ? linear[k] : angular[k - 3]; }
+  friend Twist operator+(const Twist& a, const Twist& b) { return {a.linear + b.linear, a.angular + b.angular}; }
   friend Twist operator-(const Twist& a, const Twist& b) { return {a.linear - b.linear, a.angular - b.angular}; }
   friend Twist operator*(double s, const Twist& a) { return {s * a.linear, s * a.angular}; }
 };
