@@ -1,6 +1,7 @@
 // riffler._core.bench: what `riffler bench` measures with.
 #include "bench/capsule_loop.hpp"
 #include "bench/contact_run.hpp"
+#include "bench/haptic_run.hpp"
 #include "bench/mesh_distance.hpp"
 #include "bench/scenes.hpp"
 #include "bench/sweep_error.hpp"
@@ -96,6 +97,26 @@ void bind_contact(py::module_& m) {
 and proven to be the most; at most ``gap`` apart, unless that takes more than a million triangles.)");
 }
 
+py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts, double memory,
+                    const std::optional<double>& budget, int period) {
+  bench::HapticOptions options;
+  options.scene = scene, options.pitch = pitch, options.steps = steps, options.parts = parts, options.memory = memory;
+  options.budget = budget, options.period = period;
+  bench::HapticRun run;
+  {
+    const py::gil_scoped_release release;
+    run = bench::haptic_run(options);
+  }
+  const auto rows = [](const std::vector<Vec3>& all) {
+    std::vector<std::array<double, 3>> out;
+    for (const Vec3& v : all) out.push_back({v.x, v.y, v.z});
+    return take<double>(std::move(out), 3);
+  };
+  return py::dict(py::arg("seconds") = take<double>(std::move(run.seconds)), py::arg("force") = rows(run.force),
+                  py::arg("grip") = rows(run.grip), py::arg("removed") = run.removed,
+                  py::arg("touching") = run.touching, py::arg("held") = run.held);
+}
+
 py::dict mesh_stress(std::uint64_t volumes, std::uint64_t seed, const py::object& progress) {
   stress::MeshOptions options;
   options.seed = seed;
@@ -138,6 +159,12 @@ or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many
   m.def("mesh_distances", &mesh_distances, py::arg("points"), py::arg("mesh"),
         "Distance (n,) of points from a mesh, mm, by a search of its own; for points that are close to it.");
   bind_contact(m);
+  m.def(
+      "haptic_run", &haptic_run, py::arg("scene"), py::arg("pitch") = 0.1, py::arg("steps") = 600, py::arg("parts") = 1,
+      py::arg("memory") = 0.2, py::arg("budget") = py::none(), py::arg("period") = 1,
+      R"(A stroke of the haptic step (native/bench/haptic_run.hpp): a dict of ``seconds`` of processor time of every step,
+``force`` (n, 3) N on the hand and ``grip`` (n, 3) mm at every ms, mm³ ``removed``, and the shares of steps ``touching``
+and ``held`` for want of time. ``period`` above 1: a step every so many ms and straight lines between.)");
   m.def(
       "mesh_stress", &mesh_stress, py::arg("volumes"), py::arg("seed") = 1, py::arg("progress") = py::none(),
       R"(Meshes random volumes from the degenerate limits and checks each mesh: a dict of ``scenes`` (what was meshed),

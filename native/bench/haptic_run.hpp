@@ -1,0 +1,37 @@
+// Strokes of the haptic step: its processor time, and what the hand feels.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geom/vec.hpp"
+
+namespace riffler::bench {
+
+struct HapticOptions {
+  /// "cut": a Ø20 ball, sunk to its centre, 0.5 mm a step, whose turns overlap. "wave": a Ø8 ball that a hand moves
+  /// into a block and out of it, at up to 40 mm/s. "trace": COL's ball over its part of 200 000 triangles, pressed 1 mm
+  /// below it, 0.05 mm a step. "fixture": the same past a block of dexels, which its holder meets.
+  std::string scene = "cut";
+  double pitch = 0.1;  ///< mm, of the stock or the fixture
+  int steps = 600;     ///< ms of the stroke
+  int parts = 1, queries = 2;
+  double memory = 0.2;             ///< mm
+  std::optional<double> budget{};  ///< s
+  /// Steps are made every so many ms, and the force between them is the straight line between the last two where this
+  /// is above 1: the source's scheme is 10.
+  int period = 1;
+};
+
+struct HapticRun {
+  std::vector<double> seconds;    ///< of processor time, of every step that was made
+  std::vector<Vec3> force, grip;  ///< N, mm: at every ms
+  double removed = 0;             ///< mm³
+  double touching = 0, held = 0;  ///< shares of the steps
+};
+
+/// std::invalid_argument for a scene that there is not.
+HapticRun haptic_run(const HapticOptions& options);
+
+}  // namespace riffler::bench
