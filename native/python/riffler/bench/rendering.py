@@ -44,8 +44,8 @@ def times(out: Report, settings: Settings) -> None:
             force = np.linalg.norm(run["force"], axis=1)
             out.check(bool(np.isfinite(force).all() and force.max() > 0), f"{scene}: no force was felt")
     table.notes.append(
-        "Cut: a Ø20 ball sunk to its centre, 0.5 mm a step. Wave: a Ø8 ball in and out of a block. Trace: COL's ball over "
-        "199 712 triangles, pressed 1 mm below them. Fixture: the same, the holder past a block of dexels of that pitch."
+        "Cut: a Ø20 ball sunk to its centre, 0.5 mm a step. Wave: a Ø8 ball in and out of a block. Trace: COL's "
+        "ball over 199 712 triangles, pressed 1 mm below them. Fixture: the same, the holder past dexels of that pitch."
     )
 
 
@@ -71,9 +71,9 @@ def errors(out: Report, settings: Settings) -> None:
         table.row(scheme=name, mean_s=float(np.mean(run["seconds"])), **compared(run, dense))
     out.check(table.rows[1]["rms"] < table.rows[-1]["rms"], "1000 Hz is no better than 100 Hz, interpolated")
     table.notes.append(
-        "In shares of the largest force. Late by: the shift of the small steps' force that comes nearest. The area that "
-        "the cutter meets is learnt over 0.2 mm of way, by small steps over 0.05 mm; native/tests/haptics compares with "
-        "an independent integration."
+        "In shares of the largest force. Late by: the shift of the small steps' force that comes nearest. The area "
+        "that the cutter meets is learnt over 0.2 mm of way, by small steps over 0.05 mm; native/tests/haptics "
+        "compares with an independent integration."
     )
 
 
