@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kTick = 1e-3;
 constexpr int kSquares = 316;
+const Vec3 kLeaning = glm::normalize(Vec3(0.1, 0.05, 1));
 
 double now() {
   timespec t{};
@@ -67,7 +68,7 @@ Scene trace(double pitch, bool fixture) {
   s.collider = std::make_unique<Collider>(part, std::move(fixtures));
   s.grip = [part](double t) {
     const double x = 20 + 50 * t, y = 55 + 3 * std::sin(5 * t);
-    return Pose{{x, y, valley_height(part, kSquares, x, y) - 1}, {0, 0, 1}};
+    return Pose{{x, y, valley_height(part, kSquares, x, y) - 1}, kLeaning};
   };
   return s;
 }

@@ -17,7 +17,7 @@ struct HapticOptions {
   double pitch = 0.1;  ///< mm, of the stock or the fixture
   int steps = 600;     ///< ms of the stroke
   int parts = 1, queries = 2;
-  double memory = 0.2;             ///< mm
+  double memory = 0.05;            ///< mm
   std::optional<double> budget{};  ///< s
   /// Steps are made every so many ms, and the force between them is the straight line between the last two where this
   /// is above 1: the source's scheme is 10.

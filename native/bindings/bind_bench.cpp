@@ -161,7 +161,7 @@ or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many
   bind_contact(m);
   m.def(
       "haptic_run", &haptic_run, py::arg("scene"), py::arg("pitch") = 0.1, py::arg("steps") = 600, py::arg("parts") = 1,
-      py::arg("memory") = 0.2, py::arg("budget") = py::none(), py::arg("period") = 1,
+      py::arg("memory") = 0.05, py::arg("budget") = py::none(), py::arg("period") = 1,
       R"(A stroke of the haptic step (native/bench/haptic_run.hpp): a dict of ``seconds`` of processor time of every step,
 ``force`` (n, 3) N on the hand and ``grip`` (n, 3) mm at every ms, mm³ ``removed``, and the shares of steps ``touching``
 and ``held`` for want of time. ``period`` above 1: a step every so many ms and straight lines between.)");

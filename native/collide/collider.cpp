@@ -16,6 +16,8 @@ namespace riffler {
 
 namespace {
 
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
 void check(const Collider::Settings& s) {
   const auto check_one = [](double x, const char* name) {
     if (!std::isfinite(x) || x < 0)
@@ -47,7 +49,7 @@ struct Collider::Data {
   Data(const Mesh& mesh, const Settings& s) : part(mesh), points(part, s.spacing), settings(s) {}
 
   NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
-                              Counts& counts, double enough = -std::numeric_limits<double>::infinity()) const;
+                              Counts& counts, double enough = kNone, double loose = 0) const;
 };
 
 Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings) {
@@ -67,10 +69,10 @@ Collider& Collider::operator=(Collider&&) noexcept = default;
 
 /// The least distance from the part, or from part and fixtures.
 NearestSearch::Found Collider::Data::search(const Assembly& assembly, const ToolFrame& frame, bool all,
-                                            Deadline deadline, Counts& counts, double enough) const {
+                                            Deadline deadline, Counts& counts, double enough, double loose) const {
   const std::span<const Surface* const> some(surfaces.data(), all ? surfaces.size() : 1);
   NearestSearch search(assembly, frame);
-  search.enough(enough);
+  search.enough(enough), search.loose(loose);
   NearestSearch::Found found = search(some, deadline, counts);
   if (!all) return found;
   for (std::size_t i = 0; i < fixtures.size(); ++i) {
@@ -116,17 +118,18 @@ Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optiona
 Contact Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget,
                         Counts& counts) const {
   Contact out;
-  query(assembly, pose, budget, counts, out);
+  query(assembly, pose, budget, counts, out, 0);
   return out;
 }
 
-void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Contact& contact) const {
+void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Contact& contact,
+                     double loose) const {
   Counts counts;
-  query(assembly, pose, budget, counts, contact);
+  query(assembly, pose, budget, counts, contact, loose);
 }
 
 void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts,
-                     Contact& out) const {
+                     Contact& out, double loose) const {
   // Most of a budget is for the depth: what is not summed of the force is taken from coarser points.
   const auto until = [start = Deadline::Clock::now(), &budget](double share) {
     return budget ? Deadline(start + std::chrono::duration_cast<Deadline::Clock::duration>(
@@ -134,7 +137,7 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
                   : Deadline();
   };
   const ToolFrame frame(pose);
-  const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), counts);
+  const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), counts, kNone, loose);
   out.force = out.torque = Vec3(0), out.stiffness = {};
   out.points.clear(), out.touches.clear();
   out.depth = std::max(0.0, -found.least.distance), out.checked = found.checked;

@@ -39,8 +39,11 @@ class Collider {
   /// same.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget = {}) const;
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts) const;
-  /// Writes over `contact`: asked again and again by one thread, it soon asks the system for no memory.
-  void query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Contact& contact) const;
+  /// Writes over `contact`: asked again and again by one thread, it soon asks the system for no memory. The depth may
+  /// be less than the true one by `loose` mm, which is part of what may have been missed: where a side lies flat on a
+  /// wall, that spares most of the search. The force is the same.
+  void query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Contact& contact,
+             double loose = 0) const;
 
   /// Least signed distance between the part's surface and the union of cutter, shank and holder; negative where they
   /// overlap, to the union's outer surface. mm, exact to 1e-9 or rounding; to 1e-3 where
@@ -74,8 +77,8 @@ class Collider {
   std::size_t fixtures() const;
 
  private:
-  void query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts,
-             Contact& out) const;
+  void query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts, Contact& out,
+             double loose) const;
 
   struct Data;
   std::unique_ptr<Data> data_;

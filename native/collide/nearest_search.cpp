@@ -64,7 +64,7 @@ NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> s
       if (root.radius[k] >= 0) size = std::max(size, glm::length(root.sphere(k).centre) + root.radius[k]);
     heap_.push_back({-std::numeric_limits<double>::infinity(), 0, static_cast<std::uint16_t>(s), Entry::Group});
   }
-  slack_ = TriangleSearch::slack(size);
+  slack_ = std::max(TriangleSearch::slack(size), loose_);
   const std::size_t before = counts.triangles;
   while (!heap_.empty() && heap_.front().low < triangles_.least().distance - slack_ && !deadline.passed() &&
          triangles_.least().distance >= enough_) {

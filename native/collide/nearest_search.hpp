@@ -19,7 +19,7 @@ class NearestSearch {
     TriangleSearch::Least least;
     std::size_t surface = 0;  ///< its index
     double low;               ///< no point is nearer; least.distance where not cut short
-    double slack;             ///< rounding, and what was not looked for: 1e-10 mm
+    double slack;             ///< rounding, and what was not looked for: 1e-10 mm, or as `loose` allows
     double checked;           ///< triangles tested, as a share of those that could matter
   };
 
@@ -27,6 +27,8 @@ class NearestSearch {
 
   /// Ends at the first place with less than this, which need not be the least.
   void enough(double distance) { enough_ = distance, triangles_.enough(distance); }
+  /// A place that is nearer by less than this need not be found, mm: part of the slack.
+  void loose(double by) { loose_ = by, triangles_.loose(by); }
   Found operator()(std::span<const Surface* const> surfaces, Deadline deadline, Counts& counts);
 
  private:
@@ -51,7 +53,7 @@ class NearestSearch {
   const Assembly& assembly_;
   const ToolFrame& frame_;
   TriangleSearch triangles_;
-  double limit_ = std::numeric_limits<double>::infinity(), enough_ = -limit_, slack_;
+  double limit_ = std::numeric_limits<double>::infinity(), enough_ = -limit_, slack_, loose_ = 0;
   BlockVector<Entry> heap_;
   std::size_t best_surface_ = 0;
 };

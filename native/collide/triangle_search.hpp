@@ -43,6 +43,8 @@ class TriangleSearch {
   void search(const Corners& t, double low, Deadline& deadline);
   /// A search may end at a place with less than this, without proof that it is the least.
   void enough(double distance) { enough_ = distance; }
+  /// Places that are lower by less than this need not be found, mm.
+  void loose(double by) { loose_ = by; }
 
   /// No place on any triangle is lower than this: the least, or less where kMostCells or the time did not suffice. The
   /// first happens deep in a tool where three of its surfaces are equally near.
@@ -93,6 +95,7 @@ class TriangleSearch {
   Least least_;
   BlockVector<Cell> heap_;
   std::size_t cells_ = 0;
+  double loose_ = 0;
   double left_ = std::numeric_limits<double>::infinity(), enough_ = -left_;
 };
 

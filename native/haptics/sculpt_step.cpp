@@ -136,7 +136,7 @@ Twist SculptStep::balanced(const Part& part) const {
 /// Asks what is touched at the end of that way; false where too much of the answer is missing.
 bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
   asked_ = moved(tool_, way);
-  obstacles_->query(assembly_, asked_, part.budget, contact_);
+  obstacles_->query(assembly_, asked_, part.budget, contact_, 0.1 * settings_.missed);
   touching_ = contact_.depth > 0;
   // Dexels come into a tool one by one, so between two of them no pose balances. What resisted lately slows the tool
   // down, along the same directions, and it stays there instead of going to and fro.
