@@ -18,15 +18,6 @@ struct WorkspaceSettings {
   void validate() const;
 };
 
-/// What the grip's velocity does to a wrench on the hand besides: weight and friction that the device makes up for
-/// (pen/motors.hpp), called once a tick from the thread of the device. Must not wait or allocate.
-class Compensation {
- public:
-  virtual ~Compensation() = default;
-  /// About the grip's point, frame of the grip's poses.
-  virtual Wrench at(const Pose& grip, const Twist& twist) const noexcept = 0;
-};
-
 /// The tool's target follows the grip, turned and scaled about a pair of poses that belong together. Whatever is
 /// changed makes the last grip and the last target that pair, so the target never jumps: not when the clutch is pressed
 /// or let go, not with the scale, not with the view. While the clutch is pressed the target stands still; grip and

@@ -153,6 +153,39 @@ TEST(Collider, BoundOfWhatABudgetMissedIsNeverViolated) {
   EXPECT_GT(cut_short, 100);
 }
 
+TEST(Collider, ALooseDepthIsWithinItsBoundAndTheForceIsTheSame) {
+  const Collider collider(wavy(120, 60));
+  const Assembly assembly(held(cutters::ball(6, 20)));
+  Random random(6);
+  Contact loose;
+  for (int n = 0; n < 300; ++n) {
+    const Pose pose = tilted({random.uniform(5, 55), random.uniform(5, 55), random.uniform(0, 6)}, random, 0.6);
+    const Contact full = collider.query(assembly, pose);
+    collider.query(assembly, pose, {}, loose, 0.01);
+    ASSERT_LE(full.depth, loose.depth + loose.missed_depth_bound);
+    ASSERT_LE(loose.depth, full.depth + 1e-9);
+    ASSERT_LE(loose.missed_depth_bound, 0.01 + 1e-3);
+    if (loose.depth > 0) {
+      ASSERT_EQ(loose.force, full.force);
+    }
+  }
+}
+
+TEST(Collider, StiffnessIsTheDerivativeOfForceAndTorque) {
+  // On a plane the normals are the same for tool and part as far as the ball is shallow.
+  const Collider collider(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.05, .stiffness = 3});
+  const Assembly ball(cutters::ball(20, 30));
+  const Pose pose{{0.3, -0.2, -0.1}, {0, 0, 1}};
+  const Contact at = collider.query(ball, pose);
+  const double e = 1e-3;
+  const Contact up = collider.query(ball, {pose.tip + Vec3(0, 0, e), pose.axis});
+  const Contact down = collider.query(ball, {pose.tip - Vec3(0, 0, e), pose.axis});
+  EXPECT_NEAR(at.stiffness[2][2], (down.force.z - up.force.z) / (2 * e), 0.01 * at.stiffness[2][2]);
+  EXPECT_NEAR(at.stiffness[0][0], 0, 1e-9);
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) EXPECT_DOUBLE_EQ(at.stiffness[i][j], at.stiffness[j][i]);
+}
+
 /// ∫ depth n dA by very many points of a fine grid over each triangle.
 Vec3 dense_force(const Mesh& mesh, const Outline& outline, const Pose& pose, int n) {
   Vec3 sum(0);
