@@ -107,6 +107,11 @@ void Safety::let_go(const Observation& now) {
   apply(now.dead_man ? ForceEvent::Press : ForceEvent::Release);
 }
 
+void Safety::interrupt() {
+  placed_ = false;
+  apply(ForceEvent::Release);
+}
+
 /// Up along the ramp, down at once to what freshness leaves.
 void Safety::move_gain(double dt, double freshness) {
   cause_ = Cause::None;

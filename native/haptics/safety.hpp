@@ -87,6 +87,10 @@ class Safety {
   /// Clears a trip that does not heal by itself; the device must report itself homed again.
   void reset() { apply(ForceEvent::Reset); }
 
+  /// The tick to come has none before it: nobody watched the hand meanwhile, so where it was is no measure of where it
+  /// may be, and the force begins with the ramp. Trips stay.
+  void interrupt();
+
   ForceState state() const { return state_; }
   double gain() const { return gain_; }
   /// Of the last trip or stop; None once force is let through again.

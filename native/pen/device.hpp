@@ -1,6 +1,7 @@
 // One interface for everything that a hand can hold: pens with motors, pucks, recordings, tablets, mice.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "haptics/states.hpp"
@@ -49,6 +50,15 @@ class Pen {
   /// for 20 ms: whoever pushes goes on asking. By one thread; never waits. Ignored, and the answer says why, where the
   /// device cannot push.
   virtual PushAnswer push(const Wrench& wrench) noexcept;
+
+  /// From now on `step` computes the wrench, in the device's own thread, and push() is answered as by a device without
+  /// motors; null gives it back to push(). When this returns, the step before is not called any more. By the thread
+  /// that pushes, not from within a step; waits for one call of the step before at most. False, and nothing changed,
+  /// where the device has no thread of its own.
+  virtual bool set_step(std::shared_ptr<PenStep> step) {
+    static_cast<void>(step);
+    return false;
+  }
 
   /// What lets push() through: it ramps up from the first call on, and is taken away where a check fails. Trips that do
   /// not heal by themselves are cleared by reset(). Any thread.

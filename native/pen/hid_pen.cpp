@@ -4,9 +4,20 @@
 
 namespace riffler {
 
+namespace {
+
+/// A projection on the motors' axes and back leaves some 1e-16 of what was asked for: no motor misses that.
+Vec3 beyond_rounding(const Vec3& missing, const Vec3& asked) {
+  constexpr double kRounding = 1e-12;
+  return glm::length(missing) <= kRounding * glm::length(asked) ? Vec3(0) : missing;
+}
+
+}  // namespace
+
 SafeWrench HeldPush::step(const PenSample& sample, double now, double dt) noexcept {
   const Asked asked = asked_.get();
   const bool fresh = now - asked.time <= kHeld;
+  if (dt == 0) safety_.interrupt();
   if (reset_.exchange(false)) safety_.reset();
   safety_.observe({.dt = dt,
                    .age = now - sample.time,
@@ -22,19 +33,40 @@ SafeWrench HeldPush::step(const PenSample& sample, double now, double dt) noexce
   return safe;
 }
 
+void StepSwitch::set(std::shared_ptr<PenStep> step) {
+  const std::lock_guard lock(mutex_);
+  step_.swap(step);  // its destructor may take its time: it runs when the lock is gone
+  begins_ = true;
+}
+
+SafeWrench StepSwitch::step(const PenSample& sample, double now, double dt) noexcept {
+  const double since = dt > 0 ? missed_ + dt : dt;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  missed_ = lock ? 0 : since;
+  if (!lock) return {};
+  return step_->step(sample, now, std::exchange(begins_, false) ? 0 : since);
+}
+
 HidPen::HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
-               Driver::Open open, std::shared_ptr<PenStep> step, const DriverSettings& settings)
+               Driver::Open open, const DriverSettings& settings)
     : kind_(std::move(kind)),
       model_(std::move(model)),
-      held_(step ? nullptr : std::make_shared<HeldPush>()),
-      driver_(model_, step ? std::move(step) : held_, std::move(transport), std::move(open), settings) {}
+      held_(std::make_shared<HeldPush>()),
+      switch_(std::make_shared<StepSwitch>(held_)),
+      driver_(model_, switch_, std::move(transport), std::move(open), settings) {}
+
+bool HidPen::set_step(std::shared_ptr<PenStep> step) {
+  pushes_ = step == nullptr;
+  switch_->set(step ? std::move(step) : held_);
+  return true;
+}
 
 PushAnswer HidPen::push(const Wrench& wrench) noexcept {
   if (!finite(wrench)) {
-    if (held_) held_->ask({}, now());
+    if (pushes_) held_->ask({}, now());
     return {{}, {}, NotPushed::BadWrench};
   }
-  if (!held_ || !capability().has_force()) return Pen::push(wrench);
+  if (!pushes_ || !capability().has_force()) return Pen::push(wrench);
   const LinkStatus link = status();
   const auto refused = [&](NotPushed reason) { return PushAnswer{{}, wrench, reason}; };
   held_->ask(wrench, now());
@@ -42,8 +74,10 @@ PushAnswer HidPen::push(const Wrench& wrench) noexcept {
   if (!link.sample.powered) return refused(NotPushed::NotPowered);
   if (!link.sample.homed) return refused(NotPushed::NotHomed);
   if (held_->state() == ForceState::Tripped) return refused(NotPushed::Tripped);
-  const Wrench felt = renderable(pushed(capability(), link.sample.pose.axis), wrench), missing = wrench - felt;
-  return {felt, missing, missing == Wrench{} ? NotPushed::None : NotPushed::NoMotors};
+  const Wrench felt = renderable(pushed(capability(), link.sample.pose.axis), wrench);
+  const Wrench missing{beyond_rounding(wrench.force - felt.force, wrench.force),
+                       beyond_rounding(wrench.torque - felt.torque, wrench.torque)};
+  return {wrench - missing, missing, missing == Wrench{} ? NotPushed::None : NotPushed::NoMotors};
 }
 
 }  // namespace riffler

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "haptics/safety.hpp"
@@ -41,26 +42,42 @@ class HeldPush final : public PenStep {
   std::atomic<bool> reset_{false};
 };
 
+/// The step of the driver's thread, which another thread may change at any time. The driver never waits for that one: a
+/// tick in the middle of a change pushes with nothing.
+class StepSwitch final : public PenStep {
+ public:
+  /// Not null.
+  explicit StepSwitch(std::shared_ptr<PenStep> step) : step_(std::move(step)) {}
+
+  /// Not null. The one before is not called after this, and let go by the calling thread.
+  void set(std::shared_ptr<PenStep> step);
+  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
+
+ private:
+  std::mutex mutex_;  // held while a step is called; the driver only tries it
+  std::shared_ptr<PenStep> step_;
+  bool begins_ = true;  // the step has not been called yet
+  double missed_ = 0;   // s, of ticks since its last call; the driver's thread's
+};
+
 class HidPen : public Pen {
  public:
-  /// `transport` is open and checked by the model; `open` finds, opens and checks it again. `step` computes the wrench
-  /// in the driver's thread; without one, push() says it.
+  /// `transport` is open and checked by the model; `open` finds, opens and checks it again.
   HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport, Driver::Open open,
-         std::shared_ptr<PenStep> step = nullptr, const DriverSettings& settings = {});
+         const DriverSettings& settings = {});
 
   std::string kind() const override { return kind_; }
   const DeviceCapability& capability() const noexcept override { return model_->capability(); }
   std::string about() const override { return model_->about(); }
   PenSample newest() const noexcept override { return status().sample; }
   double now() const noexcept override { return steady_seconds(); }
-  /// With a step of its own the device takes nothing from here: all of it is missing.
   PushAnswer push(const Wrench& wrench) noexcept override;
+  bool set_step(std::shared_ptr<PenStep> step) override;
   bool home() noexcept override { return model_->home(); }
-  void reset() noexcept override {
-    if (held_) held_->reset();
-  }
-  ForceState force_state() const noexcept override { return held_ ? held_->state() : ForceState::Off; }
-  Cause cause() const noexcept override { return held_ ? held_->cause() : Cause::None; }
+  /// These three are push()'s, whose trips outlast other steps.
+  void reset() noexcept override { held_->reset(); }
+  ForceState force_state() const noexcept override { return pushes_ ? held_->state() : ForceState::Off; }
+  Cause cause() const noexcept override { return pushes_ ? held_->cause() : Cause::None; }
   LinkStatus status() const noexcept override { return driver_.status(); }
   std::string problem() const override { return driver_.problem(); }
   bool stop() override { return driver_.stop(); }
@@ -68,8 +85,10 @@ class HidPen : public Pen {
  private:
   std::string kind_;
   std::shared_ptr<HidModel> model_;
-  std::shared_ptr<HeldPush> held_;  // null with another step
-  Driver driver_;
+  std::shared_ptr<HeldPush> held_;
+  std::shared_ptr<StepSwitch> switch_;
+  std::atomic<bool> pushes_{true};  // the step is held_
+  Driver driver_;                   // last: its threads use the others
 };
 
 }  // namespace riffler

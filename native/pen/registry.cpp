@@ -85,20 +85,18 @@ const PenFamily* family_named(std::string_view kind) {
   return nullptr;
 }
 
-std::unique_ptr<Pen> open_one(const PenFamily& family, const HidInfo& info, const PenOptions& options,
-                              std::shared_ptr<PenStep> step) {
+std::unique_ptr<Pen> open_one(const PenFamily& family, const HidInfo& info, const PenOptions& options) {
   auto [handle, model] = open_model(family, info, options);
   auto again = [model = model, address = HidAddress::of(info)] { return open_again(*model, address); };
-  return std::make_unique<HidPen>(family.kind, std::move(model), std::move(handle), std::move(again), std::move(step),
-                                  options.driver);
+  return std::make_unique<HidPen>(family.kind, std::move(model), std::move(handle), std::move(again), options.driver);
 }
 
-std::unique_ptr<Pen> open_kind(const PenFamily& family, const PenOptions& options, std::shared_ptr<PenStep> step) {
+std::unique_ptr<Pen> open_kind(const PenFamily& family, const PenOptions& options) {
   std::optional<OpenError> first;
   for (const HidInfo& info : list_hid()) {
     if (!family.claims(info)) continue;
     try {
-      return open_one(family, info, options, step);
+      return open_one(family, info, options);
     } catch (const OpenError& error) {
       if (!first) first = error;
     }
@@ -106,7 +104,7 @@ std::unique_ptr<Pen> open_kind(const PenFamily& family, const PenOptions& option
   throw first.value_or(OpenError(OpenProblem::NoFile, std::string("no ") + family.kind + " is plugged in"));
 }
 
-std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options, std::shared_ptr<PenStep> step) {
+std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options) {
   HidInfo asked;
   asked.path = path;
   for (const HidInfo& info : list_hid()) {
@@ -120,7 +118,7 @@ std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options,
                       info.path + ": " + info.id() +
                           " is a number that many boards have; if it is one of these, open it as \"" + family->kind +
                           "\": " + family->what);
-    return open_one(*family, info, options, std::move(step));
+    return open_one(*family, info, options);
   }
   HidHandle(asked, Sharing::Shared);  // says why
   throw OpenError(OpenProblem::UnknownDevice, asked.path + ": the system does not list it as a HID device");
@@ -161,10 +159,10 @@ std::vector<FoundDevice> find_devices() {
   return out;
 }
 
-std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options, std::shared_ptr<PenStep> step) {
-  if (what == kSimulatedKind) return SimulatedDevice::open({}, std::move(step), options.driver);
-  if (const PenFamily* const family = family_named(what)) return open_kind(*family, options, std::move(step));
-  return open_path(what, options, std::move(step));
+std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options) {
+  if (what == kSimulatedKind) return SimulatedDevice::open({}, options.driver);
+  if (const PenFamily* const family = family_named(what)) return open_kind(*family, options);
+  return open_path(what, options);
 }
 
 }  // namespace riffler

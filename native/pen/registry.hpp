@@ -48,9 +48,8 @@ struct FoundDevice {
 /// Every HID device, and exactly why one does not open. Those that no family claims are not touched.
 std::vector<FoundDevice> find_devices();
 
-/// `what` is a path or a kind: of a kind, the first that opens; "simulated" is one, too, and is always there. `step` as
-/// in HidPen. Throws OpenError; for a kind, of the device that came nearest to opening.
-std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options = {},
-                              std::shared_ptr<PenStep> step = nullptr);
+/// `what` is a path or a kind: of a kind, the first that opens; "simulated" is one, too, and is always there. Throws
+/// OpenError; for a kind, of the device that came nearest to opening.
+std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options = {});
 
 }  // namespace riffler

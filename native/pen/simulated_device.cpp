@@ -39,7 +39,7 @@ struct SimulatedDevice::Hand {
 };
 
 std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
-                                                       std::shared_ptr<PenStep> step, const DriverSettings& driver) {
+                                                       const DriverSettings& driver) {
   auto hand = std::make_shared<Hand>();
   auto pen = std::make_shared<SimulatedPen>(settings);
   hand->curve = hand_on_a_curve(pen->arms().posture().pose);
@@ -55,15 +55,13 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
     model->check(*next);
     return next;
   };
-  return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(std::move(hand), std::move(model), std::move(transport),
-                                                              std::move(again), std::move(step), driver));
+  return std::unique_ptr<SimulatedDevice>(
+      new SimulatedDevice(std::move(hand), std::move(model), std::move(transport), std::move(again), driver));
 }
 
 SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<HidModel> model,
-                                 std::unique_ptr<Transport> transport, Driver::Open open, std::shared_ptr<PenStep> step,
-                                 const DriverSettings& driver)
-    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), std::move(step), driver),
-      hand_(std::move(hand)) {}
+                                 std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver)
+    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver), hand_(std::move(hand)) {}
 
 void SimulatedDevice::aim(const HandWish& wish) {
   HandWish checked = wish;

@@ -13,9 +13,8 @@ inline constexpr const char* kSimulatedWhat = "Riffler's pen without hardware, m
 
 class SimulatedDevice final : public HidPen {
  public:
-  /// Homed. Its hand goes round on a curve (hand_on_a_curve) until it is told where to go. `step` as in HidPen.
+  /// Homed. Its hand goes round on a curve (hand_on_a_curve) until it is told where to go.
   static std::unique_ptr<SimulatedDevice> open(const SimulatedPenSettings& settings = {},
-                                               std::shared_ptr<PenStep> step = nullptr,
                                                const DriverSettings& driver = {});
 
   /// The hand goes there at its own haste, as far as the arms reach; it lets go where the grip is 0. By one thread;
@@ -27,7 +26,7 @@ class SimulatedDevice final : public HidPen {
  private:
   struct Hand;
   SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
-                  Driver::Open open, std::shared_ptr<PenStep> step, const DriverSettings& driver);
+                  Driver::Open open, const DriverSettings& driver);
 
   std::shared_ptr<Hand> hand_;
 };

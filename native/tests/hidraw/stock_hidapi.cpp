@@ -229,7 +229,8 @@ TEST_F(StockHidapi, StreamsAPen) {
 TEST_F(StockHidapi, TheDriversThreadAllocatesNothing) {
   const std::string path = bus->plug(pen_spec());
   const auto step = std::make_shared<CountingStep>();
-  const auto pen = open_pen(path, patient(), step);
+  const auto pen = open_pen(path, patient());
+  pen->set_step(step);
   pen->home();
   FarEnd far(*bus, path);
   for (int k = 1; k <= 1000; ++k) {

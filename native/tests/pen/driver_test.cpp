@@ -95,7 +95,7 @@ std::unique_ptr<HidPen> pen_on(const std::shared_ptr<Plug>& plug) {
   DriverSettings settings;
   settings.silence = 10;  // a busy machine does not make the device go away
   return std::make_unique<HidPen>("test", std::make_shared<ByteModel>(), std::make_unique<PlugTransport>(plug), open,
-                                  nullptr, settings);
+                                  settings);
 }
 
 TEST(Driver, ReadsStepsAndWritesInAThreadOfItsOwn) {
@@ -195,6 +195,92 @@ TEST(HeldPush, NothingPushesWithoutAHome) {
   held.sample.homed = true;
   held.run(1000);
   EXPECT_EQ(held.force, 1);
+}
+
+TEST(HeldPush, AfterAnInterruptionItRampsAgainFromWhereverTheHandIs) {
+  Held held;
+  held.run(1000);
+  held.sample.pose.tip.x += 50;
+  held.push.step(held.sample, held.now, 0);
+  EXPECT_EQ(held.push.state(), ForceState::Ramp);
+  held.run(50);
+  EXPECT_EQ(held.push.cause(), Cause::None);
+  EXPECT_LT(held.force, 0.15);
+}
+
+/// A step that knows when it is called, and by how many.
+class WatchedStep final : public PenStep {
+ public:
+  SafeWrench step(const PenSample&, double, double dt) noexcept override {
+    if (gone) ++late;
+    if (calls++ == 0) first_dt = dt;
+    if (calls == 2) second_dt = dt;
+    if (takes > 0ms) std::this_thread::sleep_for(takes);
+    return {};
+  }
+  std::atomic<bool> gone{false};
+  std::atomic<int> calls{0}, late{0};
+  std::atomic<double> first_dt{-1}, second_dt{-1};
+  std::chrono::milliseconds takes{0};
+};
+
+TEST(Driver, AnotherStepBeginsWithoutTheTimeBeforeIt) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  ASSERT_TRUE(eventually([&] { return pen->newest().sequence > 5; }));
+  for (int k = 0; k < 3; ++k) {
+    const auto step = std::make_shared<WatchedStep>();
+    ASSERT_TRUE(pen->set_step(step));
+    ASSERT_TRUE(eventually([&] { return step->calls >= 2; }));
+    EXPECT_EQ(step->first_dt, 0);
+    EXPECT_GT(step->second_dt, 0);
+  }
+}
+
+TEST(Driver, WithAnotherStepPushIsRefusedAndWithNoneItPushesAgain) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  ASSERT_TRUE(eventually([&] { return pen->newest().sequence > 0; }));
+  const Wrench wrench{{1, 0, 0}, {}};
+  const auto pushes = [&] { return pen->push(wrench).reason == NotPushed::None && pen->status().wrench.force.x > 0; };
+  EXPECT_TRUE(eventually(pushes));
+  const auto step = std::make_shared<WatchedStep>();
+  ASSERT_TRUE(pen->set_step(step));
+  EXPECT_EQ(pen->push(wrench).reason, NotPushed::NoMotors);
+  EXPECT_EQ(pen->push(wrench).missing, wrench);
+  EXPECT_EQ(pen->force_state(), ForceState::Off);
+  EXPECT_TRUE(eventually([&] { return step->calls > 3 && pen->status().wrench == Wrench{}; }));
+  ASSERT_TRUE(pen->set_step(nullptr));
+  EXPECT_EQ(step.use_count(), 1);
+  EXPECT_TRUE(eventually(pushes));
+}
+
+/// Steps that take longer than a tick, a device that goes away and comes back, a driver that is stopped: the setter
+/// always comes back, and what it replaced is not called any more.
+TEST(Driver, AStepThatWasReplacedIsNotCalledWhateverHappensMeanwhile) {
+  const auto plug = std::make_shared<Plug>();
+  auto pen = pen_on(plug);
+  std::vector<std::shared_ptr<WatchedStep>> steps;
+  for (int k = 0; k < 200; ++k) {
+    if (k % 40 == 20) plug->in = false;
+    if (k % 40 == 30) plug->in = true;
+    auto step = std::make_shared<WatchedStep>();
+    if (k % 5 == 0) step->takes = 3ms;
+    pen->set_step(step);
+    if (!steps.empty()) steps.back()->gone = true;
+    steps.push_back(step);
+    if (k % 3 == 0) std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_TRUE(pen->stop());
+  EXPECT_TRUE(pen->set_step(nullptr)) << "nobody calls it, and nobody waits";
+  steps.back()->gone = true;
+  pen.reset();
+  int calls = 0;
+  for (const auto& step : steps) {
+    EXPECT_EQ(step->late, 0);
+    calls += step->calls;
+  }
+  EXPECT_GT(calls, 20);
 }
 
 TEST(Driver, FindsTheDeviceAgain) {

@@ -63,6 +63,23 @@ TEST(SimulatedDevice, PushesTheHandAway) {
   }));
 }
 
+/// A projection on the grip's axes and back, which lie across those of the wrench: rounding is not missing.
+TEST(SimulatedDevice, AWrenchThatItHasMotorsForIsMissingNothing) {
+  const auto pen = SimulatedDevice::open();
+  ASSERT_TRUE(comes_true([&] { return pen->newest().homed && pen->newest().powered; }));
+  EXPECT_TRUE(comes_true([&] { return glm::length(pen->newest().turning) > 0.01; }));
+  for (int k = 1; k < 200; ++k) {
+    const Wrench wrench{{0.1 * k, 0.3, -0.7}, {}};
+    const PushAnswer answer = pen->push(wrench);
+    if (answer.reason == NotPushed::Tripped) continue;
+    EXPECT_EQ(answer.reason, NotPushed::None);
+    EXPECT_EQ(answer.felt, wrench);
+    EXPECT_EQ(answer.missing, Wrench{});
+  }
+  const PushAnswer twist = pen->push({{}, 30.0 * pen->newest().pose.axis});
+  EXPECT_GT(glm::length(twist.missing.torque), 29);
+}
+
 TEST(SimulatedDevice, WishesThatCannotBeAreRefused) {
   const auto pen = SimulatedDevice::open();
   const auto refused = [&](const HandWish& wish) { return test::error_of([&] { pen->aim(wish); }); };
