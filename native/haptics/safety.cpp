@@ -35,7 +35,8 @@ Safety::Finding Safety::check(const Observation& now) const {
   if (!finite(now.pose.tip) || !finite(now.pose.axis) || !finite(now.twist) || !std::isfinite(now.redundancy) ||
       !std::isfinite(now.age))
     return {Cause::NotFinite, 0};
-  if (now.device_fault) return {Cause::DeviceFault, static_cast<double>(now.device_fault)};
+  if (now.device_fault)
+    return {now.device_late ? Cause::DeviceLate : Cause::DeviceFault, static_cast<double>(now.device_fault)};
   // Before it is homed a device has no pose that could be checked.
   if (state_ == ForceState::Homing && !now.homed) return {Cause::None, 0};
   if (!now.homed) return {Cause::NotHomed, 0};

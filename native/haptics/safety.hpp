@@ -56,6 +56,7 @@ struct Observation {
   bool homed = false;         ///< the device knows its pose
   bool dead_man = false;      ///< the switch is held
   unsigned device_fault = 0;  ///< the device's code; 0 is none
+  bool device_late = false;   ///< that fault says nothing against the device: somebody was late
 };
 
 /// A wrench that has passed the gate. The default is zero.

@@ -37,6 +37,7 @@ bool lets_force_through(ForceState state) {
 bool heals(Cause cause) {
   switch (cause) {
     case Cause::BadTime:
+    case Cause::DeviceLate:
     case Cause::Overspeed:
     case Cause::LateTick:
     case Cause::Stale:
@@ -70,6 +71,8 @@ const char* sentence(Cause cause) {
       return "The device's pose or speed was not a number; check its calibration, then reset.";
     case Cause::DeviceFault:
       return "The device reported a fault; see its status, then reset.";
+    case Cause::DeviceLate:
+      return "The device missed the host for a moment, or was late itself; the force comes back when both keep time.";
     case Cause::NotHomed:
       return "The device lost its home position; home it, then reset.";
     case Cause::Redundancy:

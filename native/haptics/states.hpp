@@ -38,6 +38,7 @@ enum class Cause : std::uint8_t {
   BadTime,      ///< value: dt, s
   NotFinite,    ///< of pose, twist, age or redundancy
   DeviceFault,  ///< value: the device's code
+  DeviceLate,   ///< value: the device's code, which only says that host or device was late
   NotHomed,
   Redundancy,  ///< value: mm
   Jump,        ///< value: mm, or rad where the position was steady
@@ -48,7 +49,7 @@ enum class Cause : std::uint8_t {
   Excess,      ///< value: N or N·mm: of what was to be let through; the limits before failed
   NoDeadMan,
 };
-inline constexpr std::size_t kCauses = 13;
+inline constexpr std::size_t kCauses = 14;
 
 /// The state after an event: the one place where states change.
 ForceState next(ForceState state, ForceEvent event);

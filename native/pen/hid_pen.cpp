@@ -26,7 +26,8 @@ SafeWrench HeldPush::step(const PenSample& sample, double now, double dt) noexce
                    .redundancy = sample.stretch,
                    .homed = sample.homed,
                    .dead_man = fresh,
-                   .device_fault = sample.fault});
+                   .device_fault = sample.fault,
+                   .device_late = sample.late});
   const SafeWrench safe = safety_.release(fresh ? asked.wrench : Wrench{});
   state_.store(safety_.state());
   cause_.store(safety_.cause());

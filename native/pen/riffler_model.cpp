@@ -18,6 +18,12 @@ constexpr double kIdle = 0.5;
 /// s by which the pen's clock may differ from ours after a gap, for the pen to have been on power all the time.
 constexpr double kClockError = 0.1;
 
+/// Faults that say nothing against the pen and its pose, only that somebody was late. The firmware counts on in them and
+/// leaves them with the next report that disables, as it leaves all: the difference is made here.
+bool only_late(std::uint8_t fault) {
+  return fault == RIFFLER_PEN_WATCHDOG || fault == RIFFLER_PEN_LATE_STEP;
+}
+
 std::string version_text(const riffler_pen_identity& identity) {
   return std::to_string(identity.major) + "." + std::to_string(identity.minor);
 }
@@ -203,6 +209,7 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.time = now;
   sample_.buttons = report.buttons;
   sample_.fault = report.state == RIFFLER_PEN_FAULT ? report.fault : 0U;
+  sample_.late = sample_.fault != 0 && only_late(report.fault);
   sample_.powered = report.state != RIFFLER_PEN_BOOT && report.state != RIFFLER_PEN_FAULT;
 }
 

@@ -19,6 +19,7 @@ struct PenSample {
       0;                      ///< of the report since the device was opened, those that were lost included; 0: none yet
   std::uint32_t buttons = 0;  ///< bit 0 is button 1
   std::uint32_t fault = 0;    ///< the device's own code; 0 is none
+  bool late = false;          ///< the fault only says that the host or the device was late: it heals
   double stretch = 0;         ///< mm between two measurements of one length; 0 where nothing is measured twice
   /// What the hand felt of the motors when the report was sent, about the grip's pivot, as the device says; zero where
   /// it does not. A wrench comes to the motors frames after the step that asked for it, behind the device's own ramps

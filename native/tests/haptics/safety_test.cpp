@@ -104,6 +104,7 @@ std::vector<Fault> faults() {
           {Cause::NotFinite, [](Observation& o) { o.age = NAN; }, 0},
           {Cause::NotFinite, [](Observation& o) { o.redundancy = NAN; }, 0},
           {Cause::DeviceFault, [](Observation& o) { o.device_fault = 7; }, 7},
+          {Cause::DeviceLate, [](Observation& o) { o.device_fault = 13, o.device_late = true; }, 13},
           {Cause::NotHomed, [](Observation& o) { o.homed = false; }, 0},
           {Cause::Redundancy, [](Observation& o) { o.redundancy = -0.6; }, -0.6},
           {Cause::Jump, [](Observation& o) { o.pose.tip = {0, 0, 5}; }, 5},

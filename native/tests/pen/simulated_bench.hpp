@@ -27,7 +27,8 @@ class GatedStep final : public PenStep {
                     .redundancy = sample.stretch,
                     .homed = sample.homed,
                     .dead_man = true,
-                    .device_fault = sample.fault});
+                    .device_fault = sample.fault,
+                    .device_late = sample.late});
     const SafeWrench safe = safety.release(law(sample, now, dt));
     // A tick that finds a fault pushes with nothing.
     if (safety.state() == ForceState::Tripped && !(safe.wrench() == Wrench{})) ++pushed_while_tripped;

@@ -35,14 +35,14 @@ TEST(SimulatedFault, LateTicksFadeTheForceAndFromTheWatchdogOnTakeItAway) {
       EXPECT_EQ(least, 0);
       EXPECT_LE(t.last_pushed, t.injected + kWatchdog + 2e-3);  // two reports were on the way
       EXPECT_EQ(t.faults, std::set<int>{RIFFLER_PEN_WATCHDOG});
-      EXPECT_TRUE(t.tripped_by(Cause::DeviceFault));  // the pen's word comes before the host's own finding
+      EXPECT_TRUE(t.tripped_by(Cause::DeviceLate));  // the pen's word comes before the host's own finding
     } else if (late > 0.003) {
       EXPECT_LT(least, t.newtons * (1.01 - (late - 0.003) / 0.017));
       EXPECT_EQ(t.bench.pen->firmware().fault_count, 0);
     } else {
       EXPECT_GT(least, 0.99 * t.newtons);
     }
-    t.comes_back();
+    t.heals_by_itself();
   }
 }
 
@@ -55,9 +55,9 @@ TEST(SimulatedFault, AStepThatAlwaysOverrunsPushesWithNothing) {
     return Wrench{{0, 0, t.newtons}, {}};
   };
   t.goes_dead(kWatchdog + 2e-3, 1);
-  EXPECT_TRUE(t.tripped_by(Cause::DeviceFault));
+  EXPECT_TRUE(t.tripped_by(Cause::DeviceLate));
   t.bench.step.law = [&](const PenSample&, double, double) { return Wrench{{0, 0, t.newtons}, {}}; };
-  t.comes_back();
+  t.heals_by_itself();
 }
 
 TEST(SimulatedFault, AHostThatDiesIsMissedWithinTheWatchdogsTime) {
@@ -68,7 +68,7 @@ TEST(SimulatedFault, AHostThatDiesIsMissedWithinTheWatchdogsTime) {
   EXPECT_GE(t.last_pushed, t.injected + 0.015);  // and not much before
   EXPECT_EQ(t.bench.pen->firmware().fault, RIFFLER_PEN_WATCHDOG);
   EXPECT_EQ(t.current, 0);
-  t.comes_back();
+  t.heals_by_itself();
 }
 
 TEST(SimulatedFault, AProcessorThatStandsStillIsSwitchedOffByTheBoard) {
@@ -79,7 +79,7 @@ TEST(SimulatedFault, AProcessorThatStandsStillIsSwitchedOffByTheBoard) {
   EXPECT_TRUE(t.tripped_by(Cause::Stale) || t.tripped_by(Cause::LateTick));
   t.bench.run(0.05);
   EXPECT_GT(t.bench.pen->firmware().fault_count, 0);  // late step
-  t.comes_back();
+  t.heals_by_itself();
 }
 
 TEST(SimulatedFault, AFirmwareThatIsLateWhileItPushesFindsItItself) {
@@ -88,7 +88,7 @@ TEST(SimulatedFault, AFirmwareThatIsLateWhileItPushesFindsItItself) {
   t.bench.pen->halt(7'000);
   t.goes_dead(0.0075, 0.1);
   EXPECT_EQ(t.bench.pen->firmware().fault_count, 1);
-  t.comes_back();
+  t.heals_by_itself();
 }
 
 /// --- The cable. --------------------------------------------------------------------------------------------------
@@ -111,9 +111,9 @@ TEST(SimulatedFault, AllReportsLostOnTheWayToThePen) {
   t.start();
   t.bench.pen->cable().set({.lost_out = 1});
   t.goes_dead(kWatchdog + 2e-3);
-  EXPECT_TRUE(t.tripped_by(Cause::DeviceFault));
+  EXPECT_TRUE(t.tripped_by(Cause::DeviceLate));
   t.bench.pen->cable().set({});
-  t.comes_back();
+  t.heals_by_itself();
 }
 
 TEST(SimulatedFault, ReportsThatAreLostDoubledMergedAndLateNowAndThenChangeNothing) {

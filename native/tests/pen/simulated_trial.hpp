@@ -77,6 +77,12 @@ struct Trial {
     EXPECT_LE(steepest, 0.05 * full) << "faster than the ramp";
     EXPECT_EQ(bench.step.pushed_while_tripped, 0);
   }
+  /// The same, and nobody has to look: somebody was late, and is not any more.
+  void heals_by_itself() {
+    bench.run(0.1);
+    EXPECT_TRUE(heals(cause())) << sentence(cause());
+    comes_back();
+  }
   Cause cause() const { return bench.step.safety.cause(); }
   bool tripped_by(Cause cause) {
     std::array<Trip, 64> trips{};
