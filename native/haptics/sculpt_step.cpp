@@ -171,7 +171,7 @@ Twist SculptStep::advance(const Part& part, Result& result) {
 }
 
 void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result) {
-  if (!stock_ || way.linear + way.angular == Vec3(0)) return;
+  if (!stock_ || (to.tip == tool_.tip && to.axis == tool_.axis)) return;
   const Clock::time_point start = Clock::now();
   const MoveCarver::Taken taken = stock_->move(tool_, to, dt);
   if (settings_.budget) cut_seconds_ = seconds_since(start);
@@ -192,7 +192,7 @@ Bounds SculptStep::most_of(const Pose& grip, double share, double dt) const {
           bound(hand.angular, own.angular, settings_.rest.angular, settings_.most.angular)};
 }
 
-SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double dt) {
+SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double dt, bool cutting) {
   Result result;
   result.tool = tool_, result.depth_bound = bound_;
   if (!usable(grip) || !finite(twist) || !(dt > 0) || !std::isfinite(dt)) return result;
@@ -208,7 +208,10 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
     }
     const Twist way = advance(part, result);
     const Pose to = moved(tool_, way);
-    cut(to, way, part.dt, result);
+    if (cutting)
+      cut(to, way, part.dt, result);
+    else
+      fresh_ = true, resistance_.forget();
     tool_ = to, rate_ = 1 / part.dt * way, gone += share;
     const double each = seconds_since(start) / k;
     if (settings_.budget && k < parts - 1 && seconds_since(start) + 2 * each > *settings_.budget)

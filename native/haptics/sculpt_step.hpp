@@ -55,7 +55,8 @@ class SculptStep {
 
   /// The grip, in the frame of the part (Workspace), went here in dt s, with this twist about its point at the end. The
   /// first call after `place` starts from there. dt ≤ 0 or numbers that are not finite move nothing and give no force.
-  Result step(const Pose& grip, const Twist& twist, double dt);
+  /// Without `cutting` the stock is as air.
+  Result step(const Pose& grip, const Twist& twist, double dt, bool cutting = true);
 
   const Pose& tool() const { return tool_; }
   /// What touched the tool at the last query.

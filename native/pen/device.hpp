@@ -36,6 +36,8 @@ class Pen {
   virtual std::string kind() const = 0;
   /// Which coordinates are sensed and which can push. Does not change.
   virtual const DeviceCapability& capability() const noexcept = 0;
+  /// Its poses are where the tool shall be, and not where some grip is on a desk.
+  virtual bool in_part_frame() const noexcept { return false; }
   /// Of the device itself, for people.
   virtual std::string about() const { return {}; }
 

@@ -24,6 +24,7 @@ class PlaybackPen final : public Pen {
   explicit PlaybackPen(std::vector<RecordedStroke> strokes, double speed = 1, std::function<double()> clock = nullptr);
 
   std::string kind() const override { return "recording"; }
+  bool in_part_frame() const noexcept override { return true; }
   const DeviceCapability& capability() const noexcept override { return capability_; }
   std::string about() const override;
   /// Begins with the first call.

@@ -42,6 +42,7 @@ class PointerPen final : public Pen {
   bool give(const PointerEvent& event) noexcept;
 
   std::string kind() const override { return kind_ == Kind::Tablet ? "tablet" : "mouse"; }
+  bool in_part_frame() const noexcept override { return true; }
   const DeviceCapability& capability() const noexcept override { return capability_; }
   PenSample newest() const noexcept override { return newest_.get(); }
   /// The time of the last event: between events a pointer stands still.

@@ -205,6 +205,7 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   MotorTorques applied{};
   for (std::size_t k = 0; k < kPenChannels; ++k)
     applied[k] = 1e-3 * report.applied[k] * geometry_.channels[k].torque_constant;
+  sample_.says_applied = true;
   sample_.applied = felt_wrench(kinematics_, posture_, joint_torques(geometry_, applied));
   sample_.time = now;
   sample_.buttons = report.buttons;

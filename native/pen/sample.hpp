@@ -21,10 +21,11 @@ struct PenSample {
   std::uint32_t fault = 0;    ///< the device's own code; 0 is none
   bool late = false;          ///< the fault only says that the host or the device was late: it heals
   double stretch = 0;         ///< mm between two measurements of one length; 0 where nothing is measured twice
-  /// What the hand felt of the motors when the report was sent, about the grip's pivot, as the device says; zero where
-  /// it does not. A wrench comes to the motors frames after the step that asked for it, behind the device's own ramps
-  /// and limits: an account of energy is right with this, and wrong with what was asked for.
+  /// What the hand felt of the motors when the report was sent, about the grip's pivot, where the device says it. A
+  /// wrench comes to the motors frames after the step that asked for it, behind the device's own ramps and limits: an
+  /// account of energy is right with this, and wrong with what was asked for.
   Wrench applied{};
+  bool says_applied = false;
   bool homed = false;    ///< the pose is sure
   bool powered = false;  ///< the device is ready to push
 };

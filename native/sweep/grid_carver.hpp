@@ -30,6 +30,11 @@ class Rollback {
     first_.clear();
   }
   void keep(Grid& grid, std::size_t tile) { first_.try_emplace({&grid, tile}, grid.shared_tile(tile)); }
+  /// Calls visit(grid, tile) for each that was replaced.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (const auto& [place, tile] : first_) visit(*place.first, place.second);
+  }
   /// The carve ended well. Returns whether anything was replaced.
   bool commit() {
     const bool any = !first_.empty();

@@ -22,6 +22,7 @@ MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) 
   cut_.removed[0] = 0, cut_.force[0] = cut_.torque[0] = Vec3(0);
   Stats stats;
   stats.moves = 1;
+  replaced_.clear();
   try {
     for (GridCarver& carver : carvers_) {
       carver.run(cutter_, poses, 1, [](std::size_t) { return std::size_t{1}; }, [](std::size_t) {});
@@ -31,6 +32,10 @@ MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) 
     rollback_.undo();
     throw;
   }
+  const Grid* const first = volume_.grids().data();
+  rollback_.each([&](const Grid& grid, std::size_t tile) {
+    replaced_.push_back({static_cast<std::uint32_t>(&grid - first), static_cast<std::uint32_t>(tile)});
+  });
   if (rollback_.commit()) volume_.touch();
   volume_.count(stats);
   return {cut_.removed[0], cut_.force[0], cut_.torque[0]};

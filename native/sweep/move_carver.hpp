@@ -1,6 +1,8 @@
 // One tool on one volume, move by move, as a pen makes them.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dexel/volume.hpp"
@@ -30,12 +32,21 @@ class MoveCarver {
   /// Throws std::invalid_argument as `carve` does for poses or a `dt` (s) that make no move; then nothing was cut.
   Taken move(const Pose& from, const Pose& to, double dt);
 
+  /// A tile by the numbers of its grid and in it.
+  struct Place {
+    std::uint32_t grid, tile;
+    friend bool operator==(const Place&, const Place&) = default;
+  };
+  /// What the last move replaced.
+  std::span<const Place> replaced() const { return replaced_; }
+
  private:
   Volume& volume_;
   std::vector<ConvexGroup> cutter_;
   CarveOptions options_;
   Cut cut_;
   Rollback rollback_;
+  BlockVector<Place> replaced_;
   std::vector<GridCarver> carvers_;
 };
 

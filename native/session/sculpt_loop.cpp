@@ -1,0 +1,231 @@
+#include "session/sculpt_loop.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <new>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "haptics/coupling.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// s of processor time that this thread has used.
+double thread_seconds() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// In these the device knows where it is, and its data are of now.
+bool sure(ForceState state) {
+  return state == ForceState::Ready || lets_force_through(state);
+}
+
+}  // namespace
+
+void SculptLoopSettings::validate() const {
+  sculpt.validate();
+  if (sculpt.parts != 1) throw std::invalid_argument("parts must be 1 in a session: it records a pose for each tick");
+  limits.validate();
+  passivity.validate();
+  safety.validate();
+  held_over.validate();
+  workspace.validate();
+}
+
+/// What the hand works on.
+struct SculptLoop::Scene {
+  Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const Collider* obstacles)
+      : volume(stock),
+        carver(volume, tool, s.carving),
+        step(s.sculpt, tool, &carver, obstacles),
+        workspace(s.workspace) {}
+
+  Volume volume;
+  MoveCarver carver;
+  SculptStep step;
+  Workspace workspace;
+};
+
+SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, const Tool& tool,
+                       const Collider* obstacles, const DeviceCapability& device, const std::optional<Pose>& start,
+                       StrokeSink* sink)
+    : settings_((settings.validate(), settings)),
+      device_(device),
+      sink_(sink),
+      safety_(settings.safety),
+      passivity_(settings.passivity),
+      held_over_(settings.held_over),
+      last_tool_(start.value_or(Pose{})),
+      absolute_(!start),
+      scene_(std::make_unique<Scene>(settings, stock, tool, obstacles)),
+      exchange_(stock),
+      dead_man_mask_(settings.workspace.dead_man_mask) {
+  safety_.switch_on();
+}
+
+SculptLoop::~SculptLoop() = default;
+
+SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noexcept {
+  const double start = thread_seconds();
+  SculptTick tick;
+  if (dt > 0) time_ += dt;
+  tick.time = time_, tick.dt = dt, tick.grip = sample.pose;
+  if (reset_.exchange(false)) safety_.reset();
+  const std::uint32_t dead_man_mask = dead_man_mask_.load();
+  const ForceState state = safety_.observe({.dt = dt,
+                                            .age = now - sample.time,
+                                            .pose = sample.pose,
+                                            .twist = {sample.velocity, sample.turning},
+                                            .redundancy = sample.stretch,
+                                            .homed = sample.homed,
+                                            .dead_man = dead_man_mask == 0 || (sample.buttons & dead_man_mask) != 0,
+                                            .device_fault = sample.fault});
+  tick.applied = sample.says_applied ? sample.applied : held_;
+  if (sure(state)) {
+    if (has_grip_) {
+      const Stretch moved = stretch(sample.pose, last_grip_);
+      passivity_.observe(tick.applied, {moved.translation, moved.rotation}, dt);
+    }
+    last_grip_ = sample.pose, has_grip_ = true;
+  } else {
+    has_grip_ = false;
+  }
+  const Wrench wanted = sculpt(sample, dt, tick);
+  const SafeWrench safe = safety_.release(rendered(sample, wanted, dt));
+  held_ = safe.wrench();
+  tick.wrench = held_, tick.energy = passivity_.energy();
+  tick.state = safety_.state(), tick.cause = safety_.cause();
+  if (tick.cutting && sink_) sink_->row(tick.time, tick.tool, tick.wrench, tick.removed);
+  tick.seconds = thread_seconds() - start;
+  if (!ticks_.put(tick)) untold_.fetch_add(1, std::memory_order_relaxed);
+  return safe;
+}
+
+/// The tool's step, and what the hand shall feel of it.
+Wrench SculptLoop::sculpt(const PenSample& sample, double dt, SculptTick& tick) noexcept {
+  tick.tool = last_tool_;
+  if (dt > 0 && std::isfinite(dt)) owed_ += dt;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) return missed(dt, nullptr, tick);
+  Scene& scene = *scene_;
+  const ForceState state = safety_.state();
+  Wrench out;
+  if (!in_stroke_) tell_undo();
+  if (!sure(state)) {
+    end_stroke();
+    placed_ = false;
+  } else {
+    if (!std::exchange(placed_, true)) place(scene, sample);
+    const bool wants = lets_force_through(state), room = !sink_ || sink_->room();
+    if (wants && !room) tick.problem = "the journal has no room, so nothing is cut";
+    if (!(wants && room)) end_stroke();
+    if (wants && room && !in_stroke_) begin_stroke();
+    out = follow(scene, sample, dt, tick);
+  }
+  exchange_.serve(scene.volume, {strokes_, in_stroke_});
+  return out;
+}
+
+/// Where the hand is now is where the tool is: no way between is cut.
+void SculptLoop::place(Scene& scene, const PenSample& sample) noexcept {
+  if (absolute_) last_tool_ = sample.pose;
+  scene.step.place(last_tool_), scene.workspace.place(last_tool_);
+  held_over_.reset();
+  owed_ = 0;
+}
+
+Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, SculptTick& tick) noexcept {
+  try {
+    const Pose target = scene.workspace.target(sample.pose, sample.buttons);
+    const Twist twist = scene.workspace.to_target({sample.velocity, sample.turning});
+    const SculptStep::Result r = scene.step.step(target, twist, owed_, in_stroke_);
+    owed_ = 0;
+    if (r.cuts > 0) exchange_.changed(scene.carver.replaced());
+    last_tool_ = tick.tool = r.tool;
+    tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
+    return held_over_.stepped(scene.workspace.to_grip(r.on_grip), dt);
+  } catch (const std::bad_alloc&) {
+    return missed(dt, "there is no memory for the next cut", tick);
+  } catch (const std::exception&) {
+    return missed(dt, "the step failed", tick);
+  }
+}
+
+Wrench SculptLoop::missed(double dt, const char* why, SculptTick& tick) noexcept {
+  tick.missed = true, tick.problem = why;
+  return held_over_.missed(dt);
+}
+
+/// Limits and the controller, in the order of haptics/safety.hpp.
+Wrench SculptLoop::rendered(const PenSample& sample, const Wrench& wanted, double dt) noexcept {
+  const Capability push = pushed(device_, sample.pose.axis);
+  const Actuators none{};  // the device's model keeps each motor's limit, and the wrench's direction
+  slewed_ = limited(settings_.limits, push, none, slewed_, lets_force_through(safety_.state()) ? wanted : Wrench{},
+                    {sample.velocity, sample.turning}, dt);
+  const Wrench borne = passivity_.control(slewed_, push);
+  return magnitude_gain(settings_.limits, none, borne) * borne;
+}
+
+void SculptLoop::begin_stroke() noexcept {
+  in_stroke_ = true, ++strokes_;
+  if (sink_) sink_->begin(time_, scene_->step.tool());
+}
+
+void SculptLoop::end_stroke() noexcept {
+  if (!in_stroke_) return;
+  in_stroke_ = false;
+  if (sink_) sink_->end();
+}
+
+// --- Who shows it ---
+
+TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places) {
+  constexpr int kTries = 30;
+  constexpr std::chrono::microseconds kNap(100);
+  TileExchange::Mark mark;
+  exchange_.take(shown, places, mark);  // of an earlier call that did not wait long enough
+  exchange_.ask();
+  for (int k = 0; k < kTries; ++k) {
+    if (exchange_.take(shown, places, mark)) return mark;
+    std::this_thread::sleep_for(kNap);
+  }
+  // Nobody steps, or a step takes long: between two of them this is as good.
+  const std::lock_guard lock(mutex_);
+  exchange_.serve(scene_->volume, {strokes_, in_stroke_});
+  exchange_.take(shown, places, mark);
+  return mark;
+}
+
+bool SculptLoop::replace(const Volume& volume, std::int64_t strokes) {
+  const std::lock_guard lock(mutex_);
+  if (in_stroke_) return false;
+  scene_->volume.restore(volume);
+  brought_back_ += strokes;
+  return true;
+}
+
+void SculptLoop::finish() noexcept {
+  end_stroke();
+  tell_undo();
+}
+
+/// In the thread that tells the sink everything else.
+void SculptLoop::tell_undo() noexcept {
+  const std::int64_t strokes = std::exchange(brought_back_, 0);
+  if (sink_ && strokes < 0) sink_->take_back(static_cast<std::size_t>(-strokes));
+  if (sink_ && strokes > 0) sink_->bring_back(static_cast<std::size_t>(strokes));
+}
+
+void SculptLoop::set_workspace(const WorkspaceSettings& settings) {
+  const std::lock_guard lock(mutex_);
+  scene_->workspace.set(settings);
+  dead_man_mask_.store(settings.dead_man_mask);
+}
+
+}  // namespace riffler

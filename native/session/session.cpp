@@ -1,0 +1,162 @@
+#include "session/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "pen/driver.hpp"
+
+namespace riffler {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kTick = 1e-3;  // s
+// What a tile of three directions with many spans needs, and how many tiles a frame's steps may cut for the first time.
+constexpr std::size_t kLargestBlock = 1 << 15, kBlocks = 128;
+
+SculptLoopSettings for_device(SculptLoopSettings settings, const DeviceCapability& device) {
+  if (device.has_force()) return settings;
+  // A mouse jumps as it likes: nothing pushes anybody.
+  settings.safety.jump = settings.safety.overspeed = {1e9, 1e9};
+  settings.safety.fresh = 1e9;
+  return settings;
+}
+
+}  // namespace
+
+void SessionSettings::validate() const {
+  loop.validate();
+  if (start && !(finite(start->tip) && std::abs(glm::length(start->axis) - 1) < 1e-6))
+    throw std::invalid_argument("start must be a finite point and an axis of unit length");
+}
+
+Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen,
+                 std::shared_ptr<const Collider> obstacles, const SessionSettings& settings)
+    : settings_((settings.validate(), settings)),
+      tool_(tool),
+      pen_(std::move(pen)),
+      obstacles_(std::move(obstacles)),
+      shown_(stock.revision()) {
+  if (!pen_) throw std::invalid_argument("a session needs a device");
+  settings_.loop = for_device(settings_.loop, pen_->capability());
+  moments_.push_back({0, stock});
+}
+
+Session::~Session() {
+  Volume nobody = moments_[here_].volume;
+  shown_ = nobody.revision();
+  stop(nobody);
+}
+
+void Session::record(std::shared_ptr<StrokeSink> sink) {
+  if (state_ != State::New) throw std::runtime_error("the session has begun: what it did would be missing");
+  sink_ = std::move(sink);
+}
+
+/// Where the tool stands at the start.
+std::optional<Pose> Session::start_pose() const {
+  if (settings_.start || pen_->in_part_frame()) return settings_.start;
+  const Box3& box = moments_[0].volume.frame().box;
+  return Pose{{0.5 * (box.lower.x + box.upper.x), 0.5 * (box.lower.y + box.upper.y), box.upper.z + 5}, {0, 0, 1}};
+}
+
+void Session::start() {
+  if (state_ != State::New) throw std::runtime_error("a session runs once: make another");
+  loop_ = std::make_shared<SculptLoop>(settings_.loop, moments_[0].volume, tool_, obstacles_.get(), pen_->capability(),
+                                       start_pose(), sink_.get());
+  reserve_.fill(kLargestBlock, kBlocks);
+  if (!pen_->set_step(loop_)) poller_ = std::thread([this] { poll(); });
+  state_ = State::Running;
+}
+
+/// The thread of a device that has none.
+void Session::poll() noexcept {
+  const auto tick = std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(kTick));
+  auto next = std::chrono::steady_clock::now();
+  for (double last = steady_seconds(); !ending_.load();) {
+    const double now = steady_seconds();
+    loop_->step(pen_->newest(), pen_->now(), now - std::exchange(last, now));
+    next = std::max(next + tick, std::chrono::steady_clock::now());
+    std::this_thread::sleep_until(next);
+  }
+}
+
+SessionFrame Session::stop(Volume& shown) {
+  SessionFrame frame;
+  if (state_ != State::Running) return frame;
+  frame = std::exchange(kept_, {});
+  pen_->set_step(nullptr);
+  ending_ = true;
+  if (poller_.joinable()) poller_.join();
+  loop_->finish();
+  state_ = State::Ended;
+  look(shown, frame);
+  return frame;
+}
+
+SessionFrame Session::frame(Volume& shown) {
+  if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  SessionFrame frame = std::exchange(kept_, {});
+  look(shown, frame);
+  std::ranges::sort(frame.tiles, {}, [](const TileExchange::Place& p) { return std::pair(p.grid, p.tile); });
+  const auto twice = std::ranges::unique(frame.tiles);
+  frame.tiles.erase(twice.begin(), twice.end());
+  reserve_.fill(kLargestBlock, kBlocks);
+  return frame;
+}
+
+void Session::look(Volume& shown, SessionFrame& frame) {
+  if (shown.revision() != shown_)
+    throw std::runtime_error("the volume was changed by somebody else while the session ran; stop the session first");
+  const TileExchange::Mark mark = loop_->show(shown, frame.tiles);
+  shown_ = shown.revision();
+  for (SculptTick tick; loop_->take(tick);) frame.ticks.push_back(tick);
+  frame.strokes = mark.strokes, frame.in_stroke = mark.in_stroke, frame.untold = loop_->untold();
+  if (mark.in_stroke || mark.strokes == strokes_) return;
+  moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(here_) + 1, moments_.end());  // nothing to redo
+  moments_.push_back({mark.strokes - std::exchange(strokes_, mark.strokes), shown});
+  if (moments_.size() > settings_.undo + 1) moments_.erase(moments_.begin());
+  here_ = moments_.size() - 1;
+}
+
+std::size_t Session::undo(Volume& shown) {
+  return go_to(shown, -1, "undone");
+}
+
+std::size_t Session::redo(Volume& shown) {
+  return go_to(shown, 1, "redone");
+}
+
+/// One moment on or back.
+std::size_t Session::go_to(Volume& shown, int step, const char* what) {
+  SessionFrame frame;
+  if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  look(shown, frame);
+  if (frame.in_stroke) throw std::runtime_error(std::string("nothing can be ") + what + " in the middle of a stroke");
+  std::copy(frame.ticks.begin(), frame.ticks.end(), std::back_inserter(kept_.ticks));
+  std::copy(frame.tiles.begin(), frame.tiles.end(), std::back_inserter(kept_.tiles));
+  if (step < 0 ? here_ == 0 : here_ + 1 == moments_.size()) return 0;
+  const std::size_t next = step < 0 ? here_ - 1 : here_ + 1;
+  const std::uint64_t strokes = moments_[std::max(here_, next)].strokes;
+  if (!loop_->replace(moments_[next].volume, step * static_cast<std::int64_t>(strokes)))
+    throw std::runtime_error(std::string("nothing can be ") + what + " in the middle of a stroke");
+  note_differences(shown, moments_[next].volume);
+  shown.restore(moments_[next].volume);
+  shown_ = shown.revision(), here_ = next;
+  return strokes;
+}
+
+/// Tiles that the two do not share are told with the next frame.
+void Session::note_differences(const Volume& from, const Volume& to) {
+  for (std::uint32_t g = 0; g < from.grids().size(); ++g)
+    for (std::size_t t = 0; t < from.grids()[g].tile_count(); ++t)
+      if (from.grids()[g].shared_tile(t) != to.grids()[g].shared_tile(t))
+        kept_.tiles.push_back({g, static_cast<std::uint32_t>(t)});
+}
+
+}  // namespace riffler

@@ -1,0 +1,104 @@
+// A sculpting session: a device, a tool and a stock, cut in the thread of the device and shown in another.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "geom/block_pool.hpp"
+#include "pen/device.hpp"
+#include "session/sculpt_loop.hpp"
+
+namespace riffler {
+
+struct SessionSettings {
+  SculptLoopSettings loop{};
+  /// Where the tool stands when the session starts, whatever the hand's pose is then; without it, where the hand is for
+  /// devices whose poses are in the part's frame (tablets, mice, recordings), and for others 5 mm above the middle of
+  /// the stock's box.
+  std::optional<Pose> start;
+  std::size_t undo = 64;  ///< strokes that can be taken back
+
+  /// std::invalid_argument naming the field.
+  void validate() const;
+};
+
+/// What happened between two looks.
+struct SessionFrame {
+  std::vector<TileExchange::Place> tiles;  ///< that changed, each once
+  std::vector<SculptTick> ticks;
+  std::uint64_t strokes = 0;  ///< that were begun since the start
+  bool in_stroke = false;
+  std::uint64_t untold = 0;  ///< ticks since the start that are missing in frames: they came too seldom
+};
+
+/// Functions are for one thread, if nothing else is said.
+class Session {
+ public:
+  /// Validates; std::invalid_argument as MoveCarver. A device without force is spared the checks of its motion.
+  Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen, std::shared_ptr<const Collider> obstacles,
+          const SessionSettings& settings);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+  /// As stop(), but for what was not shown yet.
+  ~Session();
+
+  /// Every stroke goes there. Before start(); `sink` is kept.
+  void record(std::shared_ptr<StrokeSink> sink);
+
+  /// The device's thread sculpts from now on: its own, or one that asks it a thousand times a second. Once.
+  void start();
+  bool running() const noexcept { return state_ == State::Running; }
+  /// The device does not push any more, and everything that was cut is in `shown`. Nothing where it does not run.
+  SessionFrame stop(Volume& shown);
+
+  /// Brings `shown` up to date: the volume of the start, which nobody else changes while the session runs; otherwise
+  /// std::runtime_error. Waits for the next step, 3 ms at most.
+  SessionFrame frame(Volume& shown);
+
+  /// The last stroke, or the last few that ended between two frames, did not happen. How many that were: 0 where there
+  /// is none. Throws std::runtime_error in the middle of a stroke.
+  std::size_t undo(Volume& shown);
+  /// And happened, unless another was begun since.
+  std::size_t redo(Volume& shown);
+
+  /// As of SculptLoop. nullptr before start().
+  SculptLoop* loop() noexcept { return loop_.get(); }
+  Pen& pen() noexcept { return *pen_; }
+
+ private:
+  enum class State : unsigned char { New, Running, Ended };
+  /// The volume between two strokes.
+  struct Moment {
+    std::uint64_t strokes;  // from the moment before to this one: one, or more where frames came seldom
+    Volume volume;
+  };
+
+  std::optional<Pose> start_pose() const;
+  void poll() noexcept;
+  void look(Volume& shown, SessionFrame& frame);
+  std::size_t go_to(Volume& shown, int step, const char* what);
+  void note_differences(const Volume& from, const Volume& to);
+
+  SessionSettings settings_;
+  Tool tool_;
+  std::shared_ptr<Pen> pen_;
+  std::shared_ptr<const Collider> obstacles_;
+  std::shared_ptr<StrokeSink> sink_;
+  std::shared_ptr<SculptLoop> loop_;
+  State state_ = State::New;
+  std::thread poller_;
+  std::atomic<bool> ending_{false};
+  BlockReserve reserve_;
+
+  std::uint64_t shown_ = 0;      // revision of the volume that is shown
+  std::vector<Moment> moments_;  // between strokes; oldest first
+  std::size_t here_ = 0;         // of them, the one that is shown or being changed
+  std::uint64_t strokes_ = 0;    // that were seen
+  SessionFrame kept_;            // for the next
+};
+
+}  // namespace riffler

@@ -1,0 +1,109 @@
+// A simulated pen that sculpts, on a virtual clock: firmware, cable, driver's loop and sculpting loop.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pen/simulated_bench.hpp"
+#include "session/sculpt_loop.hpp"
+
+namespace riffler::test {
+
+inline const Box3 kStock{{-30, -30, -20}, {30, 30, 0}};
+
+inline Volume sculpt_stock(double pitch = 0.25, const char* directions = "z") {
+  return Volume::block({kStock, pitch, directions});
+}
+
+/// What a sink was told.
+class RememberingSink final : public StrokeSink {
+ public:
+  struct Stroke {
+    std::vector<Pose> poses;
+    std::vector<double> times, removed;
+  };
+
+  bool room() noexcept override { return has_room; }
+  void begin(double time, const Pose& tool) noexcept override { strokes.push_back({{tool}, {time}, {0}}); }
+  void row(double time, const Pose& tool, const Wrench&, double removed) noexcept override {
+    strokes.back().poses.push_back(tool), strokes.back().times.push_back(time);
+    strokes.back().removed.push_back(removed);
+  }
+  void end() noexcept override { ++ended; }
+  void take_back(std::size_t n) noexcept override { taken_back += n; }
+  void bring_back(std::size_t n) noexcept override { brought_back += n; }
+
+  std::vector<Stroke> strokes;
+  std::size_t ended = 0, taken_back = 0, brought_back = 0;
+  bool has_room = true;
+};
+
+/// The same strokes move by move, from the stock on.
+inline Volume carved_again(const Volume& stock, const Tool& tool, const std::vector<RememberingSink::Stroke>& strokes,
+                           const MoveCarver::Options& options = {}) {
+  Volume volume = stock;
+  MoveCarver carver(volume, tool, options);
+  for (const auto& stroke : strokes)
+    for (std::size_t k = 1; k < stroke.poses.size(); ++k) {
+      const Pose &from = stroke.poses[k - 1], &to = stroke.poses[k];
+      if (!(from.tip == to.tip && from.axis == to.axis)) carver.move(from, to, 1e-3);
+    }
+  return volume;
+}
+
+/// Homed; the hand follows `path`, whose poses are the pen's.
+struct SculptBench {
+  SculptBench(HandPath path, const Volume& stock, const Tool& tool, const SculptLoopSettings& settings = {},
+              StrokeSink* sink = nullptr, const Collider* obstacles = nullptr,
+              const Pose& start = {{0, 0, 3}, {0, 0, 1}})
+      : pen(std::make_shared<SimulatedPen>(SimulatedPenSettings(), std::move(path))),
+        loop(settings, stock, tool, obstacles, model.capability(), start, sink) {
+    model.home();
+  }
+
+  /// Ticks for so long since the end of the last run, each given to visit.
+  template <class Visit>
+  void run(double seconds, const Visit& visit) {
+    end += seconds;
+    while (clock->now() < end) {
+      driver.tick();
+      pen->advance(std::llround(1e6 * clock->now()));
+      for (SculptTick tick; loop.take(tick);) visit(tick);
+    }
+  }
+  void run(double seconds) {
+    run(seconds, [](const SculptTick&) {});
+  }
+
+  double end = 0;
+  std::shared_ptr<SimulatedPen> pen;
+  std::shared_ptr<SimulatedClock> clock = std::make_shared<SimulatedClock>();
+  std::unique_ptr<Transport> transport = std::make_unique<SimulatedTransport>(pen, clock);
+  RifflerModel model{*transport};
+  SimulatedConnector connector{pen, clock, model};
+  SculptLoop loop;
+  DriverLoop driver{model, loop, connector, *clock, std::move(transport)};
+};
+
+inline Pose pen_home() {
+  return SimulatedPen(SimulatedPenSettings()).arms().posture().pose;
+}
+
+/// From a second on the grip circles 3 to 5 mm deeper than it began, and the button is held for two of every three
+/// seconds; the tool leans a little.
+inline HandPath sculpting_hand(double depth = 4, double radius = 10) {
+  return [home = pen_home(), depth, radius](double t) {
+    const double s = std::max(0.0, t - 1);
+    HandWish wish{.pose = home};
+    wish.pose.tip += Vec3(radius * std::sin(2 * s), radius * (1 - std::cos(2 * s)),
+                          -depth * std::min(1.0, s) - 0.5 * std::sin(5 * s));
+    const double lean = 0.15 * std::sin(s);
+    wish.pose.axis = glm::normalize(home.axis + lean * Vec3(1, 0.3, 0));
+    wish.buttons = s > 0 && std::fmod(s, 3) < 2 ? 1 : 0;
+    return wish;
+  };
+}
+
+}  // namespace riffler::test

@@ -1,0 +1,295 @@
+// Sculpting through the whole stack, on a virtual clock.
+#include "session/sculpt_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <optional>
+#include <thread>
+
+#include "dexel/volumes.hpp"
+#include "pen/pens.hpp"
+#include "session/sculpt_bench.hpp"
+#include "support/allocations.hpp"
+#include "support/error_of.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler {
+namespace {
+
+using test::kStock;
+using test::pen_home;
+using test::RememberingSink;
+using test::SculptBench;
+using test::sculpting_hand;
+
+const Tool kBall = cutters::ball(6, 30);
+
+TEST(SculptLoop, CutsWhileTheButtonIsHeldAndWhatItToldTheSinkGivesTheSameBytes) {
+  for (const char* directions : {"z", "xyz"}) {
+    const Volume stock = test::sculpt_stock(0.5, directions);
+    RememberingSink sink;
+    SculptBench bench(sculpting_hand(), stock, kBall, {}, &sink);
+    double removed = 0;
+    int wrong = 0;
+    bench.run(10, [&](const SculptTick& tick) {
+      removed += tick.removed;
+      wrong += tick.removed > 0 && !tick.cutting;
+      wrong += tick.cutting && !lets_force_through(tick.state);
+    });
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(sink.strokes.size(), 3U);
+    EXPECT_EQ(sink.ended, 3U);
+    Volume shown = stock;
+    std::vector<SculptLoop::Place> places;
+    bench.loop.show(shown, places);
+    EXPECT_GT(removed, 150);
+    EXPECT_NEAR(stock.volume() - shown.volume(), removed, 1e-9 * stock.volume());
+    EXPECT_TRUE(test::same_spans(shown, test::carved_again(stock, kBall, sink.strokes)));
+  }
+}
+
+TEST(SculptLoop, GivesTheSameBytesFromRunToRunWhoeverLooks) {
+  const Volume stock = test::sculpt_stock();
+  const auto result = [&](int frames) {
+    SculptBench bench(sculpting_hand(), stock, kBall);
+    Volume shown = stock;
+    std::vector<SculptLoop::Place> places;
+    for (int k = 0; k < frames; ++k) {
+      bench.run(5.0 / frames);
+      bench.loop.show(shown, places);
+    }
+    return shown;
+  };
+  const Volume once = result(1);
+  EXPECT_LT(once.volume(), stock.volume());
+  EXPECT_TRUE(test::same_spans(once, result(25)));
+}
+
+TEST(SculptLoop, ShowsExactlyTheTilesThatHaveChanged) {
+  const Volume stock = test::sculpt_stock(0.5, "xyz");
+  SculptBench bench(sculpting_hand(), stock, kBall);
+  Volume shown = stock;
+  std::size_t told = 0;
+  for (int k = 0; k < 40; ++k) {
+    bench.run(0.1);
+    const Volume before = shown;
+    std::vector<SculptLoop::Place> places;
+    bench.loop.show(shown, places);
+    std::size_t changed = 0;
+    for (std::size_t g = 0; g < shown.grids().size(); ++g)
+      for (std::size_t t = 0; t < shown.grids()[g].tile_count(); ++t)
+        changed += shown.grids()[g].shared_tile(t) != before.grids()[g].shared_tile(t);
+    EXPECT_EQ(changed, places.size());
+    EXPECT_EQ(shown.revision() != before.revision(), changed > 0);
+    told += changed;
+  }
+  EXPECT_GT(told, 50U);
+}
+
+TEST(SculptLoop, TheHandFeelsTheCutAndNothingInTheAir) {
+  SculptLoopSettings settings;
+  settings.carving.removal_constant = settings.sculpt.damping = 0.05;
+  SculptBench bench(sculpting_hand(6), test::sculpt_stock(), kBall, settings);
+  double cut = 0, air = 0, worst = 0;
+  int wrong = 0;
+  bench.run(6, [&](const SculptTick& tick) {
+    const double force = glm::length(tick.wrench.force);
+    (tick.cutting && tick.removed > 0 ? cut : air) = std::max(tick.cutting && tick.removed > 0 ? cut : air, force);
+    worst = std::min(worst, tick.energy);
+    wrong += !tick.cutting && force > 0;
+  });
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(cut, 0.2);
+  EXPECT_LT(air, cut);
+  EXPECT_GT(worst, -1);
+}
+
+TEST(SculptLoop, WithoutRoomInTheJournalNothingIsCutAndTheReasonIsTold) {
+  RememberingSink sink;
+  SculptBench bench(sculpting_hand(), test::sculpt_stock(), kBall, {}, &sink);
+  bench.run(2);
+  sink.has_room = false;
+  double removed = 0;
+  int told = 0;
+  bench.run(0.9, [&](const SculptTick& tick) { removed += tick.removed, told += tick.problem != nullptr; });
+  EXPECT_EQ(removed, 0);
+  EXPECT_GT(told, 800);
+  EXPECT_EQ(sink.ended, 1U);
+  sink.has_room = true;
+  bench.run(5, [&](const SculptTick& tick) { removed += tick.removed; });
+  EXPECT_GT(removed, 10);
+}
+
+TEST(SculptLoop, AfterATripTheToolGoesOnFromWhereItWasAndCutsNoWayBetween) {
+  RememberingSink sink;
+  const Volume stock = test::sculpt_stock();
+  SculptBench bench(sculpting_hand(), stock, kBall, {}, &sink);
+  bench.run(2);
+  Pose tool;
+  bench.pen->on_sense = [](riffler_pen_sensors& s) { s.counters[1] += 60; };
+  bench.run(0.5, [&](const SculptTick& tick) { tool = tick.tool; });
+  EXPECT_TRUE(bench.loop.trips().count() > 0);
+  bench.pen->on_sense = nullptr;
+  bench.run(0.3, [&](const SculptTick& tick) {
+    EXPECT_EQ(tick.tool.tip, tool.tip);  // until somebody has looked at it
+    EXPECT_EQ(tick.wrench, Wrench{});
+  });
+  bench.loop.reset();
+  Pose last = tool;
+  double farthest = 0;
+  bench.run(0.19, [&](const SculptTick& tick) {
+    farthest = std::max(farthest, glm::length(tick.tool.tip - last.tip));
+    last = tick.tool;
+  });
+  EXPECT_LT(farthest, 0.1);  // a hand at 20 mm/s, and what the coupling had been stretched by
+  EXPECT_NE(last.tip, tool.tip);
+  bench.run(3);
+  Volume shown = stock;
+  std::vector<SculptLoop::Place> places;
+  bench.loop.show(shown, places);
+  EXPECT_TRUE(test::same_spans(shown, test::carved_again(stock, kBall, sink.strokes)));
+}
+
+TEST(SculptLoop, TheClutchLiftsTheToolOffTheHand) {
+  SculptLoopSettings settings;
+  settings.workspace = {.scale = 0.5, .clutch_mask = 2, .dead_man_mask = 1};
+  const Pose home = pen_home();
+  SculptBench bench(
+      [home](double t) {
+        HandWish wish{.pose = home, .buttons = t > 1.5 && t < 2.5 ? 2U : 0U};
+        wish.pose.tip.x += 10 * std::clamp(t - 1, 0.0, 1.0);
+        return wish;
+      },
+      test::sculpt_stock(), kBall, settings);
+  Pose tool;
+  bench.run(4, [&](const SculptTick& tick) { tool = tick.tool; });
+  EXPECT_NEAR(tool.tip.x, 2.5, 0.25);  // half of the five millimetres before the clutch, behind the hand's wish
+}
+
+TEST(SculptLoop, UndoIsRefusedInAStrokeAndOtherwiseToldToTheSink) {
+  RememberingSink sink;
+  const Volume stock = test::sculpt_stock();
+  SculptBench bench(sculpting_hand(), stock, kBall, {}, &sink);
+  bench.run(2);
+  EXPECT_FALSE(bench.loop.replace(stock, -1));
+  bench.run(1.5);
+  ASSERT_EQ(sink.ended, 1U);
+  EXPECT_TRUE(bench.loop.replace(stock, -1));
+  EXPECT_EQ(sink.taken_back, 0U);  // in the thread of the rows
+  bench.run(2.9);
+  EXPECT_EQ(sink.taken_back, 1U);
+  ASSERT_EQ(sink.strokes.size(), 2U);
+  Volume shown = stock;
+  std::vector<SculptLoop::Place> places;
+  bench.loop.show(shown, places);
+  EXPECT_TRUE(test::same_spans(shown, test::carved_again(stock, kBall, {sink.strokes[1]})));
+}
+
+TEST(SculptLoop, AsksForNoMemoryOnceItIsWarm) {
+  const Volume stock = test::sculpt_stock();
+  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
+  Volume shown = stock;
+  std::vector<SculptLoop::Place> places;
+  BlockReserve reserve;
+  std::uint64_t count = 0;
+  double removed = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const double t = 1e-3 * k;
+    PenSample sample;
+    sample.pose = {{4 * std::sin(9 * t), 4 * std::cos(9 * t) - 4, -2 * std::min(1.0, t)}, {0, 0, 1}};
+    sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = t, sample.buttons = 1;
+    sample.homed = sample.powered = true;
+    if (k % 33 == 0)
+      std::thread([&] {
+        places.clear();
+        loop.show(shown, places);
+        reserve.fill(1 << 15, 128);
+      }).join();
+    const std::uint64_t before = test::allocations();
+    loop.step(sample, t, k ? 1e-3 : 0);
+    if (k > 300) count += test::allocations() - before;
+    for (SculptTick tick; loop.take(tick);) removed += tick.removed;
+  }
+  EXPECT_GT(removed, 80);
+  EXPECT_EQ(count, 0U);
+}
+
+TEST(SculptLoop, StepsThatCannotBeMadeAreHeldOverWithoutAJump) {
+  // Somebody holds the lock: as undo does, for much longer than it would.
+  const Volume stock = test::sculpt_stock();
+  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
+  std::atomic<bool> end{false};
+  std::thread other([&] {
+    while (!end) {
+      loop.replace(stock, 0);  // refused during the stroke
+      loop.set_workspace({});
+      std::this_thread::yield();
+    }
+  });
+  double last = 0, jump = 0;
+  int missed = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    const double t = 1e-3 * k;
+    PenSample sample;
+    sample.pose = {{4 * std::sin(9 * t), 0, -2 * std::min(1.0, t)}, {0, 0, 1}};
+    sample.velocity = {36 * std::cos(9 * t), 0, t < 1 ? -2 : 0};
+    sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = t, sample.buttons = 1;
+    sample.homed = sample.powered = true;
+    const double force = glm::length(loop.step(sample, t, k ? 1e-3 : 0).wrench().force);
+    jump = std::max(jump, std::abs(force - last)), last = force;
+    for (SculptTick tick; loop.take(tick);) missed += tick.missed;
+  }
+  end = true;
+  other.join();
+  EXPECT_LE(jump, 2.0 + 1e-9);  // 2000 N/s, of a millisecond
+  RecordProperty("missed", missed);
+}
+
+TEST(SculptLoop, BadSettingsAreNamed) {
+  const auto make = [](const SculptLoopSettings& s) {
+    SculptLoop(s, test::sculpt_stock(1), kBall, nullptr, pen_capability(load_pen("riffler")), Pose{});
+  };
+  SculptLoopSettings s;
+  s.sculpt.parts = 2;
+  EXPECT_NE(test::error_of([&] { make(s); }).find("parts must be 1"), std::string::npos);
+  s = {};
+  s.workspace.scale = 0;
+  EXPECT_NE(test::error_of([&] { make(s); }).find("scale"), std::string::npos);
+}
+
+TEST(SculptLoop, SamplesOfAnyKindLeaveItAlive) {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  const Volume stock = test::sculpt_stock(1);
+  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
+  double t = 0;
+  const double bad[] = {0, 1, -1, 1e300, -1e300, inf, -inf, nan, 1e-300};
+  std::uint64_t tick_number = 0;
+  for (const double a : bad)
+    for (const double b : bad)
+      for (const double dt : {1e-3, 0.0, -1.0, nan, inf, 5.0}) {
+        PenSample sample;
+        sample.pose = {{a, b, -1}, {b, 0, a}};
+        sample.velocity = {b, a, 0}, sample.turning = {a, a, b}, sample.stretch = b;
+        sample.applied = {{a, 0, 0}, {0, b, 0}}, sample.says_applied = true;
+        sample.sequence = ++tick_number, sample.time = t, sample.buttons = 1, sample.homed = sample.powered = true;
+        const SafeWrench out = loop.step(sample, t, dt);
+        ASSERT_TRUE(finite(out.wrench()));
+        loop.reset();
+      }
+  // And it works again.
+  double removed = 0;
+  for (int k = 0; k < 4000; ++k) {
+    t = 1e-3 * k;
+    PenSample sample;
+    sample.pose = {{0, 0, -6 * std::min(1.0, t / 3)}, {0, 0, 1}};
+    sample.sequence = ++tick_number, sample.time = t, sample.buttons = k > 1000, sample.homed = sample.powered = true;
+    if (k == 500) loop.reset();
+    loop.step(sample, t, 1e-3);
+    for (SculptTick tick; loop.take(tick);) removed += tick.removed;
+  }
+  EXPECT_GT(removed, 1);
+}
+
+}  // namespace
+}  // namespace riffler
