@@ -9,30 +9,53 @@ namespace {
 
 using SharedJournal = std::shared_ptr<Journal>;
 
-/// One stroke of a journal, which it keeps alive.
+/// Stroke `index` of a journal, which it keeps alive.
 struct StrokeView {
   SharedJournal journal;
   std::size_t index;
 
-  const JournalStroke& get() const { return journal->strokes()[index]; }
+  const JournalStroke& get() const {
+    if (index >= journal->strokes().size()) throw py::index_error("the stroke was taken back");
+    return journal->strokes()[index];
+  }
 };
 
-std::vector<double> to_times(const py::object& times) {
-  if (times.is_none()) return {};
-  const auto array = Doubles::ensure(times);
+/// (n,), or empty for None.
+std::vector<double> to_column(const py::object& column, const char* name, std::size_t rows) {
+  if (column.is_none()) return {};
+  const auto array = Doubles::ensure(column);
   if (!array || array.ndim() != 1) {
     PyErr_Clear();
-    throw py::value_error("times must have the shape (n,)");
+    throw py::value_error(std::string(name) + " must have the shape (n,)");
   }
+  // An empty column would mean that there is none.
+  if (static_cast<std::size_t>(array.size()) != rows)
+    throw py::value_error(std::string(name) + " must be as many as poses");
   return {array.data(), array.data() + array.size()};
 }
 
-JournalStroke to_stroke(int tool, const Doubles& poses, const py::object& times, double tolerance,
-                        const std::string& name) {
-  JournalStroke stroke{tool, tolerance, name, to_poses(poses, "poses"), to_times(times)};
-  if (!times.is_none() && stroke.times.size() != stroke.poses.size())
-    throw py::value_error("times must be as many as poses");
-  return stroke;
+/// (n, 6), or empty for None.
+std::vector<Wrench> to_forces(const py::object& forces, std::size_t rows) {
+  if (forces.is_none()) return {};
+  const Doubles array = py::cast<Doubles>(forces);
+  if (check_rows(array, 6, "forces") != rows) throw py::value_error("forces must be as many as poses");
+  std::vector<Wrench> out(rows);
+  const double* p = array.data();
+  for (Wrench& wrench : out)
+    for (int k = 0; k < kCoordinates; ++k) wrench[k] = *p++;
+  return out;
+}
+
+/// A stroke without its name and tool.
+JournalStroke to_rows(const Doubles& poses, const py::object& times, const py::object& forces,
+                      const py::object& removed) {
+  JournalStroke out;
+  out.poses = to_poses(poses, "poses");
+  const std::size_t rows = out.poses.size();
+  out.times = to_column(times, "times", rows);
+  out.forces = to_forces(forces, rows);
+  out.removed = to_column(removed, "removed", rows);
+  return out;
 }
 
 JournalStock to_stock(const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
@@ -116,16 +139,28 @@ void add_records(Class& c) {
       .def(
           "add_stroke",
           [](T& self, int tool, const Doubles& poses, const py::object& times, double tolerance,
-             const std::string& name) { self.add_stroke(to_stroke(tool, poses, times, tolerance, name)); },
+             const std::string& name, const py::object& forces, const py::object& removed) {
+            JournalStroke stroke = to_rows(poses, times, forces, removed);
+            stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name;
+            self.add_stroke(stroke);
+          },
           py::arg("tool"), py::arg("poses"), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
-          py::arg("name") = "",
-          "A stroke with a tool that was added: poses (n, 6), n ≥ 1, times (n,) s that never fall, or None.")
+          py::arg("name") = "", py::kw_only(), py::arg("forces") = py::none(), py::arg("removed") = py::none(),
+          R"(A stroke with a tool that was added: poses (n, 6), n ≥ 1; each of the others may be None. times (n,) s that
+never fall; forces (n, 6) N, N·mm about the tip, on the hand at the end of the move to the row; removed (n,) mm³ of the
+move that ends at the row.)")
       .def(
           "extend_stroke",
-          [](T& self, const Doubles& poses, const py::object& times) {
-            self.extend_stroke(to_poses(poses, "poses"), to_times(times));
-          },
-          py::arg("poses"), py::arg("times") = py::none(), "More rows for the last stroke.");
+          [](T& self, const Doubles& poses, const py::object& times, const py::object& forces,
+             const py::object& removed) { self.extend_stroke(to_rows(poses, times, forces, removed).rows()); },
+          py::arg("poses"), py::arg("times") = py::none(), py::kw_only(), py::arg("forces") = py::none(),
+          py::arg("removed") = py::none(), "More rows for the last stroke, with the same columns.")
+      .def(
+          "take_back", [](T& self, std::size_t n) { self.take_back(n); }, py::arg("n") = 1,
+          "The last n strokes no longer count: undo.")
+      .def(
+          "bring_back", [](T& self, std::size_t n) { self.bring_back(n); }, py::arg("n") = 1,
+          "The last n that were taken back count again: redo. A new stroke ends that.");
 }
 
 }  // namespace
@@ -140,6 +175,20 @@ void bind_journal(py::module_& m) {
             return take<double>(std::vector<double>(s.get().times));
           },
           "(n,) s, or None.")
+      .def_property_readonly(
+          "forces",
+          [](const StrokeView& s) -> py::object {
+            if (s.get().forces.empty()) return py::none();
+            return take<double>(std::vector<Wrench>(s.get().forces), 6);
+          },
+          "(n, 6) N, N·mm about the tip, on the hand; or None.")
+      .def_property_readonly(
+          "removed",
+          [](const StrokeView& s) -> py::object {
+            if (s.get().removed.empty()) return py::none();
+            return take<double>(std::vector<double>(s.get().removed));
+          },
+          "(n,) mm³ by the move that ends at the row, or None.")
       .def_property_readonly("tool", [](const StrokeView& s) { return s.get().tool; })
       .def_property_readonly(
           "tolerance", [](const StrokeView& s) { return s.get().tolerance; }, "mm")
@@ -169,7 +218,7 @@ damaged record that others follow is a FormatError naming the byte.)")
           py::arg("path"), "Writes the whole journal; the file is whole or not there.")
       .def_property_readonly("stock", &stock, "dict: lower, upper, pitch, directions, snapshot; or None.")
       .def_property_readonly("tools", &tools, "dict: number to the tool's dict.")
-      .def_property_readonly("strokes", &strokes, "list of JournalStroke.")
+      .def_property_readonly("strokes", &strokes, "list of JournalStroke: those that count.")
       .def_property_readonly("notes", &notes, "dict of strings; of a key given twice the later value.")
       .def_readonly("cut_at", &Journal::cut_at, "Byte at which the file had been cut, or None.")
       .def("program", &program, py::arg("feed") = py::none(), py::arg("spindle") = 0.0, py::kw_only(),
@@ -185,8 +234,14 @@ held within 1 to 100 000 mm/min. The stock counts as occupied.)")
   py::class_<JournalWriter> writer(m, "JournalWriter", R"(Appends to a journal file, record by record.
 
 Goes on with a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
-system before the call returns. Context manager.)");
-  writer.def(py::init<const std::filesystem::path&>(), py::arg("path"))
+system before the call returns. ``keep=False`` holds no strokes in memory, so that ``journal`` cannot be asked for: for
+long sessions. Context manager.)");
+  writer
+      .def(py::init([](const std::filesystem::path& path, bool keep) {
+             return std::make_unique<JournalWriter>(
+                 path, keep ? JournalWriter::Keep::Everything : JournalWriter::Keep::Rules);
+           }),
+           py::arg("path"), py::kw_only(), py::arg("keep") = true)
       .def("sync", &JournalWriter::sync, py::call_guard<py::gil_scoped_release>(), "Waits until the disk has it.")
       .def("close", &JournalWriter::close, "Ends writing; calls after it raise RuntimeError.")
       .def_property_readonly(

@@ -4,69 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "nc/limits.hpp"
-
 namespace riffler {
 
-namespace {
-
-[[noreturn]] void fail(const std::string& what) {
-  throw std::invalid_argument(what);
+void Journal::set_stock(const JournalStock& stock) {
+  rules_.set_stock(stock);
 }
 
-/// `last`: the time before the first of these, if there is one.
-void check_rows(std::span<const Pose> poses, std::span<const double> times, bool timed, const double* last) {
-  for (std::size_t row = 0; row < poses.size(); ++row) checked_pose(poses[row], "poses", row);
-  if (times.size() != (timed ? poses.size() : 0))
-    fail(timed ? "times must be as many as poses" : "times for a stroke that has none");
-  for (std::size_t row = 0; row < times.size(); ++row) {
-    if (!std::isfinite(times[row])) fail("times, row " + std::to_string(row) + ": not finite");
-    if (last && times[row] < *last) fail("times, row " + std::to_string(row) + ": earlier than the one before");
-    last = &times[row];
-  }
-}
-
-}  // namespace
-
-void Journal::check_stock(const JournalStock& stock) const {
-  if (stock_) fail("the journal has a stock already");
-  if (!finite(stock.box.lower) || !finite(stock.box.upper)) fail("the stock's box must be finite");
-  for (int k = 0; k < 3; ++k)
-    if (!(stock.box.lower[k] < stock.box.upper[k])) fail("the stock's lower must be below its upper");
-  if (!(std::isfinite(stock.pitch) && stock.pitch > 0)) fail("pitch must be positive and finite");
-  if (stock.directions != "z" && stock.directions != "xyz") fail("directions must be \"z\" or \"xyz\"");
-}
-
-void Journal::check_tool(int number, const std::string& json) const {
-  if (number < 1 || number > kMaxNumber) fail("tool number must be from 1 to " + std::to_string(kMaxNumber));
-  const auto it = tools_.find(number);
-  if (it != tools_.end() && it->second != json)
-    fail("tool " + std::to_string(number) + " is another tool already: take another number");
-}
-
-void Journal::check_stroke(const JournalStroke& stroke) const {
-  if (!tools_.contains(stroke.tool))
-    fail("tool " + std::to_string(stroke.tool) + " is not in the journal: add it first");
-  if (!(std::isfinite(stroke.tolerance) && stroke.tolerance > 0)) fail("tolerance must be positive and finite");
-  if (stroke.poses.empty()) fail("a stroke needs at least one pose");
-  check_rows(stroke.poses, stroke.times, !stroke.times.empty(), nullptr);
-}
-
-void Journal::check_extension(std::span<const Pose> poses, std::span<const double> times) const {
-  if (strokes_.empty()) fail("there is no stroke to extend");
-  const JournalStroke& stroke = strokes_.back();
-  const bool timed = !stroke.times.empty();
-  check_rows(poses, times, timed, timed ? &stroke.times.back() : nullptr);
-}
-
-void Journal::set_stock(JournalStock stock) {
-  check_stock(stock);
-  stock_ = std::move(stock);
-}
-
-void Journal::add_tool(int number, std::string json) {
-  check_tool(number, json);
-  tools_.emplace(number, std::move(json));
+void Journal::add_tool(int number, const std::string& json) {
+  rules_.add_tool(number, json);
 }
 
 void Journal::add_note(std::string key, std::string value) {
@@ -74,18 +19,30 @@ void Journal::add_note(std::string key, std::string value) {
 }
 
 void Journal::add_stroke(JournalStroke stroke) {
-  check_stroke(stroke);
+  const std::size_t before = rules_.counting();
+  rules_.add_stroke(stroke);
+  strokes_.resize(before);
   strokes_.push_back(std::move(stroke));
 }
 
-void Journal::extend_stroke(std::span<const Pose> poses, std::span<const double> times) {
-  check_extension(poses, times);
-  JournalStroke& stroke = strokes_.back();
-  stroke.poses.insert(stroke.poses.end(), poses.begin(), poses.end());
-  stroke.times.insert(stroke.times.end(), times.begin(), times.end());
+void Journal::extend_stroke(const JournalRows& rows) {
+  rules_.extend_stroke(rows);
+  strokes_.back().append(rows);
+}
+
+void Journal::take_back(std::size_t n) {
+  rules_.take_back(n);
+}
+
+void Journal::bring_back(std::size_t n) {
+  rules_.bring_back(n);
 }
 
 namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::invalid_argument(what);
+}
 
 /// mm/min with which the tip comes to each row; the first row takes the first feed there is. Hands rest and jerk, and
 /// clocks tick: what is beyond any machine is held within bounds.
@@ -112,8 +69,9 @@ std::vector<double> feeds(const JournalStroke& stroke, std::size_t index) {
 
 Program to_program(const Journal& journal, std::map<int, Tool> tools, const JournalProgramOptions& options) {
   std::vector<CutterPath> paths;
-  for (std::size_t k = 0; k < journal.strokes().size(); ++k) {
-    const JournalStroke& stroke = journal.strokes()[k];
+  const std::span<const JournalStroke> strokes = journal.strokes();
+  for (std::size_t k = 0; k < strokes.size(); ++k) {
+    const JournalStroke& stroke = strokes[k];
     paths.push_back(
         {stroke.poses, options.feed ? std::vector{*options.feed} : feeds(stroke, k), options.spindle, stroke.tool});
   }

@@ -12,59 +12,44 @@
 
 #include "nc/cutter_path.hpp"
 #include "nc/program.hpp"
+#include "session/journal_rules.hpp"
 
 namespace riffler {
-
-/// The frame of the stock's volume, and the file of its snapshot where it is not the full block.
-struct JournalStock {
-  Box3 box;
-  double pitch = 0;
-  std::string directions = "z";  ///< "z" or "xyz"
-  std::string snapshot;          ///< file name beside the journal (.rvol), or empty: a block
-};
-
-/// One stroke: what was carved in one go with one tool.
-struct JournalStroke {
-  int tool = 0;
-  double tolerance = 0.01;  ///< mm, as carve() was given it
-  std::string name;
-  std::vector<Pose> poses;    ///< at least one
-  std::vector<double> times;  ///< s, one per pose, never falling; or empty: not recorded
-};
 
 /// In memory. Strokes keep their order; a tool's number means one tool for good.
 class Journal {
  public:
-  /// Each throws std::invalid_argument saying what is wrong and leaves the journal as it was. A second stock, a number
-  /// with another tool, and a stroke with a tool that is not there are wrong. Poses are kept to the bit.
-  void set_stock(JournalStock stock);
+  /// Each throws as JournalRules does and leaves the journal as it was. Numbers are kept to the bit.
+  void set_stock(const JournalStock& stock);
   /// `json`: the tool's dict as JSON text.
-  void add_tool(int number, std::string json);
+  void add_tool(int number, const std::string& json);
   void add_note(std::string key, std::string value);
+  /// Strokes that were taken back are gone for good with it.
   void add_stroke(JournalStroke stroke);
-  /// More poses for the last stroke, with times if it has times.
-  void extend_stroke(std::span<const Pose> poses, std::span<const double> times);
+  /// More rows for the stroke that was added last, with the same columns.
+  void extend_stroke(const JournalRows& rows);
+  /// The last n strokes no longer count (undo), and count again (redo), those taken back last first. The last stroke
+  /// has ended with either.
+  void take_back(std::size_t n = 1);
+  void bring_back(std::size_t n = 1);
 
-  /// The same checks without the change.
-  void check_stock(const JournalStock& stock) const;
-  void check_tool(int number, const std::string& json) const;
-  void check_stroke(const JournalStroke& stroke) const;
-  void check_extension(std::span<const Pose> poses, std::span<const double> times) const;
-
-  const std::optional<JournalStock>& stock() const { return stock_; }
-  const std::map<int, std::string>& tools() const { return tools_; }
+  const std::optional<JournalStock>& stock() const { return rules_.stock(); }
+  const std::map<int, std::string>& tools() const { return rules_.tools(); }
   const std::vector<std::pair<std::string, std::string>>& notes() const { return notes_; }
-  const std::vector<JournalStroke>& strokes() const { return strokes_; }
+  /// Those that count.
+  std::span<const JournalStroke> strokes() const { return std::span(strokes_).first(rules_.counting()); }
+  /// Those that can be brought back, in the order in which they were made.
+  std::span<const JournalStroke> taken_back() const { return std::span(strokes_).subspan(rules_.counting()); }
+  const JournalRules& rules() const { return rules_; }
 
   /// The byte at which the file that this was read from had been cut, after its last whole record; nothing for a whole
   /// file.
   std::optional<std::uint64_t> cut_at;
 
  private:
-  std::optional<JournalStock> stock_;
-  std::map<int, std::string> tools_;
+  JournalRules rules_;
   std::vector<std::pair<std::string, std::string>> notes_;
-  std::vector<JournalStroke> strokes_;
+  std::vector<JournalStroke> strokes_;  // first those that count
 };
 
 struct JournalProgramOptions {

@@ -50,7 +50,9 @@ std::vector<std::uint8_t> to_bytes(const Journal& journal) {
   for (const auto& [key, value] : journal.notes()) add(note_record(key, value));
   if (journal.stock()) add(stock_record(*journal.stock()));
   for (const auto& [number, json] : journal.tools()) add(tool_record(number, json));
-  for (const JournalStroke& stroke : journal.strokes()) add(stroke_record(stroke));
+  for (const auto strokes : {journal.strokes(), journal.taken_back()})
+    for (const JournalStroke& stroke : strokes) add(stroke_record(stroke));
+  if (const std::size_t n = journal.taken_back().size()) add(take_back_record(n));
   return out;
 }
 
@@ -86,7 +88,8 @@ void write_at(int fd, View bytes, std::uint64_t at, const std::string& name) {
   while (!bytes.empty()) {
     const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail_system(name, "cannot be written");
+    if (n == 0) errno = ENOSPC;  // no system says so, but none promises not to; trying again would be for ever
+    if (n <= 0) fail_system(name, "cannot be written");
     bytes = bytes.subspan(static_cast<std::size_t>(n));
     at += static_cast<std::uint64_t>(n);
   }
@@ -94,23 +97,26 @@ void write_at(int fd, View bytes, std::uint64_t at, const std::string& name) {
 
 }  // namespace
 
-JournalWriter::JournalWriter(const std::filesystem::path& path) : name_(path.filename().string()) {
+JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : name_(path.filename().string()) {
   Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
   if (file.get() < 0) fail_system(name_, "cannot be opened for writing");
   if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by somebody else");
   struct stat status{};
   if (fstat(file.get(), &status) != 0) fail_system(name_, "cannot be read");
+  Journal journal;
   if (status.st_size == 0) {
     const Bytes begin = journal_header();
     write_at(file.get(), begin, 0, name_);
     size_ = begin.size();
   } else {
     const Bytes bytes = read_file(path);
-    journal_ = parse_journal(bytes, name_);
-    size_ = journal_.cut_at.value_or(bytes.size());
-    if (journal_.cut_at && ftruncate(file.get(), static_cast<off_t>(size_)) != 0)
+    journal = parse_journal(bytes, name_);
+    size_ = journal.cut_at.value_or(bytes.size());
+    if (journal.cut_at && ftruncate(file.get(), static_cast<off_t>(size_)) != 0)
       fail_system(name_, "its cut tail cannot be removed");
   }
+  rules_ = journal.rules();
+  if (keep == Keep::Everything) journal_ = std::move(journal);
   fd_ = file.release();
 }
 
@@ -122,45 +128,63 @@ void JournalWriter::close() {
   if (fd_ >= 0) ::close(std::exchange(fd_, -1));
 }
 
+const Journal& JournalWriter::journal() const {
+  if (!journal_) throw std::runtime_error(name_ + ": its writer does not keep what it wrote: read the file");
+  return *journal_;
+}
+
 void JournalWriter::append(const std::vector<std::uint8_t>& bytes) {
   if (fd_ < 0) throw std::runtime_error(name_ + ": closed");
+  // On a full disk, half a record: a cut tail, which the next record overwrites or this removes.
+  const auto cut = [&] { torn_ = torn_ && ftruncate(fd_, static_cast<off_t>(size_)) != 0; };
+  cut();
   try {
     write_at(fd_, bytes, size_, name_);
   } catch (...) {
-    // Half a record is a cut tail, which the next record overwrites or this removes.
-    if (ftruncate(fd_, static_cast<off_t>(size_)) != 0) errno = 0;
+    torn_ = true;
+    cut();
     throw;
   }
   size_ += bytes.size();
 }
 
+/// `apply` what the rules allow, as soon as its record is in the file.
+template <class Apply, class Record>
+void JournalWriter::change(const Apply& apply, const Record& record) {
+  JournalRules after = rules_;
+  apply(after);
+  append(record());
+  rules_ = std::move(after);
+  if (journal_) apply(*journal_);
+}
+
 void JournalWriter::set_stock(const JournalStock& stock) {
-  journal_.check_stock(stock);
-  append(stock_record(stock));
-  journal_.set_stock(stock);
+  change([&](auto& to) { to.set_stock(stock); }, [&] { return stock_record(stock); });
 }
 
 void JournalWriter::add_tool(int number, const std::string& json) {
-  journal_.check_tool(number, json);
-  append(tool_record(number, json));
-  journal_.add_tool(number, json);
+  change([&](auto& to) { to.add_tool(number, json); }, [&] { return tool_record(number, json); });
 }
 
 void JournalWriter::add_note(const std::string& key, const std::string& value) {
   append(note_record(key, value));
-  journal_.add_note(key, value);
+  if (journal_) journal_->add_note(key, value);
 }
 
 void JournalWriter::add_stroke(const JournalStroke& stroke) {
-  journal_.check_stroke(stroke);
-  append(stroke_record(stroke));
-  journal_.add_stroke(stroke);
+  change([&](auto& to) { to.add_stroke(stroke); }, [&] { return stroke_record(stroke); });
 }
 
-void JournalWriter::extend_stroke(std::span<const Pose> poses, std::span<const double> times) {
-  journal_.check_extension(poses, times);
-  append(more_record(poses, times));
-  journal_.extend_stroke(poses, times);
+void JournalWriter::extend_stroke(const JournalRows& rows) {
+  change([&](auto& to) { to.extend_stroke(rows); }, [&] { return more_record(rows); });
+}
+
+void JournalWriter::take_back(std::size_t n) {
+  change([&](auto& to) { to.take_back(n); }, [&] { return take_back_record(n); });
+}
+
+void JournalWriter::bring_back(std::size_t n) {
+  change([&](auto& to) { to.bring_back(n); }, [&] { return bring_back_record(n); });
 }
 
 void JournalWriter::sync() {

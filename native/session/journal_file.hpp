@@ -4,11 +4,14 @@
 //   record   4 bytes "RREC", u32 kind, u32 size of the payload, u32 CRC-32 of the 12 bytes before,
 //            payload, u32 CRC-32 of the payload
 //
-// Little endian. A record is written with one call and never changed, so a crash can cut the last one only.
+// Little endian. A record is written with one call and never changed, so a crash can cut the last one only. The version
+// is that of header and records; what a record may hold grows by kinds and columns, and a reader names those that it
+// does not know.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,33 +34,45 @@ void write_journal(const Journal& journal, const std::filesystem::path& path);
 /// none, and a long stroke written in pieces loses at most the last. sync() is for a crash of the machine.
 class JournalWriter {
  public:
+  /// What the writer has in memory: all that is in the file, or what its checks need, which does not grow with rows and
+  /// strokes.
+  enum class Keep { Everything, Rules };
+
   /// Goes on with a journal that is there, after cutting a damaged tail off, or begins a new one.
   /// FormatError as read_journal; std::runtime_error where the file cannot be written.
-  explicit JournalWriter(const std::filesystem::path& path);
+  explicit JournalWriter(const std::filesystem::path& path, Keep keep = Keep::Everything);
   JournalWriter(const JournalWriter&) = delete;
   JournalWriter& operator=(const JournalWriter&) = delete;
   ~JournalWriter();
 
-  /// As the functions of Journal: what it refuses is not written; what could not be written is not in journal() either.
+  /// As the functions of Journal: what it refuses is not written; what could not be written is not known here either.
   void set_stock(const JournalStock& stock);
   void add_tool(int number, const std::string& json);
   void add_note(const std::string& key, const std::string& value);
   void add_stroke(const JournalStroke& stroke);
-  void extend_stroke(std::span<const Pose> poses, std::span<const double> times);
+  void extend_stroke(const JournalRows& rows);
+  void take_back(std::size_t n = 1);
+  void bring_back(std::size_t n = 1);
 
+  /// Another thread may go on writing meanwhile.
   void sync();
   /// Ends writing; a call after it throws std::runtime_error.
   void close();
-  /// Everything in the file.
-  const Journal& journal() const { return journal_; }
+  /// Everything in the file; std::runtime_error where only the rules are kept.
+  const Journal& journal() const;
+  const JournalRules& rules() const { return rules_; }
 
  private:
+  template <class Apply, class Record>
+  void change(const Apply& apply, const Record& record);
   void append(const std::vector<std::uint8_t>& record);
 
   std::string name_;
-  Journal journal_;
+  JournalRules rules_;
+  std::optional<Journal> journal_;
   int fd_ = -1;
   std::uint64_t size_ = 0;  // bytes of whole records
+  bool torn_ = false;       // a piece of a record may follow them
 };
 
 }  // namespace riffler

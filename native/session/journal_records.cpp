@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "geom/error.hpp"
 
@@ -17,29 +18,64 @@ constexpr std::string_view kMagic = "RIFFLERJ", kRecordMagic = "RREC";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderSize = 16, kRecordHeaderSize = 16, kRecordTailSize = 4;
 
-enum Kind : std::uint32_t { kStock = 1, kTool = 2, kNote = 3, kStroke = 4, kMore = 5 };
+enum Kind : std::uint32_t { kStock = 1, kTool = 2, kNote = 3, kStroke = 4, kMore = 5, kTakeBack = 6, kBringBack = 7 };
 
 bool starts_with(View bytes, std::string_view text) {
   return bytes.size() >= text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
 }
 
-// --- Poses: columns of doubles to the bit. Neighbours differ little, so the differences of their bit patterns, byte
+// --- Rows: columns of doubles to the bit. Neighbours differ little, so the differences of their bit patterns, byte
 // plane by byte plane, are mostly zeros, which zlib then packs. ---
 
-constexpr std::size_t kPoseColumns = 6;
+struct Column {
+  enum Of { kTip, kAxis, kTime, kForce, kTorque, kRemoved } of;
+  int k = 0;  // of a vector
+};
 
-double& column(Pose& pose, std::size_t k) {
-  return k < 3 ? pose.tip[static_cast<int>(k)] : pose.axis[static_cast<int>(k - 3)];
+/// In the order in which they stand in the file.
+std::vector<Column> columns_of(bool times, bool forces, bool removed) {
+  std::vector<Column> out;
+  const auto vector = [&](Column::Of of) { out.insert(out.end(), {{of, 0}, {of, 1}, {of, 2}}); };
+  vector(Column::kTip), vector(Column::kAxis);
+  if (times) out.push_back({Column::kTime});
+  if (forces) vector(Column::kForce), vector(Column::kTorque);
+  if (removed) out.push_back({Column::kRemoved});
+  return out;
 }
 
-void put_rows(Bytes& out, std::span<const Pose> poses, std::span<const double> times) {
-  const std::size_t n = poses.size(), columns = kPoseColumns + (times.empty() ? 0 : 1);
-  Bytes planes(n * columns * 8);
-  for (std::size_t c = 0; c < columns; ++c) {
+/// Of JournalRows or a JournalStroke.
+template <class Rows>
+auto& value(Rows& rows, const Column& column, std::size_t row) {
+  switch (column.of) {
+    case Column::kTip:
+      return rows.poses[row].tip[column.k];
+    case Column::kAxis:
+      return rows.poses[row].axis[column.k];
+    case Column::kForce:
+      return rows.forces[row].force[column.k];
+    case Column::kTorque:
+      return rows.forces[row].torque[column.k];
+    case Column::kRemoved:
+      return rows.removed[row];
+    case Column::kTime:
+      break;
+  }
+  return rows.times[row];
+}
+
+// Which columns there are: their number in the low byte, and a bit for those that are there. Times have none: the
+// number tells.
+constexpr std::uint32_t kForces = 0x100, kRemoved = 0x200;
+
+void put_rows(Bytes& out, const JournalRows& rows) {
+  const bool forces = !rows.forces.empty(), removed = !rows.removed.empty();
+  const std::vector<Column> columns = columns_of(!rows.times.empty(), forces, removed);
+  const std::size_t n = rows.poses.size();
+  Bytes planes(n * columns.size() * 8);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
     std::uint64_t before = 0;
     for (std::size_t row = 0; row < n; ++row) {
-      Pose pose = poses[row];
-      const auto bits = std::bit_cast<std::uint64_t>(c < kPoseColumns ? column(pose, c) : times[row]);
+      const auto bits = std::bit_cast<std::uint64_t>(value(rows, columns[c], row));
       const std::uint64_t difference = bits - before;
       before = bits;
       for (std::size_t k = 0; k < 8; ++k)
@@ -51,34 +87,48 @@ void put_rows(Bytes& out, std::span<const Pose> poses, std::span<const double> t
   if (compress2(packed.data(), &size, planes.data(), planes.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
     throw std::runtime_error("zlib cannot compress");
   put(out, static_cast<std::uint64_t>(n));
-  put(out, static_cast<std::uint32_t>(columns));
+  put(out, static_cast<std::uint32_t>(columns.size()) | (forces ? kForces : 0) | (removed ? kRemoved : 0));
   put(out, static_cast<std::uint64_t>(size));
   out.insert(out.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
 }
 
-void take_rows(ByteTaker& from, std::vector<Pose>& poses, std::vector<double>& times) {
+/// The columns that the number in a file means; a reader that does not know them all must not guess.
+std::vector<Column> known_columns(std::uint32_t code) {
+  const bool forces = code & kForces, removed = code & kRemoved;
+  for (const bool times : {false, true}) {
+    std::vector<Column> columns = columns_of(times, forces, removed);
+    if (code == (columns.size() | (forces ? kForces : 0) | (removed ? kRemoved : 0))) return columns;
+  }
+  throw std::invalid_argument("a stroke with a wrong number of columns");
+}
+
+/// Fills the rows of an empty stroke.
+void take_rows(ByteTaker& from, JournalStroke& out) {
   const std::uint64_t n = from.number<std::uint64_t>();
-  const std::uint32_t columns = from.number<std::uint32_t>();
+  const std::vector<Column> columns = known_columns(from.number<std::uint32_t>());
   const View packed = from.raw(from.number<std::uint64_t>());
-  if (columns != kPoseColumns && columns != kPoseColumns + 1)
-    throw std::invalid_argument("a stroke with a wrong number of columns");
   // zlib packs at most 1 : 1032, so a damaged count cannot ask for more memory than the file can fill.
-  if (n > packed.size() * 1032 / (columns * 8))
+  if (n > packed.size() * 1032 / (columns.size() * 8))
     throw std::invalid_argument("a stroke with more poses than it can hold");
-  Bytes planes(static_cast<std::size_t>(n * columns * 8));
+  const auto rows = static_cast<std::size_t>(n);
+  Bytes planes(rows * columns.size() * 8);
   uLongf size = planes.size();
   if (uncompress(planes.data(), &size, packed.data(), packed.size()) != Z_OK || size != planes.size())
     throw std::invalid_argument("a stroke that cannot be unpacked");
-  poses.resize(static_cast<std::size_t>(n));
-  times.resize(columns > kPoseColumns ? poses.size() : 0);
-  for (std::size_t c = 0; c < columns; ++c) {
+  out.poses.resize(rows);
+  for (const Column& column : columns) {
+    if (column.of == Column::kTime) out.times.resize(rows);
+    if (column.of == Column::kForce) out.forces.resize(rows);
+    if (column.of == Column::kRemoved) out.removed.resize(rows);
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c) {
     std::uint64_t bits = 0;
-    for (std::size_t row = 0; row < poses.size(); ++row) {
+    for (std::size_t row = 0; row < rows; ++row) {
       std::uint64_t difference = 0;
       for (std::size_t k = 0; k < 8; ++k)
-        difference |= static_cast<std::uint64_t>(planes[(c * 8 + k) * poses.size() + row]) << (8 * k);
+        difference |= static_cast<std::uint64_t>(planes[(c * 8 + k) * rows + row]) << (8 * k);
       bits += difference;
-      (c < kPoseColumns ? column(poses[row], c) : times[row]) = std::bit_cast<double>(bits);
+      value(out, columns[c], row) = std::bit_cast<double>(bits);
     }
   }
 }
@@ -141,14 +191,26 @@ Bytes stroke_record(const JournalStroke& stroke) {
   put(out, static_cast<std::uint32_t>(stroke.tool));
   put(out, stroke.tolerance);
   put_text(out, stroke.name);
-  put_rows(out, stroke.poses, stroke.times);
+  put_rows(out, stroke.rows());
   return record(kStroke, out);
 }
 
-Bytes more_record(std::span<const Pose> poses, std::span<const double> times) {
+Bytes more_record(const JournalRows& rows) {
   Bytes out;
-  put_rows(out, poses, times);
+  put_rows(out, rows);
   return record(kMore, out);
+}
+
+Bytes take_back_record(std::size_t n) {
+  Bytes out;
+  put(out, static_cast<std::uint64_t>(n));
+  return record(kTakeBack, out);
+}
+
+Bytes bring_back_record(std::size_t n) {
+  Bytes out;
+  put(out, static_cast<std::uint64_t>(n));
+  return record(kBringBack, out);
 }
 
 std::size_t check_header(View bytes, const std::string& name) {
@@ -206,19 +268,27 @@ void apply_record(const Record& record, Journal& journal) {
       stroke.tool = static_cast<int>(from.number<std::uint32_t>());
       stroke.tolerance = from.number<double>();
       stroke.name = from.text();
-      take_rows(from, stroke.poses, stroke.times);
+      take_rows(from, stroke);
       journal.add_stroke(std::move(stroke));
       break;
     }
     case kMore: {
-      std::vector<Pose> poses;
-      std::vector<double> times;
-      take_rows(from, poses, times);
-      journal.extend_stroke(poses, times);
+      JournalStroke more;
+      take_rows(from, more);
+      journal.extend_stroke(more.rows());
+      break;
+    }
+    case kTakeBack: {
+      journal.take_back(from.number<std::uint64_t>());
+      break;
+    }
+    case kBringBack: {
+      journal.bring_back(from.number<std::uint64_t>());
       break;
     }
     default:
-      throw std::invalid_argument("a record of unknown kind " + std::to_string(record.kind));
+      throw std::invalid_argument("a record of kind " + std::to_string(record.kind) +
+                                  ", unknown here: a newer Riffler wrote it");
   }
   from.done();
 }

@@ -49,6 +49,45 @@ def test_file_keeps_everything_to_the_bit(journal, tmp_path):
     assert file.read_bytes() == first
 
 
+def test_forces_and_cuts_come_back_to_the_bit(tmp_path):
+    file = tmp_path / "a.rjournal"
+    poses, times = stroke(40)
+    rng = np.random.default_rng(3)
+    forces, removed = rng.normal(size=(40, 6)), rng.uniform(size=40)
+    with riffler.JournalWriter(file, keep=False) as w:
+        w.add_tool(1, BALL)
+        w.add_stroke(1, poses[:10], times[:10], forces=forces[:10], removed=removed[:10])
+        w.extend_stroke(poses[10:], times[10:], forces=forces[10:], removed=removed[10:])
+        with pytest.raises(ValueError, match="forces must be as many as poses"):
+            w.extend_stroke(poses, times + 9, removed=removed)
+        w.add_stroke(1, poses, removed=removed)
+        with pytest.raises(ValueError, match="forces for a stroke that has none"):
+            w.extend_stroke(poses, removed=removed, forces=forces)
+        with pytest.raises(RuntimeError, match="does not keep"):
+            _ = w.journal
+    felt, cut = riffler.Journal.read(file).strokes
+    assert felt.forces.tobytes() == forces.tobytes() and felt.removed.tobytes() == removed.tobytes()
+    assert cut.forces is None and cut.times is None and cut.removed.tobytes() == removed.tobytes()
+
+
+def test_strokes_are_taken_back_and_brought_back(journal, tmp_path):
+    last = journal.strokes[2]
+    journal.take_back(2)
+    assert [s.name for s in journal.strokes] == ["stroke 0"]
+    with pytest.raises(IndexError, match="taken back"):
+        _ = last.poses
+    assert len(journal.program()) == 52
+    journal.write(tmp_path / "a.rjournal")
+    read = riffler.Journal.read(tmp_path / "a.rjournal")
+    read.bring_back()
+    assert [s.name for s in read.strokes] == ["stroke 0", "stroke 1"]
+    with riffler.JournalWriter(tmp_path / "a.rjournal") as w:
+        w.bring_back(2)
+        w.take_back()
+        w.add_stroke(1, stroke(3)[0], name="last")
+    assert [s.name for s in riffler.Journal.read(tmp_path / "a.rjournal").strokes] == ["stroke 0", "stroke 1", "last"]
+
+
 def test_cut_file_gives_whole_strokes_and_says_where(journal, tmp_path):
     file = tmp_path / "a.rjournal"
     journal.write(file)
@@ -138,7 +177,15 @@ def test_program_has_the_strokes_with_their_tools_and_feeds(journal):
         (lambda j: j.add_stroke(1, stroke(3)[0], [1, 2, np.nan]), "times, row 2"),
         (lambda j: j.add_stroke(1, stroke(3)[0], [1, 3, 2]), "times, row 2"),
         (lambda j: j.add_stroke(1, stroke(3)[0], tolerance=0), "tolerance"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], forces=np.zeros((2, 6))), "forces must be as many"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], forces=np.zeros((3, 3))), "forces must have the shape"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], forces=np.full((3, 6), np.inf)), "forces, row 0"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], removed=[1, 2]), "removed must be as many"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], removed=[1, -2, 0]), "removed, row 1"),
         (lambda j: j.extend_stroke(stroke(3)[0]), "times must be as many"),
+        (lambda j: j.take_back(4), "from 1 to 3"),
+        (lambda j: j.take_back(0), "from 1 to 3"),
+        (lambda j: j.bring_back(), "no stroke to bring back"),
     ],
 )
 def test_what_is_wrong_is_named_and_changes_nothing(journal, tmp_path, call, message):

@@ -4,24 +4,32 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <stdexcept>
 
+#include "geom/bytes.hpp"
 #include "geom/error.hpp"
 #include "geom/io.hpp"
 #include "session/journal_file.hpp"
+#include "support/error_of.hpp"
+#include "support/temporary_file.hpp"
 
 namespace riffler {
 namespace {
+
+using test::error_of;
+using test::TemporaryFile;
 
 const std::string kBall = R"({"kind": "ball", "diameter": 6, "length": 30})";
 
 JournalStroke wavy(int rows, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  JournalStroke s{1, 0.005, "wave \xC3\xA9", {}, {}};
+  JournalStroke s{1, 0.005, "wave \xC3\xA9"};
   for (int i = 0; i < rows; ++i) {
     const double t = 1e-3 * i;
     s.poses.push_back({{50 * t, 20 * std::sin(3 * t), -5 * t + 1e-4 * normal(random)},
@@ -29,6 +37,31 @@ JournalStroke wavy(int rows, unsigned seed = 1) {
     s.times.push_back(t);
   }
   return s;
+}
+
+/// As a session of the pen leaves it: with what was felt and cut.
+JournalStroke felt(int rows, unsigned seed = 1) {
+  JournalStroke s = wavy(rows, seed);
+  std::mt19937 random(seed + 100);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < rows; ++i) {
+    s.forces.push_back({{normal(random), -0.0, 1e-310}, {normal(random), 1e300, -normal(random)}});
+    s.removed.push_back(std::abs(normal(random)));
+  }
+  return s;
+}
+
+/// Each column that may be missing, missing.
+std::vector<JournalStroke> with_all_columns(int rows) {
+  std::vector<JournalStroke> out;
+  for (unsigned mask = 0; mask < 8; ++mask) {
+    JournalStroke s = felt(rows, mask + 1);
+    if (mask & 1) s.times.clear();
+    if (mask & 2) s.forces.clear();
+    if (mask & 4) s.removed.clear();
+    out.push_back(s);
+  }
+  return out;
 }
 
 Journal sample() {
@@ -42,6 +75,7 @@ Journal sample() {
   untimed.tool = 7, untimed.times.clear();
   j.add_stroke(untimed);
   j.add_stroke(wavy(1));
+  j.add_stroke(felt(40));
   return j;
 }
 
@@ -50,6 +84,8 @@ void expect_same(const JournalStroke& a, const JournalStroke& b) {
   EXPECT_EQ(a.tolerance, b.tolerance);
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.times, b.times);
+  EXPECT_EQ(a.forces, b.forces);
+  EXPECT_EQ(a.removed, b.removed);
   ASSERT_EQ(a.poses.size(), b.poses.size());
   for (std::size_t k = 0; k < a.poses.size(); ++k) {
     EXPECT_EQ(a.poses[k].tip, b.poses[k].tip);
@@ -72,16 +108,6 @@ void expect_same(const Journal& a, const Journal& b) {
   for (std::size_t k = 0; k < a.strokes().size(); ++k) expect_same(a.strokes()[k], b.strokes()[k]);
 }
 
-/// A file of its own for a test, gone after it.
-struct TemporaryFile {
-  std::filesystem::path path;
-  explicit TemporaryFile(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / ("riffler_" + std::to_string(getpid()) + "_" + name)) {
-    std::filesystem::remove(path);
-  }
-  ~TemporaryFile() { std::filesystem::remove(path); }
-};
-
 TEST(Journal, ComesBackToTheBit) {
   const Journal j = sample();
   const Journal k = parse_journal(to_bytes(j), "j");
@@ -89,6 +115,38 @@ TEST(Journal, ComesBackToTheBit) {
   EXPECT_FALSE(k.cut_at);
   EXPECT_EQ(to_bytes(j), to_bytes(k));
   expect_same(Journal(), parse_journal(to_bytes(Journal()), "j"));
+}
+
+TEST(Journal, KeepsTheColumnsThatAStrokeHas) {
+  Journal j;
+  j.add_tool(1, kBall);
+  for (const JournalStroke& s : with_all_columns(50)) {
+    j.add_stroke(s);
+    JournalStroke later = s;
+    for (double& t : later.times) t += s.times.back();
+    j.extend_stroke(later.rows());
+  }
+  const Journal k = parse_journal(to_bytes(j), "j");
+  expect_same(j, k);
+  EXPECT_TRUE(std::signbit(k.strokes()[0].forces[7].force.y));
+  EXPECT_EQ(k.strokes()[0].poses.size(), 100U);
+}
+
+TEST(Journal, WithoutForcesHasTheBytesOfTheFirstRelease) {
+  // Six columns, and seven with times, as files that are there have them: the number stands after the number of rows.
+  Journal j;
+  j.add_tool(1, kBall);
+  const std::size_t begin = to_bytes(j).size() + 16 + 4 + 8 + 4 + 8;
+  const auto code = [&](JournalStroke s) {
+    s.name.clear();
+    Journal k = j;
+    k.add_stroke(s);
+    return get<std::uint32_t>(to_bytes(k), begin);
+  };
+  const std::uint32_t wanted[] = {0x300 + 14, 0x300 + 13, 0x200 + 8, 0x200 + 7, 0x100 + 13, 0x100 + 12, 7, 6};
+  std::vector<std::uint32_t> found;
+  for (const JournalStroke& s : with_all_columns(3)) found.push_back(code(s));
+  EXPECT_EQ(found, std::vector<std::uint32_t>(std::begin(wanted), std::end(wanted)));
 }
 
 TEST(Journal, KeepsEveryDoubleThatAPoseMayHold) {
@@ -125,7 +183,7 @@ TEST(Journal, CutAnywhereGivesAllWholeRecords) {
     EXPECT_EQ(j.cut_at.value_or(size), to_bytes(j).size());
     EXPECT_EQ(j.cut_at.has_value(), to_bytes(j).size() < size) << "a cut that nobody was told of";
   }
-  EXPECT_EQ(before, 7U);
+  EXPECT_EQ(before, 8U);
   for (std::size_t size = 0; size < 16; ++size)
     EXPECT_THROW(parse_journal(std::span(bytes).first(size), "j"), FormatError);
 }
@@ -136,7 +194,7 @@ TEST(Journal, TailOfZerosIsACutTail) {
   bytes.resize(size + 4096, 0);
   const Journal j = parse_journal(bytes, "j");
   EXPECT_EQ(j.cut_at, size);
-  EXPECT_EQ(j.strokes().size(), 3U);
+  EXPECT_EQ(j.strokes().size(), 4U);
 }
 
 TEST(Journal, AnyDamagedByteIsFound) {
@@ -152,7 +210,7 @@ TEST(Journal, AnyDamagedByteIsFound) {
     if (at >= last) {
       const Journal j = parse_journal(damaged, "j");
       EXPECT_EQ(j.cut_at, last) << at;
-      EXPECT_EQ(j.strokes().size(), 2U);
+      EXPECT_EQ(j.strokes().size(), 3U);
       continue;
     }
     try {
@@ -170,7 +228,7 @@ TEST(Journal, ForgedRecordsAreFormatErrors) {
   Journal one;
   one.add_tool(1, kBall);
   const std::size_t prefix = to_bytes(one).size();
-  one.add_stroke(wavy(20));
+  one.add_stroke(felt(20));
   const auto bytes = to_bytes(one);
   const auto crc = [](std::span<const std::uint8_t> data) {
     std::uint32_t c = ~0U;
@@ -192,6 +250,7 @@ TEST(Journal, ForgedRecordsAreFormatErrors) {
       const Journal j = parse_journal(forged, "j");
       ASSERT_EQ(j.strokes().size(), 1U) << "the checksum of the test is right";
       for (const Pose& pose : j.strokes()[0].poses) ASSERT_TRUE(finite(pose.tip));
+      for (const Wrench& wrench : j.strokes()[0].forces) ASSERT_TRUE(finite(wrench));
     } catch (const FormatError& e) {
       ++refused;
       ASSERT_NE(std::string(e.what()).find("byte " + std::to_string(prefix)), std::string::npos) << e.what();
@@ -206,15 +265,6 @@ TEST(Journal, RefusesOtherFilesAndVersions) {
   EXPECT_THROW(parse_journal(other, "j"), FormatError);
   EXPECT_THROW(parse_journal({}, "j"), FormatError);
   EXPECT_THROW(read_journal("/nowhere/at/all.rjournal"), FormatError);
-}
-
-std::string error_of(const auto& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
 }
 
 TEST(Journal, NamesWhatIsWrongAndStaysAsItWas) {
@@ -242,8 +292,21 @@ TEST(Journal, NamesWhatIsWrongAndStaysAsItWas) {
   EXPECT_EQ(error_of([&] { j.add_stroke(with([](auto& s) { s.times[2] = -1; })); }),
             "times, row 2: earlier than the one before");
   EXPECT_EQ(error_of([&] { j.add_stroke(with([&](auto& s) { s.times[1] = nan; })); }), "times, row 1: not finite");
-  EXPECT_NE(error_of([&] { j.extend_stroke(wavy(2).poses, {}); }), "") << "the last stroke has times";
-  EXPECT_NE(error_of([&] { Journal().extend_stroke(wavy(2).poses, {}); }), "");
+  EXPECT_EQ(error_of([&] { j.add_stroke(with([&](auto& s) { s.forces = felt(2).forces; })); }),
+            "forces must be as many as poses");
+  EXPECT_EQ(
+      error_of([&] { j.add_stroke(with([&](auto& s) { s.forces = felt(3).forces, s.forces[1].torque.z = nan; })); }),
+      "forces, row 1: not finite");
+  EXPECT_EQ(error_of([&] { j.add_stroke(with([&](auto& s) { s.removed = {1, 2}; })); }),
+            "removed must be as many as poses");
+  EXPECT_EQ(error_of([&] { j.add_stroke(with([&](auto& s) { s.removed = {1, 0, -1e-300}; })); }),
+            "removed, row 2: must be finite and not negative");
+  EXPECT_EQ(error_of([&] { j.take_back(0); }), "strokes to take back must be from 1 to 4");
+  EXPECT_EQ(error_of([&] { j.take_back(5); }), "strokes to take back must be from 1 to 4");
+  EXPECT_EQ(error_of([&] { Journal().take_back(); }), "there is no stroke to take back");
+  EXPECT_EQ(error_of([&] { j.bring_back(); }), "there is no stroke to bring back");
+  EXPECT_NE(error_of([&] { j.extend_stroke({wavy(2).poses}); }), "") << "the last stroke has times";
+  EXPECT_NE(error_of([&] { Journal().extend_stroke({wavy(2).poses}); }), "");
   Journal fresh;
   EXPECT_NE(error_of([&] { fresh.set_stock({{{0, 0, 0}, {1, 0, 1}}, 1, "z", ""}); }), "");
   EXPECT_NE(error_of([&] { fresh.set_stock({{{0, 0, 0}, {1, 1, 1}}, nan, "z", ""}); }), "");
@@ -263,22 +326,22 @@ TEST(JournalWriter, AppendsAndGoesOnAfterACrash) {
     JournalStroke begun = s;
     begun.poses.resize(40), begun.times.resize(40);
     writer.add_stroke(begun);
-    writer.extend_stroke(std::span(s.poses).subspan(40, 30), std::span(s.times).subspan(40, 30));
-    writer.extend_stroke(std::span(s.poses).subspan(70), std::span(s.times).subspan(70));
+    writer.extend_stroke({std::span(s.poses).subspan(40, 30), std::span(s.times).subspan(40, 30)});
+    writer.extend_stroke({std::span(s.poses).subspan(70), std::span(s.times).subspan(70)});
     writer.sync();
     EXPECT_THROW(writer.add_tool(1, "{}"), std::invalid_argument);
-    EXPECT_THROW(writer.extend_stroke(s.poses, s.times), std::invalid_argument) << "time runs backwards";
+    EXPECT_THROW(writer.extend_stroke(s.rows()), std::invalid_argument) << "time runs backwards";
   }
-  expect_same(s, read_journal(file.path).strokes().at(0));
+  expect_same(s, read_journal(file.path).strokes()[0]);
 
   // The crash: half of the last piece is gone.
   std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 10);
   const Journal cut = read_journal(file.path);
   EXPECT_TRUE(cut.cut_at);
-  EXPECT_EQ(cut.strokes().at(0).poses.size(), 70U);
+  EXPECT_EQ(cut.strokes()[0].poses.size(), 70U);
   {
     JournalWriter writer(file.path);
-    expect_same(writer.journal().strokes().at(0), cut.strokes().at(0));
+    expect_same(writer.journal().strokes()[0], cut.strokes()[0]);
     writer.add_stroke(s);
   }
   const Journal after = read_journal(file.path);
@@ -303,6 +366,48 @@ TEST(JournalWriter, LeavesAlienFilesAlone) {
   write_file(file.path, std::string_view("my poems, not a journal"));
   EXPECT_THROW(JournalWriter writer(file.path), FormatError);
   EXPECT_EQ(read_file(file.path).size(), 23U);
+}
+
+/// Bytes of memory that the process has in use.
+double resident() {
+  std::ifstream statm("/proc/self/statm");
+  double all = 0, pages = 0;
+  statm >> all >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(JournalWriter, OfALongSessionKeepsNoRowsInMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer keeps what was freed";
+#endif
+  const TemporaryFile file("long.rjournal");
+  constexpr int kPieces = 20'000, kRows = 50;  // 10^6 rows, 112 MB in memory
+  JournalStroke piece = felt(kRows);
+  double before = 0;
+  {
+    JournalWriter writer(file.path, JournalWriter::Keep::Rules);
+    writer.add_tool(1, kBall);
+    for (int k = 0; k < kPieces; ++k) {
+      for (double& t : piece.times) t += 1e-3 * kRows;
+      if (k % 100 == 0)
+        writer.add_stroke(piece);
+      else
+        writer.extend_stroke(piece.rows());
+      if (k == 100) before = resident();
+    }
+    EXPECT_LT(resident() - before, 4e6);
+    EXPECT_EQ(writer.rules().counting(), kPieces / 100U);
+    EXPECT_THROW(writer.journal(), std::runtime_error);
+    EXPECT_EQ(error_of([&] { writer.extend_stroke(felt(2).rows()); }), "times, row 0: earlier than the one before");
+  }
+  std::printf("%.1f bytes a row in the file\n", static_cast<double>(std::filesystem::file_size(file.path)) / 1e6);
+  const Journal j = read_journal(file.path);
+  ASSERT_EQ(j.strokes().size(), kPieces / 100U);
+  EXPECT_EQ(j.strokes().back().removed.size(), 100U * kRows);
+  // Going on keeps the checks.
+  JournalWriter writer(file.path, JournalWriter::Keep::Rules);
+  EXPECT_THROW(writer.extend_stroke(felt(2).rows()), std::invalid_argument);
+  EXPECT_EQ(error_of([&] { writer.add_tool(1, "{}"); }), "tool 1 is another tool already: take another number");
 }
 
 TEST(JournalProgram, TakesFeedsFromTimes) {

@@ -1,0 +1,116 @@
+#include "session/journal_rules.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "nc/limits.hpp"
+#include "nc/program.hpp"
+
+namespace riffler {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+std::string at(const char* name, std::size_t row) {
+  return std::string(name) + ", row " + std::to_string(row) + ": ";
+}
+
+/// Whether a column has as many rows as it must have.
+void check_length(const char* name, std::size_t size, bool wanted, std::size_t rows) {
+  if (size == (wanted ? rows : 0)) return;
+  fail(wanted ? std::string(name) + " must be as many as poses" : std::string(name) + " for a stroke that has none");
+}
+
+/// `last`: the time before the first of these, if there is one.
+void check_values(const JournalRows& rows, const double* last) {
+  for (std::size_t row = 0; row < rows.poses.size(); ++row) checked_pose(rows.poses[row], "poses", row);
+  for (std::size_t row = 0; row < rows.times.size(); ++row) {
+    const double& time = rows.times[row];
+    if (!std::isfinite(time)) fail(at("times", row) + "not finite");
+    if (last && time < *last) fail(at("times", row) + "earlier than the one before");
+    last = &time;
+  }
+  for (std::size_t row = 0; row < rows.forces.size(); ++row)
+    if (!finite(rows.forces[row])) fail(at("forces", row) + "not finite");
+  for (std::size_t row = 0; row < rows.removed.size(); ++row)
+    if (!(std::isfinite(rows.removed[row]) && rows.removed[row] >= 0))
+      fail(at("removed", row) + "must be finite and not negative");
+}
+
+template <class T>
+void append_to(std::vector<T>& column, std::span<const T> more) {
+  column.insert(column.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+void JournalStroke::append(const JournalRows& rows) {
+  append_to(poses, rows.poses);
+  append_to(times, rows.times);
+  append_to(forces, rows.forces);
+  append_to(removed, rows.removed);
+}
+
+void JournalRules::set_stock(const JournalStock& stock) {
+  if (stock_) fail("the journal has a stock already");
+  if (!finite(stock.box.lower) || !finite(stock.box.upper)) fail("the stock's box must be finite");
+  for (int k = 0; k < 3; ++k)
+    if (!(stock.box.lower[k] < stock.box.upper[k])) fail("the stock's lower must be below its upper");
+  if (!(std::isfinite(stock.pitch) && stock.pitch > 0)) fail("pitch must be positive and finite");
+  if (stock.directions != "z" && stock.directions != "xyz") fail("directions must be \"z\" or \"xyz\"");
+  stock_ = stock;
+}
+
+void JournalRules::add_tool(int number, const std::string& json) {
+  if (number < 1 || number > kMaxNumber) fail("tool number must be from 1 to " + std::to_string(kMaxNumber));
+  const auto it = tools_.find(number);
+  if (it != tools_.end() && it->second != json)
+    fail("tool " + std::to_string(number) + " is another tool already: take another number");
+  tools_.emplace(number, json);
+}
+
+void JournalRules::add_stroke(const JournalStroke& stroke) {
+  if (!tools_.contains(stroke.tool))
+    fail("tool " + std::to_string(stroke.tool) + " is not in the journal: add it first");
+  if (!(std::isfinite(stroke.tolerance) && stroke.tolerance > 0)) fail("tolerance must be positive and finite");
+  if (stroke.poses.empty()) fail("a stroke needs at least one pose");
+  const std::size_t rows = stroke.poses.size();
+  check_length("times", stroke.times.size(), !stroke.times.empty(), rows);
+  check_length("forces", stroke.forces.size(), !stroke.forces.empty(), rows);
+  check_length("removed", stroke.removed.size(), !stroke.removed.empty(), rows);
+  check_values(stroke.rows(), nullptr);
+  const bool timed = !stroke.times.empty();
+  last_ = {timed ? stroke.times.back() : 0, timed, !stroke.forces.empty(), !stroke.removed.empty()};
+  ++counting_;
+  taken_ = 0;
+}
+
+void JournalRules::extend_stroke(const JournalRows& rows) {
+  if (!last_)
+    fail(counting_ + taken_ == 0 ? "there is no stroke to extend" : "the last stroke has ended: begin another");
+  const std::size_t n = rows.poses.size();
+  check_length("times", rows.times.size(), last_->timed, n);
+  check_length("forces", rows.forces.size(), last_->forces, n);
+  check_length("removed", rows.removed.size(), last_->removed, n);
+  check_values(rows, last_->timed ? &last_->time : nullptr);
+  if (!rows.times.empty()) last_->time = rows.times.back();
+}
+
+void JournalRules::take_back(std::size_t n) {
+  if (counting_ == 0) fail("there is no stroke to take back");
+  if (n < 1 || n > counting_) fail("strokes to take back must be from 1 to " + std::to_string(counting_));
+  counting_ -= n, taken_ += n;
+  last_.reset();
+}
+
+void JournalRules::bring_back(std::size_t n) {
+  if (taken_ == 0) fail("there is no stroke to bring back");
+  if (n < 1 || n > taken_) fail("strokes to bring back must be from 1 to " + std::to_string(taken_));
+  counting_ += n, taken_ -= n;
+  last_.reset();
+}
+
+}  // namespace riffler

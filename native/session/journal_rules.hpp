@@ -1,0 +1,77 @@
+// What a journal is made of, and what may follow what in it.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geom/pose.hpp"
+#include "geom/vec.hpp"
+#include "haptics/wrench.hpp"
+
+namespace riffler {
+
+/// The frame of the stock's volume, and the file of its snapshot where it is not the full block.
+struct JournalStock {
+  Box3 box;
+  double pitch = 0;
+  std::string directions = "z";  ///< "z" or "xyz"
+  std::string snapshot;          ///< file name beside the journal (.rvol), or empty: a block
+};
+
+/// Rows of a stroke. A column beside the poses is as long as they are, or empty: not recorded.
+struct JournalRows {
+  std::span<const Pose> poses;
+  std::span<const double> times{};    ///< s, never falling
+  std::span<const Wrench> forces{};   ///< N, N·mm about the tip: on the hand, at the end of the move to the row
+  std::span<const double> removed{};  ///< mm³ by the move that ends at the row
+};
+
+/// One stroke: what was carved in one go with one tool (replay.hpp).
+struct JournalStroke {
+  int tool = 0;
+  double tolerance = 0.01;  ///< mm, as carve() was given it
+  std::string name{};
+  std::vector<Pose> poses{};    ///< at least one
+  std::vector<double> times{};  ///< this and the following as JournalRows
+  std::vector<Wrench> forces{};
+  std::vector<double> removed{};
+
+  JournalRows rows() const { return {poses, times, forces, removed}; }
+  void append(const JournalRows& rows);
+};
+
+/// What of a journal its checks need: as small for a long one as for a short one. Each function throws
+/// std::invalid_argument saying what is wrong and changes nothing then: a second stock, a number with another tool, a
+/// stroke with a tool that is not there, rows with other columns than the stroke's, more rows for a stroke that has
+/// ended.
+class JournalRules {
+ public:
+  void set_stock(const JournalStock& stock);
+  void add_tool(int number, const std::string& json);
+  void add_stroke(const JournalStroke& stroke);
+  void extend_stroke(const JournalRows& rows);
+  /// n from 1: of those that count, and of those taken back since the last stroke was added.
+  void take_back(std::size_t n);
+  void bring_back(std::size_t n);
+
+  const std::optional<JournalStock>& stock() const { return stock_; }
+  const std::map<int, std::string>& tools() const { return tools_; }
+  std::size_t counting() const { return counting_; }  ///< strokes that were not taken back
+  std::size_t taken() const { return taken_; }        ///< strokes that can be brought back
+
+ private:
+  struct Last {  // row of the stroke that may be extended
+    double time;
+    bool timed, forces, removed;
+  };
+  std::optional<JournalStock> stock_;
+  std::map<int, std::string> tools_;
+  std::optional<Last> last_;
+  std::size_t counting_ = 0, taken_ = 0;
+};
+
+}  // namespace riffler
