@@ -1,0 +1,90 @@
+// What stays of a journal when the disk takes no more: short writes, then errors.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "geom/io.hpp"
+#include "session/journal_file.hpp"
+#include "support/file_limit.hpp"
+#include "support/temporary_file.hpp"
+
+namespace riffler {
+namespace {
+
+using test::FileLimit;
+using test::TemporaryFile;
+
+JournalStroke stroke(int rows, double x) {
+  JournalStroke out{1};
+  for (int k = 0; k < rows; ++k) out.poses.push_back({{x, 0.1 * k, std::sqrt(k)}, {0, 0, 1}});
+  return out;
+}
+
+TEST(JournalDisk, FullInAnyByteOfARecordLeavesAllRecordsBefore) {
+  const TemporaryFile file("disk.rjournal");
+  JournalWriter writer(file.path);
+  writer.add_tool(1, "{}");
+  writer.add_stroke(stroke(20, 0));
+  const auto whole = read_file(file.path);
+  const std::size_t size = whole.size();
+  for (std::size_t more = 0; more < 200; ++more) {
+    {
+      const FileLimit full(size + more);
+      EXPECT_THROW(writer.add_stroke(stroke(20, 1)), std::runtime_error);
+      EXPECT_THROW(writer.extend_stroke(stroke(20, 2).rows()), std::runtime_error);
+      EXPECT_THROW(writer.take_back(), std::runtime_error) << "at most 28 bytes";
+    }
+    ASSERT_EQ(read_file(file.path), whole) << more;
+    if (more == 27) break;
+  }
+  EXPECT_EQ(writer.journal().strokes().size(), 1U);
+  writer.add_stroke(stroke(20, 3));
+  writer.close();
+  const Journal j = read_journal(file.path);
+  EXPECT_FALSE(j.cut_at);
+  ASSERT_EQ(j.strokes().size(), 2U);
+  EXPECT_EQ(j.strokes()[1].poses[0].tip.x, 3);
+}
+
+TEST(JournalDisk, WriterGoesOnWhereThereIsRoomAgain) {
+  // A record may be refused, a shorter one taken after it.
+  const TemporaryFile file("room.rjournal");
+  JournalWriter writer(file.path, JournalWriter::Keep::Rules);
+  writer.add_tool(1, "{}");
+  std::size_t taken = 0, refused = 0;
+  {
+    const FileLimit full(4000);
+    for (int k = 0; k < 60; ++k) {
+      try {
+        writer.add_stroke(stroke(1 + 7 * (k % 5), k));
+        ++taken;
+      } catch (const std::runtime_error& e) {
+        ++refused;
+        EXPECT_NE(std::string(e.what()).find("cannot be written"), std::string::npos) << e.what();
+      }
+      const Journal j = read_journal(file.path);
+      ASSERT_FALSE(j.cut_at);
+      ASSERT_EQ(j.strokes().size(), taken);
+    }
+  }
+  EXPECT_GT(taken, 10U);
+  EXPECT_GT(refused, 10U);
+  writer.add_stroke(stroke(100, 99));
+  EXPECT_EQ(read_journal(file.path).strokes().back().poses.size(), 100U);
+}
+
+TEST(JournalDisk, FullForTheHeaderLeavesAFileThatCanBegin) {
+  const TemporaryFile file("header.rjournal");
+  {
+    const FileLimit full(0);
+    EXPECT_THROW(JournalWriter writer(file.path), std::runtime_error);
+  }
+  JournalWriter writer(file.path);
+  writer.add_note("a", "b");
+  EXPECT_EQ(read_journal(file.path).notes().size(), 1U);
+}
+
+}  // namespace
+}  // namespace riffler
