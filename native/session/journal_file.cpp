@@ -105,9 +105,7 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : nam
   if (fstat(file.get(), &status) != 0) fail_system(name_, "cannot be read");
   Journal journal;
   if (status.st_size == 0) {
-    const Bytes begin = journal_header();
-    write_at(file.get(), begin, 0, name_);
-    size_ = begin.size();
+    append_to(file.get(), journal_header());
   } else {
     const Bytes bytes = read_file(path);
     journal = parse_journal(bytes, name_);
@@ -135,11 +133,15 @@ const Journal& JournalWriter::journal() const {
 
 void JournalWriter::append(const std::vector<std::uint8_t>& bytes) {
   if (fd_ < 0) throw std::runtime_error(name_ + ": closed");
-  // On a full disk, half a record: a cut tail, which the next record overwrites or this removes.
-  const auto cut = [&] { torn_ = torn_ && ftruncate(fd_, static_cast<off_t>(size_)) != 0; };
+  append_to(fd_, bytes);
+}
+
+void JournalWriter::append_to(int fd, const std::vector<std::uint8_t>& bytes) {
+  // On a full disk, half a record: a cut tail, which this removes or the next record overwrites.
+  const auto cut = [&] { torn_ = torn_ && ftruncate(fd, static_cast<off_t>(size_)) != 0; };
   cut();
   try {
-    write_at(fd_, bytes, size_, name_);
+    write_at(fd, bytes, size_, name_);
   } catch (...) {
     torn_ = true;
     cut();

@@ -66,6 +66,7 @@ class JournalWriter {
   template <class Apply, class Record>
   void change(const Apply& apply, const Record& record);
   void append(const std::vector<std::uint8_t>& record);
+  void append_to(int fd, const std::vector<std::uint8_t>& bytes);
 
   std::string name_;
   JournalRules rules_;
