@@ -92,6 +92,10 @@ void riffler_pen_push(riffler_pen_firmware* pen, uint32_t elapsed_us) {
   if (fold_back(pen, limits)) pen->flags |= RIFFLER_PEN_FLAG_FOLDBACK;
   if (riffler_pen_limit_currents(wanted, limits)) pen->flags |= RIFFLER_PEN_FLAG_LIMITED;
   if (pen->state == RIFFLER_PEN_RAMP) scale(wanted, pen->ramp_us, bounds->ramp_us);
+  if (pen->eased_us > 0) {
+    pen->flags |= RIFFLER_PEN_FLAG_LIMITED;
+    scale(wanted, RIFFLER_PEN_EASE_US - pen->eased_us, RIFFLER_PEN_EASE_US);
+  }
   if (pen->link.age_us > bounds->stale_us) {
     pen->flags |= RIFFLER_PEN_FLAG_STALE;
     scale(wanted, bounds->watchdog_us - pen->link.age_us, bounds->watchdog_us - bounds->stale_us);

@@ -143,6 +143,10 @@ static void enter(riffler_pen_firmware* pen, riffler_pen_state next, riffler_pen
   /* A pen that comes up under a host that enables already waits for it to disable. */
   pen->link.armed = next == RIFFLER_PEN_IDLE && last != RIFFLER_PEN_BOOT;
   pen->ramp_us = pen->rate_rest = 0;
+  if (!riffler_pen_pushes(next)) {
+    memset(pen->quiet_us, 0, sizeof pen->quiet_us);
+    pen->eased_us = 0;
+  }
   pen->fault = next == RIFFLER_PEN_FAULT ? cause.fault : (uint8_t)RIFFLER_PEN_NO_FAULT;
   pen->fault_joint = next == RIFFLER_PEN_FAULT ? cause.joint : (uint8_t)RIFFLER_PEN_NO_JOINT;
   if (next == RIFFLER_PEN_FAULT) ++pen->fault_count;

@@ -68,6 +68,7 @@ typedef struct riffler_pen_firmware {
 
   uint8_t fault, fault_joint, fault_count;
   uint32_t quiet_us[RIFFLER_PEN_JOINTS];      /* for how long a joint with much current has not moved */
+  uint32_t eased_us;                          /* 0 to RIFFLER_PEN_EASE_US: how far the force is eased, to see it move */
   uint32_t mismatched_us[RIFFLER_PEN_JOINTS]; /* for how long measured and commanded current differ */
   riffler_pen_sensors sensors;                /* of the last step */
 
@@ -78,6 +79,9 @@ typedef struct riffler_pen_firmware {
   uint32_t energy_us;                   /* how long that is */
   int64_t heat_q12[RIFFLER_PEN_JOINTS]; /* square of the current, through the winding's time constant: mA² × 4096 */
 } riffler_pen_firmware;
+
+/* The time in which a joint that stands under force is eased, from all of the force to none. */
+enum { RIFFLER_PEN_EASE_US = 500000 };
 
 /* A fault's cause: RIFFLER_PEN_NO_FAULT, or a fault and its joint (or RIFFLER_PEN_NO_JOINT). */
 typedef struct riffler_pen_cause {

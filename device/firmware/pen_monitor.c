@@ -6,6 +6,8 @@ enum { COLDEST_DC = -400, BROKEN_DC = 1500 };
 enum { COOLING_DC = 100 };
 /* Counts by which a joint at rest may flicker within a step, above what its speed allows. */
 enum { FLICKER_COUNTS = 8 };
+/* For which a joint whose force was eased to nothing may still not move: a hand takes about a tenth of a second. */
+enum { ANSWER_US = 100000 };
 
 static const riffler_pen_cause kNone = {RIFFLER_PEN_NO_FAULT, RIFFLER_PEN_NO_JOINT};
 
@@ -31,6 +33,21 @@ static size_t first_joint(uint8_t bits) {
   return RIFFLER_PEN_NO_JOINT;
 }
 
+/* A joint that stands under force may be held by a quiet hand, and there its counter is right; or its encoder is dead,
+ * and the force goes on whatever the hand does. Standing still is the same in both, and so is the current, which
+ * follows from the counts. What tells them apart is an answer: the force is slowly eased, and a hand that held against
+ * it moves, so that a count or two later all of the force comes back. A counter that has not moved when there is no
+ * force left is dead, or the joint is at a stop. Heat is no reason to stop a joint that stands: windings are held to
+ * their continuous current by pen_currents.c, moving or not. */
+static void ease(riffler_pen_firmware* pen, uint32_t elapsed_us) {
+  int stands = 0;
+  for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k)
+    stands |= pen->quiet_us[k] >= 1000U * (uint32_t)pen->config.limits.stall_ms;
+  const uint32_t room = stands ? RIFFLER_PEN_EASE_US - pen->eased_us : pen->eased_us;
+  const uint32_t step = elapsed_us < room ? elapsed_us : room;
+  pen->eased_us = stands ? pen->eased_us + step : pen->eased_us - step;
+}
+
 /* What runs on in time, brought forward for every joint whatever is found: differences of current, joints at rest. */
 static void bring_forward(riffler_pen_firmware* pen, const riffler_pen_sensors* sensors, uint32_t elapsed_us) {
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) {
@@ -39,9 +56,10 @@ static void bring_forward(riffler_pen_firmware* pen, const riffler_pen_sensors* 
     const int differs = !pen->drive.brake && magnitude(sensors->current_ma[k] - told) > pen->config.mismatch_ma;
     pen->mismatched_us[k] = differs ? grown(pen->mismatched_us[k], elapsed_us) : 0;
     const int still = sensors->counters[k] == pen->sensors.counters[k];
-    const int pushes = magnitude(told) >= pen->config.limits.stall_ma;
+    const int pushes = magnitude(told) >= pen->config.limits.stall_ma || pen->eased_us > 0;
     pen->quiet_us[k] = still && pushes ? grown(pen->quiet_us[k], elapsed_us) : 0;
   }
+  ease(pen, elapsed_us);
 }
 
 static riffler_pen_cause find_drive_cause(const riffler_pen_firmware* pen, const riffler_pen_sensors* sensors) {
@@ -77,8 +95,9 @@ static riffler_pen_cause find_encoder_cause(const riffler_pen_firmware* pen, con
 }
 
 static riffler_pen_cause find_pushing_cause(const riffler_pen_firmware* pen, uint32_t elapsed_us) {
+  const uint32_t longest = 1000U * (uint32_t)pen->config.limits.stall_ms + RIFFLER_PEN_EASE_US + ANSWER_US;
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k)
-    if (pen->quiet_us[k] >= 1000U * (uint32_t)pen->config.limits.stall_ms) return cause_of(RIFFLER_PEN_STALL, k);
+    if (pen->quiet_us[k] >= longest) return cause_of(RIFFLER_PEN_STALL, k);
   if (elapsed_us > pen->config.late_us) return cause_of(RIFFLER_PEN_LATE_STEP, RIFFLER_PEN_NO_JOINT);
   if (!pen->link.alive) return cause_of(RIFFLER_PEN_WATCHDOG, RIFFLER_PEN_NO_JOINT);
   return kNone;

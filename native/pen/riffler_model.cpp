@@ -18,8 +18,8 @@ constexpr double kIdle = 0.5;
 /// s by which the pen's clock may differ from ours after a gap, for the pen to have been on power all the time.
 constexpr double kClockError = 0.1;
 
-/// Faults that say nothing against the pen and its pose, only that somebody was late. The firmware counts on in them and
-/// leaves them with the next report that disables, as it leaves all: the difference is made here.
+/// Faults that say nothing against the pen and its pose, only that somebody was late. The firmware counts on in them
+/// and leaves them with the next report that disables, as it leaves all: the difference is made here.
 bool only_late(std::uint8_t fault) {
   return fault == RIFFLER_PEN_WATCHDOG || fault == RIFFLER_PEN_LATE_STEP;
 }

@@ -2,6 +2,9 @@
 // disables and the cause is gone, and force comes back through the ramp only.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 
 #include "device/pens.hpp"
@@ -108,7 +111,7 @@ std::vector<Injection> injections() {
        [](Pen& p) {
          const Currents hard = {0, 0, 0, 0, 1200, 0};
          for (int k = 0; k < 20; ++k) p.turn(true, hard);
-         push_with_dead_encoder(p, 4, hard, 2000);
+         push_with_dead_encoder(p, 4, hard, 2600);
        },
        RIFFLER_PEN_STALL, 4},
       {"current without end", step_with([](S&) {}), RIFFLER_PEN_OVER_CURRENT, 1, false},
@@ -231,6 +234,85 @@ TEST(PenFaults, LateReportsDecayForceBeforeTheyTrip) {
     const double part = late - 1 <= 5 ? 1 : late > 20 ? 0 : (20.0 - (late - 1)) / 15;
     EXPECT_NEAR(pen.currents()[0], kCommand[0] * part, 1) << late;
   }
+}
+
+/// A hand on the grip: joints give way by current over stiffness, once what they changed by is beyond their friction.
+struct LeaningHand {
+  double counts_per_ma, friction_ma;
+  std::array<double, RIFFLER_PEN_JOINTS> at{};
+
+  void move(Pen& pen) {
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const double current = pen.drive.current_ma[k], low = current - friction_ma, high = current + friction_ma;
+      at[k] = std::clamp(at[k], low, high);  // mA whose spring the hand's is
+      pen.sensors.counters[k] = static_cast<std::int32_t>(std::floor(counts_per_ma * at[k]));
+    }
+  }
+};
+
+/// Without a tremor, for a minute: force breathes by what friction hides, and no more.
+TEST(PenFaults, AHandThatHoldsStillUnderForceIsNoStall) {
+  const Currents lean = {450, -480, 100, 0, 450, -400};
+  for (const double friction : {0.0, 20.0, 100.0, 150.0}) {
+    SCOPED_TRACE(friction);
+    Pen pen;
+    LeaningHand hand{0.1, friction};
+    double least = 1e9;
+    pen.step();
+    pen.send(false);
+    pen.still_step();
+    for (int k = 0; k < 60'000; ++k) {
+      hand.move(pen);
+      pen.send(true, lean);
+      pen.still_step();
+      ASSERT_EQ(pen.fault(), RIFFLER_PEN_NO_FAULT) << k;
+      if (k > 1000) least = std::min(least, 1.0 * pen.currents()[0]);
+    }
+    EXPECT_EQ(pen.state(), RIFFLER_PEN_ACTIVE);
+    // To and fro through the friction of the one that pushes with least, and a count.
+    EXPECT_GE(least, 450 * (1 - (2 * friction + 25) / 400));
+  }
+}
+
+TEST(PenFaults, DeadEncodersUnderForceEndItSlowlyAndAreAStall) {
+  const Currents hard = {450, -480, 100, 0, 450, -400};
+  Pen pen;
+  pen.activate(hard);
+  int eased = 0;
+  Currents last = pen.currents();
+  for (int k = 0; k < 2600 && pen.state() == RIFFLER_PEN_ACTIVE; ++k) {
+    pen.send(true, hard);
+    pen.still_step();
+    if (pen.state() == RIFFLER_PEN_FAULT) break;
+    for (int j = 0; j < RIFFLER_PEN_JOINTS; ++j) {
+      ASSERT_LE(std::abs(pen.currents()[j]), std::abs(last[j]));
+      ASSERT_LE(std::abs(last[j] - pen.currents()[j]), 3);
+    }
+    last = pen.currents();
+    eased += (pen.pen.flags & RIFFLER_PEN_FLAG_LIMITED) != 0;
+  }
+  EXPECT_EQ(pen.fault(), RIFFLER_PEN_STALL);
+  EXPECT_EQ(last, Currents{});
+  EXPECT_NEAR(eased, 600, 3);
+}
+
+/// The force comes back as slowly as it went, from wherever a count was seen.
+TEST(PenFaults, AnAnswerInTheMiddleOfTheEasingBringsTheForceBack) {
+  const Currents hard = {0, 0, 0, 0, 480, 0};
+  Pen pen;
+  pen.activate(hard);
+  for (int k = 0; k < 2250; ++k) pen.send(true, hard), pen.still_step();
+  const int low = pen.currents()[4];
+  EXPECT_NEAR(low, 240, 10);
+  ++pen.sensors.counters[4];
+  for (int k = 0; k < 252; ++k) {
+    const int before = pen.currents()[4];
+    pen.send(true, hard), pen.still_step();
+    ASSERT_GE(pen.currents()[4], before);
+    ASSERT_LE(pen.currents()[4] - before, 2);
+  }
+  EXPECT_NEAR(pen.currents()[4], 480, 10);
+  EXPECT_EQ(pen.pen.eased_us, 0U);
 }
 
 TEST(PenFaults, TheFirstCauseIsKeptWhenOthersFollow) {

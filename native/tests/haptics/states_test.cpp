@@ -59,7 +59,8 @@ TEST(States, WhereThePoseIsInDoubtTheForceDoesNotComeBackByItself) {
   for (const Cause c : {Cause::NotFinite, Cause::DeviceFault, Cause::NotHomed, Cause::Redundancy, Cause::Jump,
                         Cause::BadWrench, Cause::Excess})
     EXPECT_FALSE(heals(c)) << sentence(c);
-  for (const Cause c : {Cause::BadTime, Cause::DeviceLate, Cause::Overspeed, Cause::LateTick, Cause::Stale, Cause::NoDeadMan})
+  for (const Cause c :
+       {Cause::BadTime, Cause::DeviceLate, Cause::Overspeed, Cause::LateTick, Cause::Stale, Cause::NoDeadMan})
     EXPECT_TRUE(heals(c)) << sentence(c);
 }
 

@@ -269,7 +269,7 @@ TEST(Driver, AStepThatWasReplacedIsNotCalledWhateverHappensMeanwhile) {
     pen->set_step(step);
     if (!steps.empty()) steps.back()->gone = true;
     steps.push_back(step);
-    if (k % 3 == 0) std::this_thread::sleep_for(1ms);
+    std::this_thread::sleep_for(2ms);
   }
   EXPECT_TRUE(pen->stop());
   EXPECT_TRUE(pen->set_step(nullptr)) << "nobody calls it, and nobody waits";
@@ -280,7 +280,7 @@ TEST(Driver, AStepThatWasReplacedIsNotCalledWhateverHappensMeanwhile) {
     EXPECT_EQ(step->late, 0);
     calls += step->calls;
   }
-  EXPECT_GT(calls, 20);
+  EXPECT_GT(calls, 5);
 }
 
 TEST(Driver, FindsTheDeviceAgain) {

@@ -94,7 +94,8 @@ class FakeConnector final : public Connector {
   FakeDevice& device_;
 };
 
-/// A Riffler pen: the reference firmware behind the fake cable, a report each millisecond of the virtual clock.
+/// A Riffler pen: the reference firmware behind the fake cable, a report each millisecond of the virtual clock. Whoever
+/// holds it trembles by a count under force.
 class FirmwarePen {
  public:
   explicit FirmwarePen(VirtualClock& clock) : time_(clock.time) {
@@ -121,6 +122,9 @@ class FirmwarePen {
   void run(double until) {
     for (int k = 0; k < 1000 && time_ + 1e-3 <= until + 1e-9 && time_ < device.gone; ++k) {
       time_ += 1e-3;
+      if (drive.power)
+        for (std::int32_t& counter : sensors.counters) counter += trembled_ ? -1 : 1;
+      trembled_ = drive.power && !trembled_;
       on_step();
       drive = riffler_pen_step(&firmware, &sensors, 1000);
       for (std::size_t j = 0; j < RIFFLER_PEN_JOINTS; ++j) sensors.current_ma[j] = drive.current_ma[j];
@@ -145,6 +149,7 @@ class FirmwarePen {
 
  private:
   double time_;
+  bool trembled_ = false;
 };
 
 /// A step that always asks for the same, and counts. Its gate opens at once, from the second step on.

@@ -123,10 +123,35 @@ TEST(SimulatedFault, AllCountersFrozenUnderForceAreAStall) {
     std::copy_n(frozen->counters, RIFFLER_PEN_JOINTS, s.counters);
   });
   EXPECT_GE(t.current, t.bench.pen->config().limits.stall_ma);
-  t.goes_dead(1e-3 * t.bench.pen->config().limits.stall_ms + 1e-3, 2.2);
+  // Eased to nothing within half a second, and a fault a tenth later.
+  t.goes_dead(1e-3 * t.bench.pen->config().limits.stall_ms + 0.502, 2.7);
   EXPECT_EQ(t.faults, std::set<int>{RIFFLER_PEN_STALL});
   t.mend();
   t.comes_back();
+}
+
+/// Without a tremor, in all directions: there the firmware's question is answered, and the force stays what it was but
+/// for its breathing.
+TEST(SimulatedFault, AQuietHandThatLeansOnAForceIsNoFault) {
+  int eased = 0;
+  for (int k = 0; k < 27; ++k) {
+    const Vec3 direction(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    if (direction == Vec3(0)) continue;
+    SCOPED_TRACE(k);
+    Trial t(hand_at(home_pose()), with([](SimulatedPenSettings& s) { s.hand.tremor = 0; }));
+    t.bench.step.law = [&](const PenSample&, double, double) { return Wrench{1.5 * glm::normalize(direction), {}}; };
+    t.start();
+    double least = 1e300;
+    t.bench.step.after = [&](const Wrench&) {
+      least = std::min(least, t.current);
+      eased += (t.bench.pen->firmware().flags & RIFFLER_PEN_FLAG_LIMITED) != 0;
+    };
+    t.bench.run(6);
+    EXPECT_TRUE(t.faults.empty());
+    EXPECT_EQ(t.bench.step.safety.log().count(), 0U);
+    EXPECT_GT(least, 0.3 * t.full);
+  }
+  EXPECT_GT(eased, 1000) << "and it was asked";
 }
 
 TEST(SimulatedFault, SwappedArmsAreFoundWhenThePenMovesAndNotPushedOn) {
