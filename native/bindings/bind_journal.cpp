@@ -67,15 +67,6 @@ py::object json() {
   return py::module_::import("json");
 }
 
-/// A Tool, its dict, or JSON text of it → JSON text in one form.
-std::string to_json(const py::object& tool) {
-  py::object dict = tool;
-  if (py::isinstance<Tool>(tool)) dict = tool.attr("to_dict")();
-  if (py::isinstance<py::str>(tool)) dict = json().attr("loads")(tool);
-  if (!py::isinstance<py::dict>(dict)) throw py::value_error("tool must be a Tool, its dict or JSON text of it");
-  return py::cast<std::string>(json().attr("dumps")(dict));
-}
-
 py::dict tools(const Journal& journal) {
   py::dict out;
   for (const auto& [number, text] : journal.tools()) out[py::int_(number)] = json().attr("loads")(text);
@@ -130,7 +121,7 @@ void add_records(Class& c) {
        py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z", py::arg("snapshot") = "",
        "The frame of the stock, and the file name of its snapshot where it is not a full block. Once.")
       .def(
-          "add_tool", [](T& self, int number, const py::object& tool) { self.add_tool(number, to_json(tool)); },
+          "add_tool", [](T& self, int number, const py::object& tool) { self.add_tool(number, tool_json(tool)); },
           py::arg("number"), py::arg("tool"),
           "A Tool, its dict or JSON text. The same number again is allowed for the same tool only.")
       .def(
@@ -164,6 +155,14 @@ move that ends at the row.)")
 }
 
 }  // namespace
+
+std::string tool_json(const py::object& tool) {
+  py::object dict = tool;
+  if (py::isinstance<Tool>(tool)) dict = tool.attr("to_dict")();
+  if (py::isinstance<py::str>(tool)) dict = json().attr("loads")(tool);
+  if (!py::isinstance<py::dict>(dict)) throw py::value_error("tool must be a Tool, its dict or JSON text of it");
+  return py::cast<std::string>(json().attr("dumps")(dict));
+}
 
 void bind_journal(py::module_& m) {
   py::class_<StrokeView>(m, "JournalStroke", "One stroke of a Journal.")

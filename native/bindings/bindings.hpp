@@ -31,6 +31,7 @@ void bind_cluster(py::module_& m);
 void bind_pen(py::module_& m);
 void bind_pen_device(py::module_& m);
 void bind_journal(py::module_& m);
+void bind_session(py::module_& m);
 void bind_collide(py::module_& m);
 void bind_path(py::module_& m);
 void bind_pencil(py::module_& m);
@@ -58,6 +59,9 @@ std::vector<Vec3> to_vec3s(const Doubles& array, const char* name);
 std::vector<Pose> to_poses(const Doubles& array, const char* name);
 /// (n, 6) copy.
 py::array_t<double> from_poses(const std::vector<Pose>& poses);
+
+/// A Tool, its dict, or JSON text of it → JSON text in one form.
+std::string tool_json(const py::object& tool);
 
 /// "cutter", "shank", "holder" or "fixture".
 const char* name_of(Touch touch);

@@ -28,6 +28,7 @@ PYBIND11_MODULE(_core, m) {
   bind_pen_device(m);
   bind_journal(m);
   bind_collide(m);
+  bind_session(m);
   bind_path(m);
   bind_pencil(m);
   bind_strategies(m);

@@ -80,6 +80,10 @@ void JournalStream::end() noexcept {
   in_stroke_ = false;
 }
 
+bool JournalStream::count_back(int strokes) noexcept {
+  return !in_stroke_ && push({{}, 0, strokes, Kind::Back}, 1);
+}
+
 // --- The keeper ---
 
 void JournalStream::pop(std::size_t n) {
@@ -109,6 +113,9 @@ bool JournalStream::write_next(std::uint64_t end) {
     ended_ = ended_ || open_;
     begun_.reset(), open_ = false;
     pop(1);
+  } else if (first.kind == Kind::Back) {
+    write_count(first.tool);
+    pop(1);
   } else if (begun_ && same(begun_->row.pose, first.row.pose)) {
     // A tool that does not move cuts nothing: the stroke begins where it last stood.
     begun_->row = first.row;
@@ -119,6 +126,19 @@ bool JournalStream::write_next(std::uint64_t end) {
     write_rows(tail, last);
   }
   return true;
+}
+
+void JournalStream::write_count(int strokes) {
+  try {
+    if (strokes < 0)
+      writer_.take_back(static_cast<std::size_t>(-strokes));
+    else
+      writer_.bring_back(static_cast<std::size_t>(strokes));
+    unsynced_ = ended_ = true;
+  } catch (const std::invalid_argument& e) {
+    const std::scoped_lock lock(told_);
+    refusal_ = e.what();
+  }
 }
 
 void JournalStream::write_rows(std::uint64_t begin, std::uint64_t end) {

@@ -54,6 +54,8 @@ class JournalStream {
   /// It moved here, from the row before. False: no room, or no stroke.
   bool put(const JournalRow& row) noexcept;
   void end() noexcept;
+  /// So many strokes are taken back (less than zero) or brought back. False: no room, or in a stroke.
+  bool count_back(int strokes) noexcept;
 
   // --- Of any other thread ---
 
@@ -64,7 +66,7 @@ class JournalStream {
   /// What the keeper does at the time `now` (s): for tests, and for those with a thread of their own. Not after
   /// start().
   void step(double now);
-  /// Calls `f` with the writer, after all rows so far: undo, tools, notes. std::runtime_error where a stroke has not
+  /// Calls `f` with the writer, after all rows so far: tools, notes. std::runtime_error where a stroke has not
   /// ended, or the disk refuses its rows.
   void use(const std::function<void(JournalWriter&)>& f);
 
@@ -76,11 +78,11 @@ class JournalStream {
   std::uint64_t refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
 
  private:
-  enum class Kind : std::int32_t { Begin, Row, End };
+  enum class Kind : std::int32_t { Begin, Row, End, Back };
   struct Slot {
     JournalRow row;
     double tolerance;
-    int tool;
+    int tool;  // or the strokes that come back
     Kind kind;
   };
   static_assert(sizeof(Slot) == 128, "as Options::rows says");
@@ -96,6 +98,7 @@ class JournalStream {
   void write_all();
   bool write_next(std::uint64_t end);
   void write_rows(std::uint64_t begin, std::uint64_t end);
+  void write_count(int strokes);
   bool write(double now);
   bool sync();
   bool sync_due(double now);

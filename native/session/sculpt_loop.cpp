@@ -125,8 +125,7 @@ Wrench SculptLoop::sculpt(const PenSample& sample, double dt, SculptTick& tick) 
     const bool wants = lets_force_through(state), room = !sink_ || sink_->room();
     if (wants && !room) tick.problem = "the journal has no room, so nothing is cut";
     if (!(wants && room)) end_stroke();
-    if (wants && room && !in_stroke_) begin_stroke();
-    out = follow(scene, sample, dt, tick);
+    out = follow(scene, sample, dt, wants && room, tick);
   }
   exchange_.serve(scene.volume, {strokes_, in_stroke_});
   return out;
@@ -140,13 +139,16 @@ void SculptLoop::place(Scene& scene, const PenSample& sample) noexcept {
   owed_ = 0;
 }
 
-Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, SculptTick& tick) noexcept {
+Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept {
   try {
     const Pose target = scene.workspace.target(sample.pose, sample.buttons);
     const Twist twist = scene.workspace.to_target({sample.velocity, sample.turning});
-    const SculptStep::Result r = scene.step.step(target, twist, owed_, in_stroke_);
+    const SculptStep::Result r = scene.step.step(target, twist, owed_, cutting);
     owed_ = 0;
-    if (r.cuts > 0) exchange_.changed(scene.carver.replaced());
+    if (r.cuts > 0 && !scene.carver.replaced().empty()) {
+      exchange_.changed(scene.carver.replaced());
+      if (!in_stroke_) begin_stroke(dt);
+    }
     last_tool_ = tick.tool = r.tool;
     tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
     return held_over_.stepped(scene.workspace.to_grip(r.on_grip), dt);
@@ -172,9 +174,10 @@ Wrench SculptLoop::rendered(const PenSample& sample, const Wrench& wanted, doubl
   return magnitude_gain(settings_.limits, none, borne) * borne;
 }
 
-void SculptLoop::begin_stroke() noexcept {
+/// With the move that has just taken something: from where the tool was before it.
+void SculptLoop::begin_stroke(double dt) noexcept {
   in_stroke_ = true, ++strokes_;
-  if (sink_) sink_->begin(time_, scene_->step.tool());
+  if (sink_) sink_->begin(time_ - dt, last_tool_);
 }
 
 void SculptLoop::end_stroke() noexcept {

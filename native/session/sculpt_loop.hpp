@@ -54,9 +54,10 @@ struct SculptTick {
 };
 
 /// The tool goes where the hand goes, stays out of the obstacles, and cuts while the dead-man switch is held and every
-/// check has passed: that is a stroke. What the hand has to be given is computed in each tick from the volume. Where a
-/// step could not be made, the force is held over (HeldOver); a step that takes longer than its tick leaves the device
-/// with what it had, and the next tick turns from there at a limited rate.
+/// check has passed: from the first move that takes something to the end of that is a stroke. What the hand has to be
+/// given is computed in each tick from the volume. Where a step could not be made, the force is held over (HeldOver); a
+/// step that takes longer than its tick leaves the device with what it had, and the next tick turns from there at a
+/// limited rate.
 class SculptLoop final : public PenStep {
  public:
   using Place = TileExchange::Place;
@@ -100,10 +101,10 @@ class SculptLoop final : public PenStep {
   struct Scene;
   Wrench sculpt(const PenSample& sample, double dt, SculptTick& tick) noexcept;
   void place(Scene& scene, const PenSample& sample) noexcept;
-  Wrench follow(Scene& scene, const PenSample& sample, double dt, SculptTick& tick) noexcept;
+  Wrench follow(Scene& scene, const PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
   Wrench missed(double dt, const char* why, SculptTick& tick) noexcept;
   Wrench rendered(const PenSample& sample, const Wrench& wanted, double dt) noexcept;
-  void begin_stroke() noexcept;
+  void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;
 
