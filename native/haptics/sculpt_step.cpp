@@ -171,6 +171,7 @@ Twist SculptStep::advance(const Part& part, Result& result) {
 }
 
 void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result) {
+  // A tool that stands has cut there before: what a journal replays is poses that differ.
   if (!stock_ || (to.tip == tool_.tip && to.axis == tool_.axis)) return;
   const Clock::time_point start = Clock::now();
   const MoveCarver::Taken taken = stock_->move(tool_, to, dt);

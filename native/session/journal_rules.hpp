@@ -30,6 +30,11 @@ struct JournalRows {
   std::span<const double> removed{};  ///< mm³ by the move that ends at the row
 };
 
+/// Whether a tool that stood at `a` stands there still at `b`: no move.
+inline bool stands(const Pose& a, const Pose& b) {
+  return a.tip == b.tip && a.axis == b.axis;
+}
+
 /// One stroke: what was carved in one go with one tool (replay.hpp).
 struct JournalStroke {
   int tool = 0;

@@ -13,10 +13,6 @@ namespace {
 /// Rows in one record: a piece of some 250 kB.
 constexpr std::size_t kPiece = 4096;
 
-bool same(const Pose& a, const Pose& b) {
-  return a.tip == b.tip && a.axis == b.axis;
-}
-
 void add(JournalStroke& to, const JournalRow& row) {
   to.poses.push_back(row.pose);
   to.times.push_back(row.time);
@@ -116,7 +112,7 @@ bool JournalStream::write_next(std::uint64_t end) {
   } else if (first.kind == Kind::Back) {
     write_count(first.tool);
     pop(1);
-  } else if (begun_ && same(begun_->row.pose, first.row.pose)) {
+  } else if (begun_ && stands(begun_->row.pose, first.row.pose)) {
     // A tool that does not move cuts nothing: the stroke begins where it last stood.
     begun_->row = first.row;
     pop(1);

@@ -11,9 +11,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "dexel/file.hpp"
 #include "session/journal_file.hpp"
-#include "sweep/carve.hpp"
+#include "session/replay.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::scenes {
@@ -39,15 +38,9 @@ inline Tool read_tool(const std::string& json) {
 
 inline Volume replay(const std::filesystem::path& path) {
   const Journal journal = read_journal(path);
-  const JournalStock& stock = journal.stock().value();
-  Volume volume = stock.snapshot.empty() ? Volume::block({stock.box, stock.pitch, stock.directions})
-                                         : load(path.parent_path() / stock.snapshot);
-  for (const JournalStroke& stroke : journal.strokes()) {
-    CarveOptions options;
-    options.tolerance = stroke.tolerance;
-    carve(volume, read_tool(journal.tools().at(stroke.tool)), stroke.poses, options);
-  }
-  return volume;
+  std::map<int, Tool> tools;
+  for (const auto& [number, json] : journal.tools()) tools.emplace(number, read_tool(json));
+  return riffler::replay(journal, tools, path.parent_path());
 }
 
 /// FNV-1a (Fowler, Noll and Vo) over the spans of all rays, tile by tile, and where each ray's begin.

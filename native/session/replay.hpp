@@ -1,0 +1,28 @@
+// What a session left of its stock, from its journal.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "dexel/volume.hpp"
+#include "geom/progress.hpp"
+#include "session/journal.hpp"
+#include "tool/tool.hpp"
+
+namespace riffler {
+
+/// The path that a stroke's poses mean to `carve`. A row that stands where the row before stood is no move: the tool
+/// has cut there before. Only a stroke that never moves, of two rows or more, is one move: the tool cuts where it
+/// stands. One row cuts nothing, as one pose does in `carve`.
+std::vector<Pose> moves_of(const JournalStroke& stroke);
+
+/// The stock after the strokes that count, bit for bit as their moves left it one by one (MoveCarver). The stock is a
+/// block, or its snapshot in `folder`. Throws std::invalid_argument naming the stroke: no stock, a tool that is not in
+/// `tools`, poses that make no move; a snapshot that is no plain file name, or of another frame. FormatError as load();
+/// Cancelled.
+Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
+              const Progress& progress = {});
+
+}  // namespace riffler
