@@ -188,15 +188,14 @@ void SculptLoop::end_stroke() noexcept {
 
 // --- Who shows it ---
 
-TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places) {
-  constexpr int kTries = 30;
-  constexpr std::chrono::microseconds kNap(100);
+TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places, double patience) {
+  constexpr double kNap = 1e-4;
   TileExchange::Mark mark;
   exchange_.take(shown, places, mark);  // of an earlier call that did not wait long enough
   exchange_.ask();
-  for (int k = 0; k < kTries; ++k) {
+  for (double waited = 0; waited < patience; waited += kNap) {
     if (exchange_.take(shown, places, mark)) return mark;
-    std::this_thread::sleep_for(kNap);
+    std::this_thread::sleep_for(std::chrono::duration<double>(kNap));
   }
   // Nobody steps, or a step takes long: between two of them this is as good.
   const std::lock_guard lock(mutex_);

@@ -75,10 +75,10 @@ class SculptLoop final : public PenStep {
 
   // By the thread that shows. None of these waits for longer than a step takes.
 
-  /// What was cut into `shown`, a volume of the same frame that nobody else has changed: what there was at a moment not
-  /// before this call if the loop is stepped meanwhile, otherwise all that there is. The tiles' places at the end of
-  /// `places`.
-  TileExchange::Mark show(Volume& shown, std::vector<Place>& places);
+  /// What was cut into `shown`, a volume of the same frame that nobody else has changed: all of it where the loop is
+  /// not stepped within `patience` s, otherwise what there was after a step that began later than this call. The
+  /// tiles' places at the end of `places`.
+  TileExchange::Mark show(Volume& shown, std::vector<Place>& places, double patience = 3e-3);
   /// The next tick that was not taken yet; false where there is none.
   bool take(SculptTick& tick) noexcept { return ticks_.take(tick); }
   /// Ticks that nobody had room for.

@@ -1,0 +1,69 @@
+// Ten minutes of sculpting with the simulated pen, or as many as one likes, and what they cost.
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+#include "stress/arguments.hpp"
+#include "stress/sculpting_run.hpp"
+
+using namespace riffler::stress;
+
+namespace {
+
+SculptingOptions parse(int argc, char** argv) {
+  SculptingOptions options;
+  for (int k = 1; k < argc; ++k) {
+    const char* const value = k + 1 < argc ? argv[k + 1] : nullptr;
+    if (!std::strcmp(argv[k], "--seconds"))
+      options.seconds = static_cast<double>(whole_number(argv[k++], value));
+    else if (!std::strcmp(argv[k], "--micrometres"))
+      options.pitch = 1e-3 * static_cast<double>(whole_number(argv[k++], value));
+    else if (!std::strcmp(argv[k], "--jitter"))
+      options.jitter_us = static_cast<std::int64_t>(whole_number(argv[k++], value));
+    else if (!std::strcmp(argv[k], "--stiffness"))
+      options.stiffness = static_cast<double>(whole_number(argv[k++], value));
+    else if (!std::strcmp(argv[k], "--three"))
+      options.directions = "xyz";
+    else if (!std::strcmp(argv[k], "--uncontrolled"))
+      options.controlled = false;
+    else
+      throw std::invalid_argument(
+          "usage: riffler_sculpting [--seconds N] [--micrometres PITCH] [--jitter US] [--stiffness N/MM] [--three] "
+          "[--uncontrolled]");
+  }
+  options.progress = [](double share) { std::fprintf(stderr, "\r%3.0f %%", 100 * share); };
+  return options;
+}
+
+void print(SculptingRun& run) {
+  std::fprintf(stderr, "\r");
+  auto& seconds = run.step_seconds;
+  std::ranges::sort(seconds);
+  const auto quantile = [&](double q) {
+    return seconds.empty() ? 0.0 : 1e6 * seconds[static_cast<std::size_t>(q * static_cast<double>(seconds.size() - 1))];
+  };
+  std::printf("%lu steps, %lu strokes, %.0f mm3, %lu tiles in %lu frames, %zu triangles at the end\n", run.steps,
+              run.strokes, run.removed, run.tiles, run.frames, run.triangles);
+  std::printf("step, processor time: median %.1f us, 99 %% %.1f us, 99.9 %% %.1f us, longest %.1f us\n", quantile(0.5),
+              quantile(0.99), quantile(0.999), quantile(1));
+  std::printf("resident, MB:");
+  for (const double mb : run.resident) std::printf(" %.1f", mb);
+  std::printf("\nblocks from the system in steps: %lu; steps missed: %lu; trips: %lu\n", run.from_system, run.missed,
+              run.trips);
+  std::printf(
+      "force up to %.2f N; motors took %.1f N mm, and were never more than %.3f N mm ahead; account at least %.3f\n",
+      run.greatest, run.given, run.gained, run.account);
+  std::printf("the same bytes once more: %s\n", run.replayed ? "yes" : "NO");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  SculptingRun run = sculpting_run(parse(argc, argv));
+  print(run);
+  return run.replayed && run.gained < 3 ? 0 : 1;
+} catch (const std::exception& e) {
+  std::fprintf(stderr, "%s\n", e.what());
+  return 2;
+}

@@ -1,0 +1,176 @@
+#include "stress/sculpting_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include "marching/mesher.hpp"
+#include "pen/riffler_model.hpp"
+#include "pen/simulated_transport.hpp"
+#include "stress/checks.hpp"
+#include "tool/cutters.hpp"
+
+namespace riffler::stress {
+
+namespace {
+
+const Box3 kBox{{-40, -40, -30}, {40, 40, 0}};
+constexpr int kFrame = 33;  // steps
+
+double resident_mb() {
+  long pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return static_cast<double>(resident) * 4096e-6;
+}
+
+/// Over ±15 mm of the pen, twice as much of the tool, by frequencies that never meet again; deeper and deeper.
+HandPath wandering(const Pose& home, double seconds) {
+  return [home, seconds](double t) {
+    const double s = std::max(0.0, t - 1);
+    HandWish wish{.pose = home};
+    wish.pose.tip += Vec3(15 * std::sin(0.9 * s), 15 * std::sin(1.13 * s + 1) - 15 * std::sin(1.0),
+                          -3 - 5 * s / seconds + 2 * std::sin(2.3 * s));
+    const Vec3 lean(0.2 * std::sin(0.7 * s), 0.2 * std::sin(0.41 * s), 0);
+    wish.pose.axis = glm::normalize(home.axis + std::min(1.0, s) * lean);
+    wish.buttons = s > 0 && std::fmod(s, 3) < 2.4 ? 1 : 0;
+    return wish;
+  };
+}
+
+/// The loop, and what each of its steps asked the system for.
+class Counted final : public PenStep {
+ public:
+  Counted(SculptLoop& loop, const SculptingOptions& options, SculptingRun& run)
+      : loop_(loop), options_(options), run_(run) {}
+  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override {
+    const long calls = options_.allocations();
+    const std::uint64_t blocks = blocks_from_system();
+    const SafeWrench out = loop_.step(sample, now, dt);
+    if (now > options_.warm) {
+      run_.allocations += options_.allocations() - calls;
+      run_.from_system += blocks_from_system() - blocks;
+    }
+    return out;
+  }
+
+ private:
+  SculptLoop& loop_;
+  const SculptingOptions& options_;
+  SculptingRun& run_;
+};
+
+/// The simulated pen is never gone.
+struct NoConnector final : Connector {
+  void begin() noexcept override {}
+  Answer poll(std::unique_ptr<Transport>&, OpenProblem&) noexcept override { return Answer::Pending; }
+};
+
+/// Every move once more, by itself, as a journal's replay would.
+class Again final : public StrokeSink {
+ public:
+  Again(const Volume& stock, const Tool& tool, const MoveCarver::Options& options)
+      : volume(stock), carver_(volume, tool, options) {}
+  bool room() noexcept override { return true; }
+  void begin(double, const Pose& tool) noexcept override { last_ = tool; }
+  void row(double, const Pose& tool, const Wrench&, double) noexcept override {
+    moves_.push_back({last_, tool}), last_ = tool;
+  }
+  void end() noexcept override {}
+  void take_back(std::size_t) noexcept override {}
+  void bring_back(std::size_t) noexcept override {}
+  /// Not in the thread's step.
+  void catch_up() {
+    for (const auto& [from, to] : moves_)
+      if (!(from.tip == to.tip && from.axis == to.axis)) carver_.move(from, to, 1e-3);
+    moves_.clear();
+  }
+
+  Volume volume;
+
+ private:
+  MoveCarver carver_;
+  Pose last_;
+  std::vector<std::pair<Pose, Pose>> moves_ = reserved();
+  static std::vector<std::pair<Pose, Pose>> reserved() {
+    std::vector<std::pair<Pose, Pose>> out;
+    out.reserve(4 * kFrame);
+    return out;
+  }
+};
+
+void take_ticks(SculptLoop& loop, const SculptingOptions& options, SculptingRun& run) {
+  for (SculptTick tick; loop.take(tick);) {
+    ++run.steps, run.missed += tick.missed;
+    run.removed += tick.removed;
+    run.account = std::min(run.account, tick.energy);
+    run.greatest = std::max(run.greatest, glm::length(tick.applied.force));
+    if (tick.time > options.warm) run.step_seconds.push_back(static_cast<float>(tick.seconds));
+  }
+}
+
+}  // namespace
+
+SculptingRun sculpting_run(const SculptingOptions& options) {
+  SculptingRun run;
+  run.step_seconds.reserve(static_cast<std::size_t>(1100 * options.seconds));
+  run.account = 1e300;
+  SimulatedPenSettings simulated;
+  simulated.cable.jitter_us = options.jitter_us;
+  const Pose home = SimulatedPen(simulated).arms().posture().pose;
+  const auto pen = std::make_shared<SimulatedPen>(simulated, wandering(home, options.seconds));
+  const auto clock = std::make_shared<SimulatedClock>();
+  auto transport = std::make_unique<SimulatedTransport>(pen, clock);
+  RifflerModel model(*transport);
+  model.home();
+
+  const Tool ball = cutters::ball(6, 30);
+  const Volume stock = Volume::block({kBox, options.pitch, options.directions});
+  SculptLoopSettings settings;
+  settings.workspace.scale = 2;
+  settings.carving.removal_constant = 0.01;
+  settings.sculpt.coupling.stiffness = options.stiffness;
+  if (!options.controlled) settings.passivity.reserve = settings.passivity.storage = 1e9;
+  Again again(stock, ball, settings.carving);
+  SculptLoop loop(settings, stock, ball, nullptr, model.capability(), Pose{{0, 0, 3}, {0, 0, 1}}, &again);
+  Counted counted(loop, options, run);
+  NoConnector connector;
+  DriverLoop driver(model, counted, connector, *clock, std::move(transport));
+  double most = 0;
+  pen->on_turn = [&] { most = std::max(most, pen->arms().energy().motors); };
+
+  Volume shown = stock;
+  Mesher mesher(shown);
+  BlockReserve reserve;
+  std::vector<SculptLoop::Place> places;
+  double next_look = 0;
+  for (int k = 0; clock->now() < options.seconds; ++k) {
+    driver.tick();
+    pen->advance(std::llround(1e6 * clock->now()));
+    if (k % kFrame != 0) continue;
+    places.clear();
+    run.strokes = loop.show(shown, places, 0).strokes;
+    run.tiles += places.size(), ++run.frames;
+    again.catch_up();
+    mesher.update(shown);
+    reserve.fill(1 << 15, 128);
+    take_ticks(loop, options, run);
+    if (clock->now() < next_look) continue;
+    next_look += options.seconds / 10;
+    run.resident.push_back(resident_mb());
+    options.progress(clock->now() / options.seconds);
+  }
+  loop.finish();
+  loop.show(shown, places, 0);
+  again.catch_up();
+  take_ticks(loop, options, run);
+  run.resident.push_back(resident_mb());
+  run.gained = most, run.given = -pen->arms().energy().motors;
+  run.trips = loop.trips().count();
+  run.replayed = check_same_bytes(shown, again.volume).empty();
+  mesher.update(shown);
+  run.triangles = mesher.triangles();
+  return run;
+}
+
+}  // namespace riffler::stress

@@ -1,0 +1,56 @@
+// Ten minutes of sculpting with the simulated pen: nothing grows, nothing is asked of the system, no energy is made.
+#include "stress/sculpting_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "support/allocations.hpp"
+
+namespace riffler {
+namespace {
+
+void print(const char* what, stress::SculptingRun& run) {
+  auto& s = run.step_seconds;
+  std::ranges::sort(s);
+  const auto at = [&](double q) { return 1e6 * s[static_cast<std::size_t>(q * static_cast<double>(s.size() - 1))]; };
+  std::printf("%s: step median %.0f us, 99 %% %.0f us, 99.9 %% %.0f us; %.0f to %.0f MB\n", what, at(0.5), at(0.99),
+              at(0.999), run.resident[1], run.resident.back());
+}
+
+TEST(Sculpting, TenMinutesAreAsTheFirst) {
+  stress::SculptingRun run = stress::sculpting_run({.allocations = &test::allocations});
+  print("ten minutes", run);
+  EXPECT_NEAR(static_cast<double>(run.steps), 600'000, 1000);
+  EXPECT_GT(run.strokes, 150U);
+  EXPECT_GT(run.removed, 20'000);
+  EXPECT_EQ(run.allocations, 0);
+  EXPECT_EQ(run.from_system, 0U);
+  EXPECT_EQ(run.missed, 0U);
+  EXPECT_TRUE(run.replayed);
+  EXPECT_LT(run.gained, 1.1);  // the reserve, and a frame's worth
+  EXPECT_GT(run.account, -0.1);
+  EXPECT_GT(run.greatest, 1);
+  // Half of what the mesh and the tiles may grow by as the surface does.
+  EXPECT_LT(run.resident.back(), run.resident[1] + 25);
+  EXPECT_LT(run.resident.back(), run.resident[5] + 5);
+}
+
+TEST(Sculpting, ThreeDirectionsAndAStiffCouplingMakeNoEnergyEither) {
+  stress::SculptingRun run = stress::sculpting_run({.seconds = 40,
+                                                    .pitch = 0.5,
+                                                    .directions = "xyz",
+                                                    .stiffness = 10,
+                                                    .jitter_us = 1500,
+                                                    .warm = 20,
+                                                    .allocations = &test::allocations});
+  print("three directions, 10 N/mm, cable with jitter", run);
+  EXPECT_EQ(run.allocations, 0);
+  EXPECT_TRUE(run.replayed);
+  EXPECT_LT(run.gained, 2.2);
+  EXPECT_GT(run.account, -1);
+}
+
+}  // namespace
+}  // namespace riffler
