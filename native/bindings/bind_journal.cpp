@@ -1,7 +1,9 @@
 // riffler.Journal, riffler.JournalWriter
 #include "bindings/bindings.hpp"
+#include "bindings/shared_volume.hpp"
 #include "session/journal.hpp"
 #include "session/journal_file.hpp"
+#include "session/replay.hpp"
 
 namespace riffler {
 
@@ -101,13 +103,26 @@ py::array_t<double> poses(const StrokeView& stroke) {
   return take<double>(std::vector<Pose>(stroke.get().poses), 6);
 }
 
-Program program(const Journal& journal, const std::optional<double>& feed, double spindle,
-                const std::optional<double>& safe_height, double clearance) {
-  std::map<int, Tool> by_number;
+std::map<int, Tool> tools_of(const Journal& journal) {
+  std::map<int, Tool> out;
   const py::object from_dict = py::type::of<Tool>().attr("from_dict");
   for (const auto& [number, text] : journal.tools())
-    by_number.emplace(number, py::cast<Tool>(from_dict(json().attr("loads")(text))));
-  return to_program(journal, std::move(by_number), {feed, spindle, {safe_height, clearance, {}}});
+    out.emplace(number, py::cast<Tool>(from_dict(json().attr("loads")(text))));
+  return out;
+}
+
+Program program(const Journal& journal, const std::optional<double>& feed, double spindle,
+                const std::optional<double>& safe_height, double clearance) {
+  return to_program(journal, tools_of(journal), {feed, spindle, {safe_height, clearance, {}}});
+}
+
+std::shared_ptr<SharedVolume> replayed(const Journal& journal, const std::optional<std::filesystem::path>& folder,
+                                       const py::object& progress) {
+  const std::map<int, Tool> tools = tools_of(journal);
+  const Progress listener = to_progress(progress);
+  const Journal copy = journal;  // another thread may go on recording
+  const py::gil_scoped_release release;
+  return std::make_shared<SharedVolume>(replay(copy, tools, folder.value_or(""), listener));
 }
 
 /// The functions that Journal and JournalWriter share.
@@ -224,6 +239,11 @@ damaged record that others follow is a FormatError naming the byte.)")
            py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
            R"(The strokes as a Program, each one cut as in Program.from_cl. ``feed`` in mm/min; None: from the times,
 held within 1 to 100 000 mm/min. The stock counts as occupied.)")
+      .def(
+          "replay", &replayed, py::arg("folder") = py::none(), py::arg("progress") = py::none(),
+          R"(The Volume that the strokes leave of the stock, to the bit as the session left it: a block, or the snapshot
+in ``folder``. A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands
+if it has two rows or more.)")
       .def("__repr__", [](const Journal& self) {
         const std::size_t n = self.strokes().size();
         return "<riffler.Journal: " + std::to_string(n) + (n == 1 ? " stroke>" : " strokes>");

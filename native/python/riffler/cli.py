@@ -13,10 +13,10 @@ import traceback
 from typing import NoReturn
 
 from . import Cancelled, __version__
-from .command import audit, bench, carve, convert, doctor, machines, mesh, pen, pencil, post, verify
+from .command import audit, bench, carve, convert, doctor, machines, mesh, pen, pencil, post, replay, verify
 from .command.console import Console
 
-COMMANDS = (carve, verify, convert, mesh, pencil, post, machines, audit, pen, doctor, bench)
+COMMANDS = (carve, replay, verify, convert, mesh, pencil, post, machines, audit, pen, doctor, bench)
 LISTS = ("--origin", "--axis")
 EPILOG = "lengths in mm, angles on the command line in degrees; exit status 0, 1 (a check failed) or 2 (bad input)"
 

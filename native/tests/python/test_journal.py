@@ -131,21 +131,30 @@ def test_writer_goes_on_where_a_crash_cut(tmp_path):
     assert j.cut_at is None and [len(s) for s in j.strokes] == [10, 30] and j.strokes[1].times is None
 
 
+def same(a, b):
+    return all(
+        x.tobytes() == y.tobytes()
+        for direction in "xyz"
+        for x, y in zip(a.intervals(direction), b.intervals(direction), strict=True)
+    )
+
+
 def test_replay_gives_the_session_again(journal, tmp_path):
-    file = tmp_path / "a.rjournal"
-
-    def replay(j):
-        v = riffler.Volume.block(j.stock["lower"], j.stock["upper"], j.stock["pitch"], directions=j.stock["directions"])
-        for s in j.strokes:
-            v.carve(riffler.Tool.from_dict(j.tools[s.tool]), s.poses, tolerance=s.tolerance)
-        return v
-
-    journal.write(file)
-    first, again = replay(journal), replay(riffler.Journal.read(file))
-    assert first.volume < 50 * 40 * 30
-    for direction in "xyz":
-        for a, b in zip(first.intervals(direction), again.intervals(direction), strict=True):
-            assert a.tobytes() == b.tobytes()
+    session = riffler.Volume.block((0, 0, 0), (50, 40, 30), 0.5, directions="xyz")
+    session.save(tmp_path / "stock.rvol")
+    for s in journal.strokes:
+        session.carve(riffler.Tool.from_dict(journal.tools[s.tool]), s.poses, tolerance=s.tolerance)
+    journal.write(tmp_path / "a.rjournal")
+    shares = []
+    left = riffler.Journal.read(tmp_path / "a.rjournal").replay(tmp_path, shares.append)
+    assert left.volume < 50 * 40 * 30 and same(left, session)
+    assert shares == sorted(shares) and shares[-1] == 1
+    with pytest.raises(riffler.Cancelled):
+        journal.replay(tmp_path, lambda share: share < 0.5)
+    with pytest.raises(ValueError, match="name its folder"):
+        journal.replay()
+    with pytest.raises(riffler.FormatError, match=r"stock\.rvol"):
+        journal.replay(tmp_path / "nowhere")
 
 
 def test_program_has_the_strokes_with_their_tools_and_feeds(journal):

@@ -1,0 +1,67 @@
+"""Carve the stock of a recorded session again, and write what the session left of it, to the bit.
+
+riffler replay session.rjournal --out session.rvol
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .. import Journal
+from .arguments import MESHES, VOLUMES, input_file, output_file
+from .console import Console, number, times
+from .shapes import rays, write_mesh, write_volume
+
+HELP = "carve what a session carved"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("journal", metavar="FILE", help=".rjournal")
+    parser.add_argument("--folder", metavar="DIR", help="of the stock's snapshot (default: where the journal is)")
+    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply, .3mf or .rvol")
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    path = input_file(arguments.journal, (".rjournal",))
+    out = output_file(arguments.out, MESHES + VOLUMES)
+    with console.step("read"):
+        journal = Journal.read(path)
+    with console.step("replay") as progress:
+        volume = journal.replay(Path(arguments.folder or path.parent), progress)
+    triangles = None
+    if out.suffix.lower() in VOLUMES:
+        write_volume(volume, out, console)
+    else:
+        with console.step("mesh") as progress:
+            mesh = volume.to_mesh(progress=progress)
+        triangles = write_mesh(mesh, out, console)
+    strokes = journal.strokes
+    data = {
+        "out": str(out),
+        "strokes": len(strokes),
+        "rows": sum(len(stroke) for stroke in strokes),
+        "cut_at": journal.cut_at,
+        "pitch": volume.pitch,
+        "directions": volume.directions,
+        "rays": rays(volume),
+        "volume": volume.volume,
+        "triangles": triangles,
+        "bytes": out.stat().st_size,
+        "seconds": console.seconds,
+    }
+    console.result(data, f"{out.name} written", table(data))
+    return 0
+
+
+def table(data: dict) -> list[tuple[str, str]]:
+    rows = [
+        ("strokes", f"{number(data['strokes'])}, {number(data['rows'])} rows"),
+        ("rays", f"{number(data['rays'])} ({data['directions']}, pitch {data['pitch']:g} mm)"),
+        ("left", number(data["volume"], "mm³")),
+    ]
+    if data["cut_at"] is not None:
+        rows.insert(1, ("", f"the recording was cut at byte {data['cut_at']}: all whole strokes"))
+    if data["triangles"] is not None:
+        rows.append(("triangles", number(data["triangles"])))
+    return [*rows, ("file", number(data["bytes"], "bytes")), ("times", times(data["seconds"]))]
