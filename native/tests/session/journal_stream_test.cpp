@@ -205,6 +205,27 @@ TEST(JournalStream, TriesAFullDiskOnceASecond) {
   expect_rows(s.read().strokes()[0], 0, 2);
 }
 
+TEST(JournalStream, SaysWhatIsWrongAndCanBeStoppedAndStartedAgain) {
+  JournalStream::Options options;
+  options.drain = options.retry = 1e-3;
+  Session s("again", options);
+  for (int round = 0; round < 3; ++round) {
+    s.stream.start();
+    s.stream.start();
+    ASSERT_TRUE(s.stream.begin(1, 0.01, row(10 * round)) && s.stream.put(row(10 * round + 1)));
+    s.stream.end();
+    EXPECT_TRUE(s.stream.stop());
+    EXPECT_TRUE(s.stream.stop());
+    EXPECT_EQ(s.read().strokes().size(), static_cast<std::size_t>(round + 1));
+  }
+  s.writer.close();
+  ASSERT_TRUE(s.stream.begin(1, 0.01, row(40)) && s.stream.put(row(41)));
+  s.stream.start();
+  EXPECT_FALSE(s.stream.stop());
+  EXPECT_NE(s.stream.problem().find("again.rjournal: closed"), std::string::npos) << s.stream.problem();
+  EXPECT_EQ(s.stream.waiting(), 1U);
+}
+
 TEST(JournalStream, CountsWhatNoJournalCanHoldAndEndsTheStrokeThere) {
   Session s("refused");
   const auto stroke = [&](int tool, int first, int bad) {

@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "geom/error.hpp"
 #include "session/journal_file.hpp"
+#include "session/journal_records.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
 
@@ -67,6 +69,22 @@ TEST(JournalUndo, IsInTheFileAndCanBeBroughtBackFromIt) {
   EXPECT_EQ(to_bytes(k), to_bytes(j));
   k.bring_back(2);
   EXPECT_EQ(numbers(k.strokes()), (std::vector{0, 1, 2, 3}));
+}
+
+TEST(JournalUndo, OfStrokesThatAreNotThereIsAFormatError) {
+  const Bytes whole = to_bytes(five());
+  for (const auto& record : {journal_format::take_back_record, journal_format::bring_back_record})
+    for (const std::size_t n : {std::size_t{0}, std::size_t{6}, ~std::size_t{0}}) {
+      Bytes bytes = whole;
+      const Bytes more = record(n);
+      bytes.insert(bytes.end(), more.begin(), more.end());
+      try {
+        parse_journal(bytes, "j");
+        ADD_FAILURE() << n;
+      } catch (const FormatError& e) {
+        EXPECT_EQ(std::string(e.what()).rfind("j, byte " + std::to_string(whole.size()) + ": ", 0), 0U) << e.what();
+      }
+    }
 }
 
 TEST(JournalUndo, WriterDoesWhatTheJournalDoesWhateverItKeeps) {
