@@ -141,7 +141,7 @@ SafeWrench Safety::release(const Wrench& wanted) {
     trip({Cause::Excess, force > settings_.wrench_ceiling.linear ? force : torque});
     return {};
   }
-  return SafeWrench(gain_ * wanted);
+  return SafeWrench(gain_ * wanted, gain_);
 }
 
 }  // namespace riffler

@@ -59,16 +59,22 @@ struct Observation {
   bool device_late = false;   ///< that fault says nothing against the device: somebody was late
 };
 
-/// A wrench that has passed the gate. The default is zero.
+/// A wrench that has passed the gate. The default is zero, and a closed gate.
 class SafeWrench {
  public:
   SafeWrench() = default;
   const Wrench& wrench() const { return wrench_; }
+  /// Whether the gate lets force through, if only nothing was asked for: motors may stay switched on.
+  bool open() const { return open_; }
+  /// Of the gate, 0 to 1: for what a device adds by its own knowledge, as the weight of its arms.
+  double gain() const { return gain_; }
 
  private:
   friend class Safety;
-  explicit SafeWrench(const Wrench& w) : wrench_(w) {}
+  SafeWrench(const Wrench& w, double gain) : wrench_(w), gain_(gain), open_(true) {}
   Wrench wrench_;
+  double gain_ = 0;
+  bool open_ = false;
 };
 
 class Safety {

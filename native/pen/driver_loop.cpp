@@ -117,7 +117,7 @@ bool DriverLoop::drain() noexcept {
 bool DriverLoop::put(const SafeWrench& safe, double now) noexcept {
   std::array<std::uint8_t, 65> bytes{};
   status_.wrench = safe.wrench();
-  const std::size_t size = model_.push(status_.wrench, now, bytes);
+  const std::size_t size = model_.push(safe, now, bytes);
   if (size == 0) return true;
   ++status_.counts.writes;
   return transport_->write(std::span(bytes).first(size));

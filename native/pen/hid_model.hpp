@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "haptics/safety.hpp"
 #include "pen/capability.hpp"
 #include "pen/open_error.hpp"
 #include "pen/sample.hpp"
@@ -47,9 +48,9 @@ class HidModel {
   virtual Taken take(std::span<const std::uint8_t> bytes, double now) noexcept = 0;
   /// The hand at `now`. Between reports only what is integrated from a rate goes on.
   virtual PenSample sample(double now) noexcept = 0;
-  /// The report that pushes with `wrench` about the grip's pivot, in the frame of poses; its size. 0 for a device that
-  /// takes no reports. `bytes` holds 65.
-  virtual std::size_t push(const Wrench& wrench, double now, std::span<std::uint8_t> bytes) noexcept = 0;
+  /// The report that pushes with the wrench about the grip's pivot, in the frame of poses; its size. Where the gate is
+  /// not open, motors that can be switched off are. 0 for a device that takes no reports. `bytes` holds 65.
+  virtual std::size_t push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept = 0;
   /// The report after which the device does not push, whatever it was told before.
   virtual std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept = 0;
 };

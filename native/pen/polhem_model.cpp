@@ -207,7 +207,7 @@ std::array<std::int16_t, 3> PolhemModel::currents(const Vec3& force) const noexc
   return out;
 }
 
-std::size_t PolhemModel::push(const Wrench& wrench, double, std::span<std::uint8_t> bytes) noexcept {
+std::size_t PolhemModel::push(const SafeWrench& safe, double, std::span<std::uint8_t> bytes) noexcept {
   const auto report = bytes.first(output_size_);
   std::fill(report.begin(), report.end(), std::uint8_t{0});
   const auto message = report.subspan(1);
@@ -220,7 +220,7 @@ std::size_t PolhemModel::push(const Wrench& wrench, double, std::span<std::uint8
     homing_ = true;
     sample_.homed = false;
   } else if (sample_.homed && heard_) {
-    const std::array<std::int16_t, 3> milliamps = currents(wrench.force);
+    const std::array<std::int16_t, 3> milliamps = currents(safe.wrench().force);
     for (std::size_t k = 0; k < 3; ++k) put_int16(message, k, milliamps[k]);
   }
   return output_size_;

@@ -55,7 +55,7 @@ class PolhemModel final : public HidModel {
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
   PenSample sample(double) noexcept override { return sample_; }
   /// Pushes with the force; there are no motors for torque.
-  std::size_t push(const Wrench& wrench, double now, std::span<std::uint8_t> bytes) noexcept override;
+  std::size_t push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
   std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
 
  private:

@@ -12,9 +12,6 @@
 namespace riffler {
 namespace {
 
-/// s for which a pen without anything to push with stays switched on: a tool that leaves the material for a moment does
-/// not go through the ramp again.
-constexpr double kIdle = 0.5;
 /// s by which the pen's clock may differ from ours after a gap, for the pen to have been on power all the time.
 constexpr double kClockError = 0.1;
 
@@ -139,7 +136,6 @@ bool RifflerModel::home() noexcept {
 
 void RifflerModel::begin(double) noexcept {
   heard_ = false;
-  pushing_ = false;
   speed_.clear();
   sample_.velocity = sample_.turning = Vec3(0);
   sample_.powered = false;
@@ -214,28 +210,24 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.powered = report.state != RIFFLER_PEN_BOOT && report.state != RIFFLER_PEN_FAULT;
 }
 
-bool RifflerModel::may_enable(bool pushes, double now) noexcept {
-  if (pushes) pushed_ = now, pushing_ = true;
-  if (now - pushed_ > kIdle) pushing_ = false;
+bool RifflerModel::may_enable() const noexcept {
   // A pen that does not know where it stands would push in some other direction.
-  if (!pushing_ || !heard_ || !sample_.homed) return false;
+  if (!heard_ || !sample_.homed) return false;
   const bool on = last_.state == RIFFLER_PEN_RAMP || last_.state == RIFFLER_PEN_ACTIVE;
   return on || (last_.state == RIFFLER_PEN_IDLE && (last_.flags & RIFFLER_PEN_FLAG_ARMED) != 0);
 }
 
-std::size_t RifflerModel::push(const Wrench& wrench, double now, std::span<std::uint8_t> bytes) noexcept {
-  const bool pushes = !(wrench == Wrench{});
-  if (!may_enable(pushes, now)) return send({}, now, bytes);
+std::size_t RifflerModel::push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept {
+  if (!safe.open() || !may_enable()) return send({}, now, bytes);
   riffler_pen_output report{};
   report.enable = 1;
-  const PenEffort effort = pen_effort(kinematics_, posture_, wrench, posture_.pose.tip);
+  const PenEffort effort = pen_effort(kinematics_, posture_, safe.wrench(), posture_.pose.tip);
   const MotorCommands currents = motor_currents(geometry_, motor_torques(geometry_, effort.torques));
   std::copy(currents.values.begin(), currents.values.end(), report.commands);
   return send(report, now, bytes);
 }
 
 std::size_t RifflerModel::release(double now, std::span<std::uint8_t> bytes) noexcept {
-  pushing_ = false;
   return send({}, now, bytes);
 }
 

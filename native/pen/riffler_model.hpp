@@ -28,15 +28,16 @@ class RifflerModel final : public HidModel {
   void begin(double now) noexcept override;
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
   PenSample sample(double) noexcept override { return sample_; }
-  /// The pen pushes once it is told so after it was told not to: reports enable only from the moment on in which there
-  /// is something to push with, and not in any state in which the pen would not take it.
-  std::size_t push(const Wrench& wrench, double now, std::span<std::uint8_t> bytes) noexcept override;
+  /// The pen pushes once it is told so after it was told not to: reports enable as long as the gate is open, so that a
+  /// tool that leaves the material does not go through the firmware's ramp at the next touch, and not in any state in
+  /// which the pen would not take it.
+  std::size_t push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
   std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
 
  private:
   void take_report(const riffler_pen_input& report, double now, Taken& taken) noexcept;
   void place(const riffler_pen_input& report, double now) noexcept;
-  bool may_enable(bool pushes, double now) noexcept;
+  bool may_enable() const noexcept;
   std::size_t send(riffler_pen_output report, double now, std::span<std::uint8_t> bytes) noexcept;
 
   riffler_pen_identity identity_{};
@@ -52,8 +53,6 @@ class RifflerModel final : public HidModel {
   bool ever_heard_ = false;
   double last_time_ = 0;    // of the driver's clock, when last_ came
   double device_time_ = 0;  // s of the pen's clock since the first report; does not wrap
-  double pushed_ = 0;       // when there was last something to push with
-  bool pushing_ = false;
   std::uint16_t sent_ = 0;
   std::atomic<bool> home_asked_{false};
 };

@@ -32,7 +32,7 @@ class SpaceMouseModel final : public HidModel {
   void begin(double now) noexcept override;
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
   PenSample sample(double now) noexcept override;
-  std::size_t push(const Wrench&, double, std::span<std::uint8_t>) noexcept override { return 0; }
+  std::size_t push(const SafeWrench&, double, std::span<std::uint8_t>) noexcept override { return 0; }
   std::size_t release(double, std::span<std::uint8_t>) noexcept override { return 0; }
 
  private:

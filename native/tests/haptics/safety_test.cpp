@@ -115,6 +115,41 @@ std::vector<Fault> faults() {
           {Cause::Stale, [](Observation& o) { o.age = 0.021; }, 0.021}};
 }
 
+TEST(Safety, WhatPassesTellsHowFarTheGateIsOpen) {
+  Running r;
+  r.safety.observe(good());
+  const SafeWrench nothing = r.safety.release({});
+  EXPECT_TRUE(nothing.open()) << "and it was only asked for nothing";
+  EXPECT_EQ(nothing.gain(), 1);
+  EXPECT_FALSE(r.safety.release({}).open()) << "without checks in the same tick";
+  Observation o = good();
+  o.dead_man = false;
+  r.safety.observe(o);
+  EXPECT_FALSE(r.safety.release({{1, 0, 0}, {}}).open());
+  r.safety.observe(good());
+  const SafeWrench ramp = r.safety.release({{1, 0, 0}, {}});
+  EXPECT_TRUE(ramp.open());
+  EXPECT_EQ(ramp.wrench().force.x, ramp.gain());
+  r.safety.observe(good());
+  EXPECT_FALSE(r.safety.release({{NAN, 0, 0}, {}}).open());
+  EXPECT_FALSE(SafeWrench().open());
+}
+
+TEST(Safety, AnInterruptionBeginsTheRampAnewAndKeepsTrips) {
+  Running r;
+  r.safety.interrupt();
+  Observation there = good();
+  there.pose.tip += Vec3(50, 0, 0);
+  EXPECT_LT(glm::length(r.tick(there).force), 0.01);
+  EXPECT_EQ(r.safety.state(), ForceState::Ramp);
+  there.pose.tip += Vec3(50, 0, 0);
+  r.tick(there);
+  EXPECT_EQ(r.safety.cause(), Cause::Jump);
+  r.safety.interrupt();
+  r.tick(there);
+  EXPECT_EQ(r.safety.state(), ForceState::Tripped);
+}
+
 TEST(Safety, EveryFaultTripsWithinTheTickAndIsRecorded) {
   for (const Fault& fault : faults()) {
     Running r;

@@ -64,8 +64,8 @@ class ByteModel final : public HidModel {
     return {static_cast<unsigned>(bytes.size()), 0, 0, 0};
   }
   PenSample sample(double) noexcept override { return sample_; }
-  std::size_t push(const Wrench& wrench, double, std::span<std::uint8_t> bytes) noexcept override {
-    bytes[0] = wrench.force.x != 0;
+  std::size_t push(const SafeWrench& safe, double, std::span<std::uint8_t> bytes) noexcept override {
+    bytes[0] = safe.wrench().force.x != 0;
     return 1;
   }
   std::size_t release(double, std::span<std::uint8_t> bytes) noexcept override {

@@ -122,9 +122,9 @@ class FirmwarePen {
   void run(double until) {
     for (int k = 0; k < 1000 && time_ + 1e-3 <= until + 1e-9 && time_ < device.gone; ++k) {
       time_ += 1e-3;
-      if (drive.power)
+      if (pushes())
         for (std::int32_t& counter : sensors.counters) counter += trembled_ ? -1 : 1;
-      trembled_ = drive.power && !trembled_;
+      trembled_ = pushes() && !trembled_;
       on_step();
       drive = riffler_pen_step(&firmware, &sensors, 1000);
       for (std::size_t j = 0; j < RIFFLER_PEN_JOINTS; ++j) sensors.current_ma[j] = drive.current_ma[j];
@@ -152,15 +152,24 @@ class FirmwarePen {
   bool trembled_ = false;
 };
 
+/// What has passed a gate that is wide open.
+inline SafeWrench let_through(const Wrench& wrench) {
+  Safety safety{{.ramp = 1e-4, .rest = 0, .wrench_ceiling = {1e9, 1e9}}};
+  safety.switch_on();
+  safety.observe({.dt = 1e-3, .homed = true, .dead_man = true});
+  return safety.release(wrench);
+}
+
 /// A step that always asks for the same, and counts. Its gate opens at once, from the second step on.
 class ConstantPush final : public PenStep {
  public:
   ConstantPush() { safety_.switch_on(); }
   SafeWrench step(const PenSample& sample, double now, double dt) noexcept override {
     ++steps, last = sample, last_now = now, last_dt = dt;
-    safety_.observe({.dt = 1e-3, .homed = true, .dead_man = true});
+    safety_.observe({.dt = 1e-3, .homed = true, .dead_man = holds});
     return safety_.release(wrench);
   }
+  bool holds = true;  // the dead-man switch
   Wrench wrench{};
   int steps = 0;
   PenSample last{};
