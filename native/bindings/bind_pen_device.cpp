@@ -58,11 +58,14 @@ py::dict families() {
 }
 
 SharedPen open_device(const std::string& what, const std::string& geometry, double bubble, double exponent,
-                      double speed, double turn_rate, bool hold_orientation, const std::array<int, 6>& signs) {
+                      double speed, double turn_rate, bool hold_orientation, const std::array<int, 6>& signs,
+                      double gravity, double friction) {
   PenOptions options;
   options.geometry = geometry;
   options.rate = {bubble, exponent, speed, turn_rate, hold_orientation, false, signs};
   options.rate.validate();
+  options.compensation = {gravity, friction};
+  options.compensation.validate();
   const py::gil_scoped_release release;
   return open_pen(what, options);
 }
@@ -219,7 +222,7 @@ void bind_pen_device(py::module_& m) {
   const RateSettings rate;
   m.def("_open_pen", &open_device, "what"_a, py::kw_only(), "geometry"_a = "woodenhaptics", "bubble"_a = rate.bubble,
         "exponent"_a = rate.exponent, "speed"_a = rate.speed, "turn_rate"_a = rate.turn_rate,
-        "hold_orientation"_a = rate.hold_orientation, "signs"_a = rate.signs);
+        "hold_orientation"_a = rate.hold_orientation, "signs"_a = rate.signs, "gravity"_a = 0.0, "friction"_a = 0.0);
   m.def("_play_pen", &play, "strokes"_a, "speed"_a);
 }
 

@@ -7,6 +7,7 @@
 #include "haptics/states.hpp"
 #include "pen/capability.hpp"
 #include "pen/driver_loop.hpp"
+#include "pen/passivity_settings.hpp"
 #include "pen/sample.hpp"
 
 namespace riffler {
@@ -38,6 +39,8 @@ class Pen {
   virtual const DeviceCapability& capability() const noexcept = 0;
   /// Its poses are where the tool shall be, and not where some grip is on a desk.
   virtual bool in_part_frame() const noexcept { return false; }
+  /// What the passivity controller of a step may count on. Does not change.
+  virtual PassivitySettings passivity() const { return passivity_settings(capability()); }
   /// Of the device itself, for people.
   virtual std::string about() const { return {}; }
 

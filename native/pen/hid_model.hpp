@@ -9,6 +9,7 @@
 #include "haptics/safety.hpp"
 #include "pen/capability.hpp"
 #include "pen/open_error.hpp"
+#include "pen/passivity_settings.hpp"
 #include "pen/sample.hpp"
 #include "pen/transport.hpp"
 
@@ -29,6 +30,8 @@ class HidModel {
   virtual const DeviceCapability& capability() const noexcept = 0;
   /// s between its reports; 0 for a device that only speaks while it is touched, whose silence means nothing.
   virtual double period() const noexcept = 0;
+  /// What the passivity controller may count on.
+  virtual PassivitySettings passivity() const { return passivity_settings(capability()); }
   /// Its own limits and identity, for people; may be empty.
   virtual std::string about() const { return {}; }
 

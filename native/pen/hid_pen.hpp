@@ -68,6 +68,7 @@ class HidPen : public Pen {
 
   std::string kind() const override { return kind_; }
   const DeviceCapability& capability() const noexcept override { return model_->capability(); }
+  PassivitySettings passivity() const override { return model_->passivity(); }
   std::string about() const override { return model_->about(); }
   PenSample newest() const noexcept override { return status().sample; }
   double now() const noexcept override { return steady_seconds(); }

@@ -9,15 +9,8 @@ namespace riffler {
 
 namespace {
 
-/// The largest factor up to 1 with which no motor passes its peak; 0 where there is none.
-double scale_to_peaks(const PenGeometry& pen, const MotorTorques& torques) {
-  double scale = 1;
-  for (std::size_t k = 0; k < kPenChannels; ++k) {
-    const double size = std::abs(torques[k]);
-    if (!std::isfinite(size)) return 0;
-    if (size > pen.channels[k].peak_torque()) scale = std::min(scale, pen.channels[k].peak_torque() / size);
-  }
-  return scale;
+bool finite(const MotorTorques& torques) {
+  return std::all_of(torques.begin(), torques.end(), [](double t) { return std::isfinite(t); });
 }
 
 std::int16_t rounded(double value, double lowest, double highest) {
@@ -33,6 +26,17 @@ MotorTorques motor_torques(const PenGeometry& pen, const JointAngles& joint_torq
     out[k] = c.sign * joint_torques[index(c.arm)][c.joint] / c.ratio;
   }
   return out;
+}
+
+double scale_to_peaks(const PenGeometry& pen, const MotorTorques& torques, const MotorTorques& first) noexcept {
+  double scale = 1;
+  for (std::size_t k = 0; k < kPenChannels; ++k) {
+    const double size = std::abs(torques[k]);
+    if (!std::isfinite(size)) return 0;
+    const double left = pen.channels[k].peak_torque() - (torques[k] < 0 ? -first[k] : first[k]);
+    if (size > left) scale = std::min(scale, std::max(left, 0.0) / size);
+  }
+  return scale;
 }
 
 JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torques) noexcept {
@@ -58,15 +62,15 @@ Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noe
   return out;
 }
 
-MotorCommands motor_currents(const PenGeometry& pen, const MotorTorques& torques) noexcept {
+MotorCommands motor_currents(const PenGeometry& pen, const MotorTorques& torques, const MotorTorques& first) noexcept {
   MotorCommands out;
-  out.scale = scale_to_peaks(pen, torques);
-  if (out.scale == 0) return out;
+  if (!finite(torques) || !finite(first)) return out;
+  out.scale = scale_to_peaks(pen, torques, first);
   for (std::size_t k = 0; k < kPenChannels; ++k) {
     const PenChannel& c = pen.channels[k];
     // Not rounded beyond the peak.
     const double most = std::floor(1000 * c.peak_current);
-    out.values[k] = rounded(1000 * out.scale * torques[k] / c.torque_constant, -most, most);
+    out.values[k] = rounded(1000 * (first[k] + out.scale * torques[k]) / c.torque_constant, -most, most);
   }
   return out;
 }

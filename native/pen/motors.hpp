@@ -20,6 +20,10 @@ JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torq
 /// at the motors, in the device's order. What limits of the haptic step are kept by.
 Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept;
 
+/// The largest factor up to 1 with which no motor passes its peak beside what it has already (`first`, within the
+/// peaks); 0 where a torque is not finite.
+double scale_to_peaks(const PenGeometry& pen, const MotorTorques& torques, const MotorTorques& first = {}) noexcept;
+
 struct MotorCommands {
   std::array<std::int16_t, kPenChannels> values{};
   /// By which all torques were scaled down together so that no motor passes its peak: the wrench keeps its direction. 0
@@ -27,8 +31,10 @@ struct MotorCommands {
   double scale = 0;
 };
 
-/// Of the pen's own reports: mA, positive where the motor turns so that its counter grows. Rounded to the nearest.
-MotorCommands motor_currents(const PenGeometry& pen, const MotorTorques& torques) noexcept;
+/// Of the pen's own reports: mA, positive where the motor turns so that its counter grows. Rounded to the nearest. What
+/// the motors do by themselves (`first`, within the peaks) is left alone, and `torques` share what remains.
+MotorCommands motor_currents(const PenGeometry& pen, const MotorTorques& torques,
+                             const MotorTorques& first = {}) noexcept;
 /// Of a converter's board: steps, slope · torque + offset, rounded to the nearest.
 MotorCommands converter_steps(const PenGeometry& pen, const Converter& converter, const MotorTorques& torques) noexcept;
 

@@ -34,8 +34,8 @@ bool may_be_polhem(const HidInfo& info) {
   return teensy || (info.vendor == 0x1234 && info.product == 0x0006);
 }
 
-std::unique_ptr<HidModel> make_riffler(Transport& transport, const HidInfo&, const PenOptions&) {
-  return std::make_unique<RifflerModel>(transport);
+std::unique_ptr<HidModel> make_riffler(Transport& transport, const HidInfo&, const PenOptions& options) {
+  return std::make_unique<RifflerModel>(transport, options.compensation);
 }
 
 std::unique_ptr<HidModel> make_spacemouse(Transport& transport, const HidInfo& info, const PenOptions& options) {
@@ -160,7 +160,7 @@ std::vector<FoundDevice> find_devices() {
 }
 
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options) {
-  if (what == kSimulatedKind) return SimulatedDevice::open({}, options.driver);
+  if (what == kSimulatedKind) return SimulatedDevice::open({}, options.driver, options.compensation);
   if (const PenFamily* const family = family_named(what)) return open_kind(*family, options);
   return open_path(what, options);
 }

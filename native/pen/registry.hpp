@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pen/compensation.hpp"
 #include "pen/device.hpp"
 #include "pen/hid_list.hpp"
 #include "pen/hid_model.hpp"
@@ -18,6 +19,7 @@ namespace riffler {
 struct PenOptions {
   RateSettings rate{};                     ///< of pucks
   std::string geometry = "woodenhaptics";  ///< of the Polhem protocol: "woodenhaptics" or "polhem-1"
+  Compensation compensation{};             ///< of Riffler's pen, the simulated one too
   DriverSettings driver{};
 };
 

@@ -104,8 +104,9 @@ riffler_pen_identity checked_identity(Transport& transport) {
 
 }  // namespace
 
-RifflerModel::RifflerModel(Transport& transport)
-    : identity_(checked_identity(transport)),
+RifflerModel::RifflerModel(Transport& transport, const Compensation& share)
+    : share_((share.validate(), share)),
+      identity_(checked_identity(transport)),
       limits_(ask_limits(transport)),
       geometry_(geometry_of(identity_, limits_)),
       capability_(pen_capability(geometry_)),
@@ -198,16 +199,31 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.velocity = speed.twist.linear;
   sample_.turning = speed.twist.angular;
   sample_.stretch = check_grip(kinematics_, posture_).stretch;
-  MotorTorques applied{};
-  for (std::size_t k = 0; k < kPenChannels; ++k)
-    applied[k] = 1e-3 * report.applied[k] * geometry_.channels[k].torque_constant;
   sample_.says_applied = true;
-  sample_.applied = felt_wrench(kinematics_, posture_, joint_torques(geometry_, applied));
+  sample_.applied = felt_wrench(kinematics_, posture_, joint_torques(geometry_, applied_wrench(report)));
   sample_.time = now;
   sample_.buttons = report.buttons;
   sample_.fault = report.state == RIFFLER_PEN_FAULT ? report.fault : 0U;
   sample_.late = sample_.fault != 0 && only_late(report.fault);
   sample_.powered = report.state != RIFFLER_PEN_BOOT && report.state != RIFFLER_PEN_FAULT;
+}
+
+/// N·mm at the motors, less their share of what was no wrench. Ramp, limits and age scale all of a command by one
+/// factor, which the currents tell.
+MotorTorques RifflerModel::applied_wrench(const riffler_pen_input& report) const noexcept {
+  const Command& command = commands_[report.echo_sequence % commands_.size()];
+  double dot = 0, square = 0;
+  for (std::size_t k = 0; k < kPenChannels; ++k) {
+    const double told = command.all[k];
+    dot += told * report.applied[k];
+    square += told * told;
+  }
+  const bool known = command.sequence == report.echo_sequence && square > 0;
+  const double part = known ? std::clamp(dot / square, 0.0, 1.0) : 0;
+  MotorTorques out{};
+  for (std::size_t k = 0; k < kPenChannels; ++k)
+    out[k] = 1e-3 * report.applied[k] * geometry_.channels[k].torque_constant - part * command.own[k];
+  return out;
 }
 
 bool RifflerModel::may_enable() const noexcept {
@@ -222,8 +238,12 @@ std::size_t RifflerModel::push(const SafeWrench& safe, double now, std::span<std
   riffler_pen_output report{};
   report.enable = 1;
   const PenEffort effort = pen_effort(kinematics_, posture_, safe.wrench(), posture_.pose.tip);
-  const MotorCommands currents = motor_currents(geometry_, motor_torques(geometry_, effort.torques));
+  MotorTorques own = compensation_torques(geometry_, share_, posture_.angles, speed_.rates());
+  for (double& torque : own) torque *= safe.gain();
+  const MotorCommands currents = motor_currents(geometry_, motor_torques(geometry_, effort.torques), own);
   std::copy(currents.values.begin(), currents.values.end(), report.commands);
+  const auto next = static_cast<std::uint16_t>(sent_ + 1);
+  commands_[next % commands_.size()] = {currents.values, own, next};
   return send(report, now, bytes);
 }
 

@@ -39,7 +39,7 @@ struct SimulatedDevice::Hand {
 };
 
 std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
-                                                       const DriverSettings& driver) {
+                                                       const DriverSettings& driver, const Compensation& compensation) {
   auto hand = std::make_shared<Hand>();
   auto pen = std::make_shared<SimulatedPen>(settings);
   hand->curve = hand_on_a_curve(pen->arms().posture().pose);
@@ -47,7 +47,7 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
   const auto clock = std::make_shared<SystemClock>();
   const double start = clock->now();
   auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
-  auto model = std::make_shared<RifflerModel>(*transport);
+  auto model = std::make_shared<RifflerModel>(*transport, compensation);
   // It begins in its home posture, and the hand rests there for longer than the first report takes.
   model->home();
   auto again = [pen, clock, start, model]() -> std::unique_ptr<Transport> {

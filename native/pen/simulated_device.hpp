@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "pen/compensation.hpp"
 #include "pen/hid_pen.hpp"
 #include "pen/simulated_pen.hpp"
 
@@ -15,7 +16,8 @@ class SimulatedDevice final : public HidPen {
  public:
   /// Homed. Its hand goes round on a curve (hand_on_a_curve) until it is told where to go.
   static std::unique_ptr<SimulatedDevice> open(const SimulatedPenSettings& settings = {},
-                                               const DriverSettings& driver = {});
+                                               const DriverSettings& driver = {},
+                                               const Compensation& compensation = {});
 
   /// The hand goes there at its own haste, as far as the arms reach; it lets go where the grip is 0. By one thread;
   /// never waits. std::invalid_argument for what is not finite, an axis without length, a grip outside 0 to 1.

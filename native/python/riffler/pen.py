@@ -63,7 +63,9 @@ def open(what: str | os.PathLike[str], *, speed: float | None = None, **options:
 
     Options of pucks: ``bubble`` (share of the deflection that is rest), ``exponent`` (of the response), ``speed`` (mm/s
     at full deflection), ``turn_rate`` (rad/s), ``hold_orientation``, ``signs`` (six of -1, 0, 1). Option of "polhem":
-    ``geometry`` ("woodenhaptics" or "polhem-1"). PenError says exactly why a device does not open.
+    ``geometry`` ("woodenhaptics" or "polhem-1"). Options of Riffler's pen and the simulated one: ``gravity`` and
+    ``friction``, shares (0 to 1, by themselves 0) of the arms' weight and friction that the motors make up for while
+    force is let through. PenError says exactly why a device does not open.
     """
     path = os.fspath(what)
     if path.endswith(".rjournal"):

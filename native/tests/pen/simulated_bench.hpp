@@ -26,7 +26,7 @@ class GatedStep final : public PenStep {
                     .twist = {sample.velocity, sample.turning},
                     .redundancy = sample.stretch,
                     .homed = sample.homed,
-                    .dead_man = true,
+                    .dead_man = holds,
                     .device_fault = sample.fault,
                     .device_late = sample.late});
     const SafeWrench safe = safety.release(law(sample, now, dt));
@@ -39,6 +39,7 @@ class GatedStep final : public PenStep {
   Law law = [](const PenSample&, double, double) { return Wrench{}; };
   std::function<void(const Wrench&)> after = [](const Wrench&) {};
   Safety safety;
+  bool holds = true;  // the dead-man switch
   PenSample last{};
   int steps = 0, pushed_while_tripped = 0;
 };
@@ -69,8 +70,8 @@ class SimulatedConnector final : public Connector {
 /// Homed, the gate open, nothing pushed with yet.
 struct SimulatedBench {
   explicit SimulatedBench(const SimulatedPenSettings& settings = {}, HandPath path = nullptr,
-                          const SafetySettings& safety = {})
-      : pen(std::make_shared<SimulatedPen>(settings, std::move(path))), step(safety) {
+                          const SafetySettings& safety = {}, const Compensation& compensation = {})
+      : pen(std::make_shared<SimulatedPen>(settings, std::move(path))), step(safety), model(*transport, compensation) {
     home = pen->arms().posture().pose;
     model.home();
   }
@@ -95,7 +96,7 @@ struct SimulatedBench {
   std::shared_ptr<SimulatedClock> clock = std::make_shared<SimulatedClock>();
   GatedStep step;
   std::unique_ptr<Transport> transport = std::make_unique<SimulatedTransport>(pen, clock);
-  RifflerModel model{*transport};
+  RifflerModel model;
   SimulatedConnector connector{pen, clock, model};
   DriverLoop loop{model, step, connector, *clock, std::move(transport)};
   Pose home{};

@@ -174,3 +174,20 @@ def test_a_simulated_pen_opens_moves_and_goes_where_its_hand_is_told():
         device.wander()
         assert wait(lambda: not np.allclose(device.state().pose[:3], goal[:3], atol=3))
     assert device.health()["state"] == "stopped"
+
+
+def test_a_pen_makes_up_for_its_weight_and_friction_where_it_is_told_to():
+    for option in ("gravity", "friction"):
+        with pytest.raises(ValueError, match=f"{option} must be a number between 0"):
+            riffler.pen.open("simulated", **{option: 1.5})
+    with riffler.pen.open("simulated", gravity=1.0, friction=0.5) as device:
+        end = time.monotonic() + 20
+        while not device.state().homed and time.monotonic() < end:
+            time.sleep(0.01)
+        rest = device.state().pose.copy()
+        device.aim(rest)
+        end = time.monotonic() + 20
+        while device.health()["force_state"] != "active" and time.monotonic() < end:
+            device.push([0.0, 0.0, 0.0])
+            time.sleep(0.005)
+        assert device.health()["force_state"] == "active"

@@ -1,0 +1,109 @@
+#include "pen/passivity_settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "pen/geometry.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// Bounds of one arm's Jacobian in all its postures. Column 1 stands square to the arm's plane, as long as the end is
+/// far from the upright axis; columns 2 and 3 lie in the plane, as long as the links, at right angles but for the
+/// elbow.
+struct ArmBounds {
+  std::array<double, 3> lever{};  // mm: greatest length of each column
+  double skew = 0;                // greatest |cos| of the angle between columns 2 and 3
+};
+
+ArmBounds bounds_of(const PenGeometry& pen, Arm arm) {
+  constexpr double kRight = std::numbers::pi / 2;
+  const ArmLinks& links = pen.arms[index(arm)];
+  const auto sine = [&](double elbow) { return std::sin(std::clamp(elbow, -kRight, kRight)); };
+  const double low = sine(pen.elbow_low), high = sine(pen.elbow_high);
+  // The end's distance from the shoulder, which that from the axis does not exceed: c² = a² + b² + 2 a b sin(θ2 − θ3).
+  const double a = links.upper, b = links.fore;
+  return {{std::sqrt(a * a + b * b + 2 * a * b * high), a, b}, std::max(std::abs(low), std::abs(high))};
+}
+
+/// Of three joints, one after the other: N·mm·s/rad or N·mm at each, and rad of a count.
+struct ArmTraits {
+  std::array<double, 3> viscous{}, coulomb{}, step{};
+};
+
+ArmTraits traits_of(const PenGeometry& pen, Arm arm) {
+  ArmTraits out;
+  for (const PenChannel& c : pen.channels) {
+    if (c.arm != arm) continue;
+    const auto j = static_cast<std::size_t>(c.joint);
+    out.viscous[j] = c.viscous * c.ratio * c.ratio;
+    out.coulomb[j] = c.coulomb * c.ratio;
+    out.step[j] = 2 * std::numbers::pi / c.steps;
+  }
+  return out;
+}
+
+double over(double length, double loss) {
+  return loss > 0 ? length / loss : std::numeric_limits<double>::infinity();
+}
+
+/// N·s/mm that the end has in any direction: the least eigenvalue of J⁻ᵀ C J⁻¹, the greatest of J C⁻¹ Jᵀ turned over.
+/// In the plane J C⁻¹ Jᵀ is the sum of two squares of vectors, with the eigenvalues of their Gram matrix.
+double damping(const ArmBounds& arm, const ArmTraits& joints) {
+  const auto& [upright, second, third] = arm.lever;
+  const double out = over(upright * upright, joints.viscous[0]);
+  const double p = over(second * second, joints.viscous[1]), q = over(third * third, joints.viscous[2]);
+  const double apart = p - q, in = 0.5 * (p + q + std::sqrt(apart * apart + 4 * p * q * arm.skew * arm.skew));
+  const double most = std::max(out, in);
+  return std::isfinite(most) ? 1 / most : 0;
+}
+
+/// N that it takes to move the end in any direction: |v| = |J q̇| ≤ Σ |J_k| |q̇_k| ≤ max(|J_k| / f_k) Σ f_k |q̇_k|.
+double friction(const ArmBounds& arm, const ArmTraits& joints) {
+  double most = 0;
+  for (std::size_t k = 0; k < 3; ++k) most = std::max(most, over(arm.lever[k], joints.coulomb[k]));
+  return std::isfinite(most) ? 1 / most : 0;
+}
+
+/// mm along any direction within which the end is known, all three joints to a count.
+double resolution(const ArmBounds& arm, const ArmTraits& joints) {
+  return std::hypot(arm.lever[0] * joints.step[0], arm.lever[1] * joints.step[1] + arm.lever[2] * joints.step[2]);
+}
+
+}  // namespace
+
+PassivitySettings passivity_settings(const DeviceCapability& device) {
+  PassivitySettings out;
+  out.resolution = {0, 0};
+  for (std::size_t k = 0; k < kCoordinates; ++k) {
+    double& said = k < 3 ? out.resolution.linear : out.resolution.angular;
+    said = std::max(said, device.coordinates[k].resolution);
+  }
+  return out;
+}
+
+PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation& share) {
+  double least_damping = std::numeric_limits<double>::infinity(), least_friction = least_damping, sum = 0;
+  for (const Arm arm : {Arm::R, Arm::L}) {
+    const ArmBounds bounds = bounds_of(pen, arm);
+    const ArmTraits joints = traits_of(pen, arm);
+    least_damping = std::min(least_damping, damping(bounds, joints));
+    least_friction = std::min(least_friction, friction(bounds, joints));
+    sum += resolution(bounds, joints);
+  }
+  const double kept = 1 - share.friction, half = 0.5 * pen.grip_length;
+  const double damps = kept * least_damping, rubs = kept * least_friction / std::numbers::sqrt3;
+  PassivitySettings out;
+  // The pivot is midway between the ends, the axis along their difference.
+  out.resolution = {0.5 * sum, sum / pen.grip_length};
+  // Ends go at v ± w, w = ω × r with |r| half the grip: |v + w|² + |v − w|² = 2 |v|² + 2 |w|².
+  out.device_damping = {2 * damps, 2 * damps * half * half};
+  // |v + w| + |v − w| ≥ 2 max(|v|, |w|) ≥ |v| + |w|; of three coordinates the sum of sizes is at most √3 of the length.
+  out.device_friction = {rubs, rubs * half};
+  return out;
+}
+
+}  // namespace riffler
