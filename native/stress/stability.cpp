@@ -24,7 +24,7 @@ double bisect(const Active& active) {
   return std::exp(0.5 * (low + high));
 }
 
-bool swings_up(const SimulatedDevice& device, const SimulatedHand& hand, const SimulatedWall& wall) {
+bool swings_up(const WallDevice& device, const WallHand& hand, const SimulatedWall& wall) {
   constexpr int kTicks = 16'000;
   const Column zero(wall.normal.size(), 0.0);
   WallSimulation simulation(device, hand, wall);
@@ -43,11 +43,11 @@ bool swings_up(const SimulatedDevice& device, const SimulatedHand& hand, const S
 
 }  // namespace
 
-double swing_boundary(const SimulatedDevice& device, const SimulatedHand& hand, const Column& normal) {
+double swing_boundary(const WallDevice& device, const WallHand& hand, const Column& normal) {
   return bisect([&](double stiffness) { return swings_up(device, hand, {normal, stiffness}); });
 }
 
-double gained(const SimulatedDevice& device, const SimulatedWall& wall, const Column& amplitude, int ticks) {
+double gained(const WallDevice& device, const SimulatedWall& wall, const Column& amplitude, int ticks) {
   const std::size_t n = amplitude.size();
   RenderedWall rendered(device, wall, {});
   Column last;
@@ -69,7 +69,7 @@ double gained(const SimulatedDevice& device, const SimulatedWall& wall, const Co
   return sum;
 }
 
-double cunning_boundary(const SimulatedDevice& device, double wall_damping, const Column& normal,
+double cunning_boundary(const WallDevice& device, double wall_damping, const Column& normal,
                         const std::vector<Column>& directions) {
   // Without steps everything is linear, and one amplitude as good as any.
   static constexpr double kAmplitudes[] = {1, 1e-3, 0.1, 0.4, 4, 32, 1e3};
@@ -107,14 +107,14 @@ CoupledScene coupled_scene(std::uint64_t seed) {
   return scene;
 }
 
-SimulatedHand guide(const SimulatedDevice& device, const Column& direction) {
+WallHand guide(const WallDevice& device, const Column& direction) {
   // Springs against every way but `direction`, in coordinates where rad count as lengths; far stiffer than any wall
   // here.
   const int n = device.coordinates();
   Column u = direction;
   for (int i = 3; i < n; ++i) u[static_cast<std::size_t>(i)] *= kLever;
   const double length = std::sqrt(dot(u, u));
-  SimulatedHand hand{Matrix(n, n), Matrix(n, n)};
+  WallHand hand{Matrix(n, n), Matrix(n, n)};
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const std::size_t a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
@@ -155,7 +155,7 @@ class Hand {
 
 }  // namespace
 
-SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, const Session& session,
+SessionResult press(const WallDevice& device, const SimulatedWall& wall, const Session& session,
                     const std::optional<PassivitySettings>& settings) {
   const std::size_t n = wall.normal.size();
   WallSimulation simulation(device, session.guide, wall, settings);

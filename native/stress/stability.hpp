@@ -10,21 +10,21 @@ namespace riffler::stress {
 
 /// The stiffness (N/mm) from which the device, struck once and then held by `hand`, swings up instead of calming down.
 /// Without friction and encoder steps; to 1e-3.
-double swing_boundary(const SimulatedDevice& device, const SimulatedHand& hand, const Column& normal);
+double swing_boundary(const WallDevice& device, const WallHand& hand, const Column& normal);
 
 /// N·mm that a hand gains by one round of a path, if it moves the device itself: what the wall delivers less what
 /// damping and friction take. The path is a triangle of 2 · `ticks` samples, `amplitude` to both sides of an edge
 /// between encoder steps.
-double gained(const SimulatedDevice& device, const SimulatedWall& wall, const Column& amplitude, int ticks);
+double gained(const WallDevice& device, const SimulatedWall& wall, const Column& amplitude, int ticks);
 
 /// The stiffness from which some of many paths gains: of all lengths, and of amplitudes from a thousandth of an encoder
 /// step to a thousand steps, along each of `directions`. The most cunning hand, which is what passivity is about.
-double cunning_boundary(const SimulatedDevice& device, double wall_damping, const Column& normal,
+double cunning_boundary(const WallDevice& device, double wall_damping, const Column& normal,
                         const std::vector<Column>& directions);
 
 /// Five coordinates, three in mm and two in rad, coupled by mass and damping, and a wall across all of them.
 struct CoupledScene {
-  SimulatedDevice device;
+  WallDevice device;
   Column normal;
   /// The motion that costs the hand least per mm of depth: damping⁻¹ · normal.
   Column easiest;
@@ -34,7 +34,7 @@ struct CoupledScene {
 CoupledScene coupled_scene(std::uint64_t seed);
 
 /// A hand that lets the device slide along `direction` and no other way.
-SimulatedHand guide(const SimulatedDevice& device, const Column& direction);
+WallHand guide(const WallDevice& device, const Column& direction);
 
 /// A hand on a one-sided wall. One that strikes presses, wavers, and lets go at random; one that does not presses with
 /// all its push, from half a millimetre before the wall. Beyond its force it is a weak spring and damper.
@@ -43,7 +43,7 @@ struct Session {
   double push = 2;  // N; in coordinates that are angles, times 20 mm
   std::uint64_t seed = 1;
   bool strikes = true;
-  SimulatedHand guide{};
+  WallHand guide{};
 };
 struct SessionResult {
   double delivered = 0;           ///< N·mm: the most that the wall was ahead of the hand, over all ticks
@@ -56,7 +56,7 @@ struct SessionResult {
   long touched = 0;      ///< ticks in which the controller changed the wall's force
   long unforeseen = 0;   ///< ticks in which the grip accelerated beyond the settings' bound
 };
-SessionResult press(const SimulatedDevice& device, const SimulatedWall& wall, const Session& session,
+SessionResult press(const WallDevice& device, const SimulatedWall& wall, const Session& session,
                     const std::optional<PassivitySettings>& settings);
 
 }  // namespace riffler::stress

@@ -37,7 +37,7 @@ class Rows {
 void sampling() {
   Rows rows("sampling");
   for (const double b : {2.5e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3}) {
-    const SimulatedDevice device = simulated_device(kMass, b);
+    const WallDevice device = wall_device(kMass, b);
     rows.add(R"({"damping": %.9g, "bound": %.9g, "swing": %.9g, "cunning": %.9g})", b,
              passive_stiffness({kPeriod, b, 0, 0}).least(), swing_boundary(device, {}, {1.0}),
              cunning_boundary(device, 0, {1.0}, {{1.0}}));
@@ -47,7 +47,7 @@ void sampling() {
 void wall_damping() {
   Rows rows("wall_damping");
   for (const double wall : {-1.5e-3, -1e-3, -5e-4, 0.0, 5e-4, 1e-3, 1.5e-3}) {
-    const SimulatedDevice device = simulated_device(kMass, 2e-3);
+    const WallDevice device = wall_device(kMass, 2e-3);
     rows.add(R"({"wall_damping": %.9g, "bound": %.9g, "cunning": %.9g})", wall,
              passive_stiffness({kPeriod, 2e-3, 0, 0}, wall).least(), cunning_boundary(device, wall, {1.0}, {{1.0}}));
   }
@@ -57,7 +57,7 @@ void quantisation() {
   Rows rows("quantisation");
   for (const double step : {0.005, 0.01, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3}) {
     const double damping = 2e-3, friction = 0.2;
-    const SimulatedDevice device = simulated_device(kMass, damping, friction, step);
+    const WallDevice device = wall_device(kMass, damping, friction, step);
     rows.add(R"({"step": %.9g, "bound": %.9g, "cunning": %.9g})", step,
              passive_stiffness({kPeriod, damping, friction, step}).least(),
              cunning_boundary(device, 0, {1.0}, {{step}}));
@@ -85,8 +85,8 @@ void five_coordinates() {
 }
 
 /// A hand leans on walls that are soft and walls that are far too hard, which push with 10 N at the most.
-void sessions(const char* name, const SimulatedDevice& device, const Column& normal, double bound,
-              const SimulatedHand& guide, const PassivitySettings& settings) {
+void sessions(const char* name, const WallDevice& device, const Column& normal, double bound, const WallHand& guide,
+              const PassivitySettings& settings) {
   Rows rows(name);
   for (const double times : {0.25, 0.5, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 8.0, 15.0, 30.0, 60.0, 100.0}) {
     const SimulatedWall wall{normal, times * bound, 0, true, 10};
@@ -112,7 +112,7 @@ void touched(double damping, double friction) {
       settings.resolution.linear = step;
       settings.device_damping.linear = 0.5 * half * damping, settings.device_friction.linear = 0.5 * half * friction;
       const SimulatedWall wall{{1.0}, stiffness, 1e-3, true, 10};
-      ticks[half] = press(simulated_device(kMass, damping, friction, step), wall, {100'000, 2, 3}, settings).touched;
+      ticks[half] = press(wall_device(kMass, damping, friction, step), wall, {100'000, 2, 3}, settings).touched;
     }
     rows.add(R"({"stiffness": %.9g, "none": %ld, "half": %ld, "all": %ld})", stiffness, ticks[0], ticks[1], ticks[2]);
   }
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
       PassivitySettings settings;
       settings.jitter = 0;
       settings.acceleration = {9e4, 0}, settings.resolution = {0, 0}, settings.device_damping = {2e-3, 0};
-      sessions("one_session", simulated_device(kMass, 2e-3), {1.0}, 4, {}, settings);
+      sessions("one_session", wall_device(kMass, 2e-3), {1.0}, 4, {}, settings);
       const CoupledScene scene = coupled_scene(3);
       settings.acceleration = {2e5, 1e4}, settings.device_damping = {0, 0};
       sessions("five_session", scene.device, scene.normal, 2 * scene.damping / kPeriod,

@@ -43,11 +43,11 @@ std::pair<Matrix, Matrix> transition(const Matrix& mass, const Matrix& damping, 
 
 }  // namespace
 
-SimulatedDevice simulated_device(double mass, double damping, double friction, double resolution) {
+WallDevice wall_device(double mass, double damping, double friction, double resolution) {
   return {1e-3, Matrix::diagonal({mass}), Matrix::diagonal({damping}), {friction}, {resolution}};
 }
 
-RenderedWall::RenderedWall(const SimulatedDevice& device, const SimulatedWall& wall,
+RenderedWall::RenderedWall(const WallDevice& device, const SimulatedWall& wall,
                            const std::optional<PassivitySettings>& settings)
     : device_(device), wall_(wall), held_(wall.normal.size(), 0.0) {
   if (settings) passivity_.emplace(*settings);
@@ -81,7 +81,7 @@ const Column& RenderedWall::sample(const Column& position) {
   return held_;
 }
 
-WallSimulation::WallSimulation(const SimulatedDevice& device, const SimulatedHand& hand, const SimulatedWall& wall,
+WallSimulation::WallSimulation(const WallDevice& device, const WallHand& hand, const SimulatedWall& wall,
                                const std::optional<PassivitySettings>& settings)
     : device_(device),
       hand_(hand),

@@ -14,7 +14,7 @@ namespace riffler::stress {
 using Column = std::vector<double>;
 
 /// Units: N, mm, s in the first three coordinates, N·mm, rad, s in the others.
-struct SimulatedDevice {
+struct WallDevice {
   double period = 1e-3;
   Matrix mass, damping;         // symmetric, positive definite; damping may be semidefinite
   Column friction, resolution;  // Coulomb friction and encoder step of each coordinate; 0 is none
@@ -23,7 +23,7 @@ struct SimulatedDevice {
 };
 
 /// One coordinate: mass N·s²/mm, damping N·s/mm, friction N, resolution mm.
-SimulatedDevice simulated_device(double mass, double damping, double friction = 0, double resolution = 0);
+WallDevice wall_device(double mass, double damping, double friction = 0, double resolution = 0);
 
 /// f = −normal · (stiffness · d + damping · ḋ) at d = normal · x, with x as measured and ḋ from two samples.
 struct SimulatedWall {
@@ -36,8 +36,7 @@ struct SimulatedWall {
 /// What runs at samples: encoder, wall, and the passivity controller if there is one.
 class RenderedWall {
  public:
-  RenderedWall(const SimulatedDevice& device, const SimulatedWall& wall,
-               const std::optional<PassivitySettings>& settings);
+  RenderedWall(const WallDevice& device, const SimulatedWall& wall, const std::optional<PassivitySettings>& settings);
   /// The force to hold from now on, for the true position at this sample.
   const Column& sample(const Column& position);
   const Column& held() const { return held_; }
@@ -47,7 +46,7 @@ class RenderedWall {
  private:
   void measure(const Column& position);
 
-  SimulatedDevice device_;
+  WallDevice device_;
   SimulatedWall wall_;
   Column measured_, previous_, held_;
   bool first_ = true;
@@ -56,13 +55,13 @@ class RenderedWall {
 };
 
 /// The device let go, or held by a hand that is a spring to the origin, a damper and a force.
-struct SimulatedHand {
+struct WallHand {
   Matrix stiffness, damping;  // empty is none
 };
 
 class WallSimulation {
  public:
-  WallSimulation(const SimulatedDevice& device, const SimulatedHand& hand, const SimulatedWall& wall,
+  WallSimulation(const WallDevice& device, const WallHand& hand, const SimulatedWall& wall,
                  const std::optional<PassivitySettings>& settings = {});
   void place(const Column& position, const Column& velocity);
   /// Samples, then goes on by one period with the force held and `hand` (N, N·mm).
@@ -83,8 +82,8 @@ class WallSimulation {
   bool sticks(const Column& force) const;
   void rub(double time);
 
-  SimulatedDevice device_;
-  SimulatedHand hand_;
+  WallDevice device_;
+  WallHand hand_;
   RenderedWall rendered_;
   bool rubs_;
   int parts_;             // per period: 1 without friction, where the exact solution needs no smaller

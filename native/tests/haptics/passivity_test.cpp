@@ -78,7 +78,7 @@ TEST(Passivity, TheWorstHandWithinTheBoundsNeverMakesADebt) {
 
 struct Scene {
   const char* name;
-  stress::SimulatedDevice device;
+  stress::WallDevice device;
   Column normal;
   double bound;
   Bounds acceleration;
@@ -86,7 +86,7 @@ struct Scene {
 
 std::vector<Scene> scenes() {
   const stress::CoupledScene five = stress::coupled_scene(3);
-  return {{"one coordinate", stress::simulated_device(1.5e-4, 2e-3), {1.0}, 4, {9.5e4, 0}},
+  return {{"one coordinate", stress::wall_device(1.5e-4, 2e-3), {1.0}, 4, {9.5e4, 0}},
           {"five coordinates", five.device, five.normal, 2 * five.damping / 1e-3, {3e5, 1.5e4}}};
 }
 
@@ -108,7 +108,7 @@ TEST(Passivity, WallsFarBeyondThePassiveBoundGiveNoEnergy) {
 
 TEST(Passivity, QuantisationHidesNoMoreThanItsStepTimesTheChangeOfForce) {
   for (const double step : {0.005, 0.02, 0.1}) {
-    const stress::SimulatedDevice device = stress::simulated_device(1.5e-4, 2e-3, 0.2, step);
+    const stress::WallDevice device = stress::wall_device(1.5e-4, 2e-3, 0.2, step);
     PassivitySettings settings = strict({9e4, 0});
     settings.resolution = {step, 0};
     for (const double times : {1.0, 10.0}) {
@@ -126,7 +126,7 @@ TEST(Passivity, WallsWithinThePassiveBoundAreLeftAlone) {
   settings.device_damping = {2e-3, 0};
   for (const double times : {0.1, 0.5, 0.9, 0.99}) {
     const stress::SimulatedWall wall{{1.0}, 4 * times, 0, true, 10};
-    const stress::SimulatedDevice device = stress::simulated_device(1.5e-4, 2e-3);
+    const stress::WallDevice device = stress::wall_device(1.5e-4, 2e-3);
     const stress::Session session{50'000, 2, 3, false};
     const stress::SessionResult on = press(device, wall, session, settings), off = press(device, wall, session, {});
     EXPECT_EQ(on.depth, off.depth) << times;
@@ -141,7 +141,7 @@ TEST(Passivity, DefaultsLeaveACouplingOnAnOrdinaryDeviceAlone) {
   PassivitySettings settings;
   settings.device_damping.linear = 1e-3, settings.device_friction.linear = 0.1;
   const stress::SimulatedWall wall{{1.0}, coupling.stiffness, coupling.damping, true, 10};
-  const auto r = press(stress::simulated_device(1.5e-4, 2e-3, 0.2, 0.0236), wall, {100'000, 2, 3}, settings);
+  const auto r = press(stress::wall_device(1.5e-4, 2e-3, 0.2, 0.0236), wall, {100'000, 2, 3}, settings);
   EXPECT_EQ(r.touched, 0);
   EXPECT_EQ(r.unforeseen, 0);
 }

@@ -9,9 +9,9 @@ namespace {
 
 TEST(WallSimulation, MovesAFreeDeviceAsTheClosedFormSays) {
   // m ẍ + b ẋ = 0 and m ẍ + k x = 0.
-  WallSimulation coasts(simulated_device(2e-4, 1e-3), {}, {{1.0}});
+  WallSimulation coasts(wall_device(2e-4, 1e-3), {}, {{1.0}});
   coasts.place({0.0}, {100.0});
-  WallSimulation swings(simulated_device(2e-4, 0), {Matrix::diagonal({3.0}), {}}, {{1.0}});
+  WallSimulation swings(wall_device(2e-4, 0), {Matrix::diagonal({3.0}), {}}, {{1.0}});
   swings.place({1.0}, {0.0});
   for (int k = 1; k <= 1000; ++k) {
     coasts.tick({0.0}), swings.tick({0.0});
@@ -24,7 +24,7 @@ TEST(WallSimulation, MovesAFreeDeviceAsTheClosedFormSays) {
 
 TEST(WallSimulation, FrictionSlowsEvenlyAndHolds) {
   // 0.2 N on 0.2 kg: 1000 mm/s² from 100 mm/s is 5 mm in 0.1 s; then less than the friction moves nothing.
-  WallSimulation rubs(simulated_device(2e-4, 0, 0.2), {}, {{1.0}});
+  WallSimulation rubs(wall_device(2e-4, 0, 0.2), {}, {{1.0}});
   rubs.place({0.0}, {100.0});
   for (int k = 0; k < 200; ++k) rubs.tick({0.0});
   EXPECT_NEAR(rubs.position()[0], 5, 1e-3);
@@ -37,18 +37,18 @@ TEST(WallSimulation, FrictionSlowsEvenlyAndHolds) {
 
 TEST(Stability, OneCoordinateSwingsUpAtTheBoundOfColgateAndSchenkel) {
   for (const double b : {5e-4, 2e-3})
-    EXPECT_NEAR(swing_boundary(simulated_device(1.5e-4, b), {}, {1.0}) / (2 * b / 1e-3), 1, 0.01) << b;
+    EXPECT_NEAR(swing_boundary(wall_device(1.5e-4, b), {}, {1.0}) / (2 * b / 1e-3), 1, 0.01) << b;
 }
 
 TEST(Stability, ACunningHandGainsFromTheBoundOn) {
   for (const double wall : {-1.5e-3, -5e-4, 0.0, 5e-4, 1.5e-3}) {
     const double bound = passive_stiffness({1e-3, 2e-3, 0, 0}, wall).least();
-    EXPECT_NEAR(cunning_boundary(simulated_device(1.5e-4, 2e-3), wall, {1.0}, {{1.0}}) / bound, 1, 0.03) << wall;
+    EXPECT_NEAR(cunning_boundary(wall_device(1.5e-4, 2e-3), wall, {1.0}, {{1.0}}) / bound, 1, 0.03) << wall;
   }
   // With encoder steps, Abbott and Okamura's, from well below to well above the step at which it takes over.
   for (const double step : {0.01, 0.05, 0.2, 0.3}) {
     const double bound = passive_stiffness({1e-3, 2e-3, 0.2, step}).least();
-    const SimulatedDevice device = simulated_device(1.5e-4, 2e-3, 0.2, step);
+    const WallDevice device = wall_device(1.5e-4, 2e-3, 0.2, step);
     EXPECT_NEAR(cunning_boundary(device, 0, {1.0}, {{step}}) / bound, 1, 0.012) << step;
   }
 }
