@@ -209,6 +209,45 @@ with `grip` below 1 it holds more loosely, with 0 not at all. `spin` in rad abou
       .def("wander", &SimulatedDevice::wander, "The hand goes round on its own curve again.");
 }
 
+PointerFrame to_frame(const py::object& origin, const py::object& right, const py::object& up, double scale,
+                      double depth, double most_tilt) {
+  return {to_vec3(origin, "origin"), to_vec3(right, "right"), to_vec3(up, "up"), scale, depth, most_tilt};
+}
+
+std::shared_ptr<PointerPen> make_pointer(const std::string& kind) {
+  if (kind == "tablet") return std::make_shared<PointerPen>(PointerPen::Kind::Tablet);
+  if (kind == "mouse") return std::make_shared<PointerPen>(PointerPen::Kind::Mouse);
+  throw std::invalid_argument("kind: there is no pointer \"" + kind + "\"; there are tablet, mouse");
+}
+
+void bind_pointer(py::module_& m) {
+  const PointerFrame frame;
+  const py::tuple zero = py::make_tuple(0, 0, 0), along = py::make_tuple(1, 0, 0), across = py::make_tuple(0, 1, 0);
+  py::class_<PointerPen, Pen, std::shared_ptr<PointerPen>>(
+      m, "Pointer", R"(A tablet or a mouse as a device: whoever gets its events gives them here, and they become poses.
+
+`kind` is "tablet" (senses point and axis) or "mouse" (the point only; its axis stands upright on the plane).)")
+      .def(py::init(&make_pointer), "kind"_a = "tablet")
+      .def(
+          "set_frame",
+          [](PointerPen& p, const py::object& origin, const py::object& right, const py::object& up, double scale,
+             double depth, double most_tilt) { p.set_frame(to_frame(origin, right, up, scale, depth, most_tilt)); },
+          py::kw_only(), "origin"_a = zero, "right"_a = along, "up"_a = across, "scale"_a = frame.scale,
+          "depth"_a = frame.depth, "most_tilt"_a = frame.most_tilt,
+          R"(Where the pointer's plane lies, from the next event on: `origin`, (3,) mm, of pointer (0, 0); `right` and
+`up`, (3,) unit vectors square to each other; `scale`, mm for a unit of the pointer; `depth`, mm into the plane at full
+pressure; `most_tilt`, rad from upright, below pi/2. ValueError naming what cannot be; the frame is as before then.)")
+      .def(
+          "give",
+          [](PointerPen& p, double x, double y, double pressure, double tilt_x, double tilt_y, std::uint32_t buttons,
+             double time) { return p.give({x, y, pressure, tilt_x, tilt_y, buttons, time}); },
+          "x"_a, "y"_a, py::kw_only(), "pressure"_a = 0.0, "tilt_x"_a = 0.0, "tilt_y"_a = 0.0, "buttons"_a = 0U,
+          "time"_a,
+          R"(An event: right and up in units of the frame, pressure 0 to 1, tilts (rad) by which the pen's end leans to
+the right and up, buttons as bits, time in s of any clock. False, and it is left out, where a number is not finite or the
+time is before the last event's.)");
+}
+
 }  // namespace
 
 void bind_pen_device(py::module_& m) {
@@ -217,6 +256,7 @@ void bind_pen_device(py::module_& m) {
   bind_state(m);
   bind_device(m);
   bind_simulated(m);
+  bind_pointer(m);
   m.def("_pen_devices", &devices);
   m.def("_pen_families", &families);
   const RateSettings rate;

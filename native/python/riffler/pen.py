@@ -12,6 +12,7 @@ Devices that are plugged in are listed by ``devices`` and opened by ``open``; a 
         device.push([0.0, 0.0, 1.0])
 
 Without hardware there is ``riffler.pen.open("simulated")``: the same firmware and driver, arms and hand simulated.
+Tablet and mouse are a ``Pointer``, for whoever gets their events.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from ._core import (
     PenError,
     PenGeometry,
     PenState,
+    Pointer,
     SimulatedPen,
     _open_pen,
     _pen_devices,
@@ -35,7 +37,18 @@ from ._core import (
     _play_pen,
 )
 
-__all__ = ["PenDevice", "PenError", "PenGeometry", "PenState", "SimulatedPen", "devices", "kinds", "names", "open"]
+__all__ = [
+    "PenDevice",
+    "PenError",
+    "PenGeometry",
+    "PenState",
+    "Pointer",
+    "SimulatedPen",
+    "devices",
+    "kinds",
+    "names",
+    "open",
+]
 
 _open_devices: weakref.WeakSet[PenDevice] = weakref.WeakSet()
 

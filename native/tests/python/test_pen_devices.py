@@ -191,3 +191,47 @@ def test_a_pen_makes_up_for_its_weight_and_friction_where_it_is_told_to():
             device.push([0.0, 0.0, 0.0])
             time.sleep(0.005)
         assert device.health()["force_state"] == "active"
+
+
+def test_a_pointer_becomes_poses():
+    tablet = riffler.pen.Pointer("tablet")
+    assert isinstance(tablet, riffler.pen.PenDevice)
+    assert (tablet.kind, riffler.pen.Pointer(kind="mouse").kind, riffler.pen.Pointer().kind) == (
+        "tablet",
+        "mouse",
+        "tablet",
+    )
+    assert tablet.limits["b"]["senses"] == "position" and riffler.pen.Pointer("mouse").limits["b"]["senses"] is None
+    assert tablet.state().sequence == 0 and tablet.state().age_s == np.inf
+    tablet.set_frame(origin=[10, 20, 30], right=[0, 1, 0], up=[0, 0, 1], scale=0.5, depth=4)
+    assert tablet.give(6, -2, pressure=0.25, tilt_x=0.2, buttons=5, time=1.0)
+    state = tablet.state()
+    np.testing.assert_allclose(state.pose[:3], [10 - 1, 20 + 3, 30 - 1])
+    np.testing.assert_allclose(state.pose[3:], [np.cos(0.2), np.sin(0.2), 0], atol=1e-15)
+    assert (state.buttons, state.homed, state.age_s, state.sequence) == (5, True, 0, 1)
+    assert tablet.give(8, -2, pressure=0.25, time=1.5)
+    np.testing.assert_allclose(tablet.state().velocity, [0, 2, 0])
+    for wrong in ({"time": 1.4}, {"time": np.nan}, {"time": 2, "pressure": np.inf}):
+        assert not tablet.give(9, 9, **wrong)
+    assert tablet.state().sequence == 2
+    assert tablet.push([0, 0, 1])["reason"] == "the device has no motors for all of it"
+
+
+def test_a_pointer_says_what_is_wrong_and_stays_as_it_was():
+    with pytest.raises(ValueError, match="tablet, mouse"):
+        riffler.pen.Pointer("finger")
+    mouse = riffler.pen.Pointer("mouse")
+    mouse.set_frame(origin=[1, 2, 3])
+    for wrong, word in (
+        ({"right": [2, 0, 0]}, "right"),
+        ({"up": [1, 0, 0]}, "square"),
+        ({"scale": 0}, "scale"),
+        ({"depth": -1}, "depth"),
+        ({"most_tilt": 2}, "most_tilt"),
+        ({"origin": [np.nan, 0, 0]}, "origin"),
+        ({"origin": [1, 2]}, "origin"),
+    ):
+        with pytest.raises(ValueError, match=word):
+            mouse.set_frame(**wrong)
+    assert mouse.give(0, 0, time=0)
+    np.testing.assert_allclose(mouse.state().pose, [1, 2, 3, 0, 0, 1])
