@@ -42,7 +42,7 @@ class Passivity {
   /// Validates the settings.
   explicit Passivity(const PassivitySettings& settings);
 
-  /// The hold that ends now: the wrench that the device was really given, and how far the grip has gone meanwhile,
+  /// The hold that ends now: the wrench that the device's motors really had, and how far the grip has gone meanwhile,
   /// about the same pivot, in dt seconds. Without finite numbers nothing is accounted and the grip counts as at rest.
   void observe(const Wrench& held, const Twist& displacement, double dt);
 

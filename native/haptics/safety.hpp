@@ -7,17 +7,20 @@
 //   if (!lets_force_through(state)) w = {};
 //
 //   const auto [way, turn] = stretch(grip, last_grip);
-//   passivity.observe(held.wrench(), {way, turn}, dt);  // what the last hold did
+//   passivity.observe(applied, {way, turn}, dt);  // what the motors did since, by the device's own word
 //
 //   const auto [on_grip, on_tool, energy] = couple(coupling, stretch(grip, tool), twist, tool_twist);
 //   tool = ...;  // goes where on_tool takes it, or is held by what it touches
 //
-//   w = limited(limits, capability, actuators, w, on_grip, twist, dt);  // rates: from the last w, not from held
+//   w = limited(limits, capability, actuators, w, on_grip, twist, dt);  // rates: from the last w, not from applied
 //   w = passivity.control(w, capability);
 //   w = magnitude_gain(limits, actuators, w) * w;  // damping was added
 //
-//   held = safety.release(w);  // the gain of ramp and fade, the last checks
-//   device.write(held);
+//   device.write(safety.release(w));  // the gain of ramp and fade, the last checks
+//
+// `applied` is PenSample::applied: a wrench comes to the motors one or two frames after it was released, behind ramps
+// and limits of the device's own, and an account of what was released is deceived (docs/stability.md). Of a device that
+// does not say what its motors have, the last released wrench is the nearest thing.
 //
 // After `control` a wrench may only shrink, as it does in the last two steps: the account that bears a wrench bears
 // any part of it. All wrenches and twists of a tick are about the grip's point.
