@@ -49,6 +49,10 @@ std::vector<Vec2> find_deepest(const Outline& outline, double width) {
   return out;
 }
 
+double widest(const OutlineEdge& e) {
+  return std::max({e.from.x, e.to.x, e.centre ? e.centre->x + e.bulge : 0});
+}
+
 }  // namespace
 
 Assembly::Assembly(const Tool& tool)
@@ -61,15 +65,13 @@ Assembly::Assembly(const Tool& tool)
   for (const OutlineEdge& e : outline_.edges()) {
     lane_edges_.emplace_back(e);
     reach_ = std::max({reach_, glm::length(e.from), glm::length(e.to)});
-    max_radius_ = std::max({max_radius_, e.from.x, e.to.x});
-    if (e.centre) {
-      reach_ = std::max(reach_, glm::length(*e.centre) + std::abs(e.bulge));
-      max_radius_ = std::max(max_radius_, e.centre->x + e.bulge);
-    }
+    max_radius_ = std::max(max_radius_, widest(e));
+    if (e.centre) reach_ = std::max(reach_, glm::length(*e.centre) + std::abs(e.bulge));
     if (e.from.y == e.to.y) continue;
     if (stretches_.empty() || stretches_.back().part != e.part)
-      stretches_.push_back({stretches_.empty() ? e.from.y : stretches_.back().high, e.to.y, e.part});
+      stretches_.push_back({stretches_.empty() ? e.from.y : stretches_.back().high, e.to.y, e.part, 0});
     stretches_.back().high = e.to.y;
+    stretches_.back().radius = std::max(stretches_.back().radius, widest(e));
   }
 }
 

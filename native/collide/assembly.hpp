@@ -26,6 +26,7 @@ class Assembly {
   struct Stretch {
     double low, high;
     Part part;
+    double radius;  // where it is widest
   };
   const std::vector<Stretch>& stretches() const { return stretches_; }
   Part part_at(double z) const;

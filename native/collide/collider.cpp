@@ -11,11 +11,13 @@
 #include "collide/nearest_search.hpp"
 #include "collide/winding.hpp"
 #include "marching/to_mesh.hpp"
+#include "mesh/decimate.hpp"
 
 namespace riffler {
 
 namespace {
 
+constexpr double kBoxes = 1.5;  // sides of a fixture's pieces in spacings of points on the part
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 void check(const Collider::Settings& s) {
@@ -29,7 +31,8 @@ void check(const Collider::Settings& s) {
 
 Mesh mesh_of(const Volume& volume, std::size_t index) {
   try {
-    return to_mesh(volume);
+    // Faces in few triangles, as many are equally near to a tool's side that lies along them.
+    return decimate(to_mesh(volume), {{}, 1e-3 * volume.frame().pitch});
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument("fixtures, volume " + std::to_string(index) + ": " + e.what());
   }
@@ -59,7 +62,8 @@ Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Setting
   data_ = std::make_unique<Data>(part, settings);
   data_->fixtures.reserve(fixtures.size());
   for (std::size_t i = 0; i < fixtures.size(); ++i)
-    if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) data_->fixtures.emplace_back(fixtures[i], m);
+    if (const Mesh m = mesh_of(fixtures[i], i); !m.empty())
+      data_->fixtures.emplace_back(fixtures[i], m, kBoxes * data_->points.spacing());
   data_->surfaces.push_back(&data_->part);
   for (const Fixture& f : data_->fixtures) data_->surfaces.push_back(&f.surface());
 }

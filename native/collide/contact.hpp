@@ -17,7 +17,7 @@ struct Counts {
   std::size_t triangles = 0;  ///< looked at by themselves
   std::size_t cells = 0;      ///< places on triangles where the tool's distance was taken
   std::size_t points = 0;     ///< sample points of the force
-  std::size_t dexels = 0;     ///< rays of fixtures
+  std::size_t boxes = 0;      ///< of the material of fixtures, looked at by themselves
 };
 
 /// How force (N) and torque about the tip (N·mm) fall when the tool is moved by a small displacement: its translation
@@ -28,8 +28,9 @@ using ContactStiffness = std::array<std::array<double, 6>, 6>;
 struct Contact {
   Vec3 force{0};   ///< N, out of what is touched
   Vec3 torque{0};  ///< N·mm, about the tip
-  /// Σ |f|/Δ over the forces f, each along itself. Δ of a point is its depth: the derivative of the force where the
-  /// tool's surface runs along the part's. Δ of a dexel is half the depth of the whole contact: an estimate.
+  /// Of a point of the part k times its area along its normal: the derivative of its force where the tool's surface
+  /// runs along the part's. Of a fixture k times the area of the tool's surface in it: of its derivative, which is not
+  /// symmetric where force and normal differ, the positive part of what is.
   ContactStiffness stiffness{};
   /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
   double depth = 0;
@@ -41,19 +42,17 @@ struct Contact {
   std::vector<Vec3> points;    ///< contact points, the deepest first; empty where nothing touches
   std::vector<Touch> touches;  ///< of the points
 
-  /// Adds the force on the tool's point that is `arm` away from its tip, which pushes it out of a depth `deep`, mm.
-  void push(const Vec3& arm, const Vec3& pushing, double deep);
+  /// Adds a force on the tool's point that is `arm` away from its tip.
+  void push(const Vec3& arm, const Vec3& pushing) { force += pushing, torque += glm::cross(arm, pushing); }
+  /// Adds what that point's motion along a direction meets, N/mm.
+  void resist(const Vec3& arm, const Vec3& direction, double per_mm);
 };
 
-inline void Contact::push(const Vec3& arm, const Vec3& pushing, double deep) {
-  const Vec3 turning = glm::cross(arm, pushing);
-  force += pushing, torque += turning;
-  const double size = glm::length(pushing);
-  if (!(size > 0 && deep > 0)) return;
-  const Vec3 n = pushing / size, m = turning / size;
-  const double w[6] = {n.x, n.y, n.z, m.x, m.y, m.z};
+inline void Contact::resist(const Vec3& arm, const Vec3& direction, double per_mm) {
+  const Vec3 m = glm::cross(arm, direction);
+  const double w[6] = {direction.x, direction.y, direction.z, m.x, m.y, m.z};
   for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) stiffness[i][j] += size / deep * w[i] * w[j];
+    for (std::size_t j = 0; j < 6; ++j) stiffness[i][j] += per_mm * w[i] * w[j];
 }
 
 }  // namespace riffler

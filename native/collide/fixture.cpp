@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collide/box_lanes.hpp"
+#include "geom/block_pool.hpp"
+
 namespace riffler {
 
 namespace {
@@ -11,107 +14,192 @@ double distance_at(const Assembly& assembly, const Vec3& q) {
   return assembly.outline().nearest(std::sqrt(q.x * q.x + q.y * q.y), q.z).distance;
 }
 
-/// Box of the tool in the part's frame: of the discs at both ends of every edge, and of its bulge.
-Box3 box_of(const Assembly& assembly, const ToolFrame& frame) {
-  Box3 box;
-  const Vec3 flat = glm::sqrt(glm::max(Vec3(0), 1.0 - frame.axis * frame.axis));
-  const auto add = [&](double radius, double z) {
-    const Vec3 centre = frame.tip + z * frame.axis;
-    box.add(centre - radius * flat), box.add(centre + radius * flat);
-  };
-  for (const OutlineEdge& e : assembly.outline().edges()) {
-    const double widest = e.centre ? std::max({e.from.x, e.to.x, e.centre->x + e.bulge}) : std::max(e.from.x, e.to.x);
-    add(widest, e.from.y), add(widest, e.to.y);
+/// The same surface with no side longer than `most`: one plane bounds little of a long triangle that lies along a tool.
+/// Halves are not joined to their neighbours.
+Mesh divided(const Mesh& mesh, double most) {
+  Mesh out;
+  std::vector<Corners> left;
+  for (const Vec3i& t : mesh.triangles) {
+    left.push_back({mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]});
+    while (!left.empty()) {
+      Corners c = left.back();
+      left.pop_back();
+      const double ab = glm::length(c.b - c.a), bc = glm::length(c.c - c.b), ca = glm::length(c.a - c.c);
+      const double longest = std::max({ab, bc, ca});
+      if (longest <= most) {
+        const int n = static_cast<int>(out.vertices.size());
+        out.vertices.insert(out.vertices.end(), {c.a, c.b, c.c}), out.triangles.emplace_back(n, n + 1, n + 2);
+        continue;
+      }
+      if (longest != ab) c = longest == bc ? Corners{c.b, c.c, c.a} : Corners{c.c, c.a, c.b};
+      const Vec3 m = 0.5 * (c.a + c.b);
+      left.push_back({c.a, m, c.c}), left.push_back({m, c.b, c.c});
+    }
   }
-  return box;
+  return out;
 }
 
-/// The tool's distance along a line.
-struct Along {
-  const Assembly& assembly;
-  Vec3 p, d;
-
-  double operator()(double s) const { return distance_at(assembly, p + s * d); }
-  /// Where it changes its sign between two places with the distances f and g: two steps of the false position.
-  double crossing(double s, double f, double t, double g) const {
-    for (int step = 0; step < 2; ++step) {
-      const double m = s + (t - s) * (f / (f - g)), h = (*this)(m);
-      if ((h < 0) == (f < 0))
-        s = m, f = h;
-      else
-        t = m, g = h;
-    }
-    return f == g ? s : s + (t - s) * (f / (f - g));
-  }
-};
-
-/// Stretches of dexels, eight at a time.
-class Walks {
+/// Sums the force over boxes of material: k times their volume in the tool, towards the middle of what they are in.
+class Sum {
  public:
-  Walks(const Assembly& assembly, const ToolFrame& frame, const Vec3& way, double least)
-      : assembly_(assembly), frame_(frame), way_(way), least_(least) {}
+  Sum(const Assembly& assembly, const ToolFrame& frame, const MaterialBoxes& boxes, double stiffness, Contact& contact)
+      : assembly_(assembly),
+        frame_(frame),
+        boxes_(boxes),
+        stiffness_(stiffness),
+        contact_(contact),
+        widest_(0.5 * boxes.spacing() * (1 + 1e-9)) {
+    nodes_.reserve(512), pieces_.reserve(512);
+    // The tool's surface is to be flat across a box.
+    for (const Assembly::Stretch& s : assembly.stretches()) widest_ = std::min(widest_, 0.2 * s.radius);
+  }
 
-  bool full() const { return count_ == kLanes; }
-  void add(const Vec3& foot, double low, double high) { all_[count_++] = {foot, low, high, low, 0, 0, false}; }
-
-  /// Calls visit(along, begin, end) for what of each is in the tool. The distance never changes by more than one moves,
-  /// so steps of its size miss nothing longer than `least`.
-  template <class Visit>
-  void run(const Visit& visit) {
-    look([](const Walk& w) { return w.low; });
-    for (int k = 0; k < count_; ++k) all_[k].f = now_[k], all_[k].begin = all_[k].low, all_[k].inside = now_[k] < 0;
-    const auto next = [&](const Walk& w) { return std::min(w.high, w.s + std::max(std::abs(w.f), least_)); };
-    for (bool going = true; going;) {
-      going = false;
-      look(next);
-      for (int k = 0; k < count_; ++k)
-        if (Walk& w = all_[k]; w.s < w.high) step(w, next(w), now_[k], visit), going = true;
+  void run(Deadline& deadline, Counts& counts) {
+    open({0, 1}, deadline, counts);
+    while (!nodes_.empty() || !pieces_.empty()) {
+      if (!pieces_.empty()) {
+        const Piece p = pieces_.back();
+        pieces_.pop_back();
+        divide(p, deadline, counts);
+      } else {
+        const Node n = nodes_.back();
+        nodes_.pop_back();
+        open(n, deadline, counts);
+      }
     }
-    count_ = 0;
   }
 
  private:
-  struct Walk {
-    Vec3 foot;
-    double low, high, s, f, begin;
-    bool inside;
+  struct Node {
+    std::size_t group;
+    double weight;
+  };
+  struct Piece {
+    Vec3 middle, half;
+    double volume, weight;
+  };
+  /// What is pushed together: the boxes of a group.
+  struct Push {
+    double volume = 0, area = 0;  // in the tool, and of its surface in the material
+    Vec3 middle{0}, normal{0};    // times the volume, and times the area
+
+    void add(const Vec3& at, double v) { volume += v, middle += v * at; }
   };
 
-  template <class Place>
-  void look(const Place& place) {
-    SphereGroup points;
-    for (int k = 0; k < count_; ++k) points.put(k, {all_[k].foot + place(all_[k]) * way_, 0});
-    centre_distances(assembly_.lane_edges(), frame_, points, now_);
+  /// Height of the middle of what is at a height: of the cutter, of the shank, of the holder. Between them it goes over
+  /// from one to the other, so that the force has no step there.
+  double target(double z) const {
+    const std::vector<Assembly::Stretch>& all = assembly_.stretches();
+    const auto middle = [](const Assembly::Stretch& s) { return 0.5 * (s.low + s.high); };
+    double out = middle(all[0]);
+    for (std::size_t i = 1; i < all.size(); ++i)
+      out += std::clamp((z - all[i].low) / boxes_.spacing() + 0.5, 0.0, 1.0) * (middle(all[i]) - middle(all[i - 1]));
+    return out;
   }
 
-  template <class Visit>
-  void step(Walk& w, double next, double g, const Visit& visit) {
-    const Along along{assembly_,
-                      frame_.to_tool(w.foot),
-                      {glm::dot(way_, frame_.u), glm::dot(way_, frame_.v), glm::dot(way_, frame_.axis)}};
-    if ((g < 0) != w.inside) {
-      const double cross = along.crossing(w.s, w.f, next, g);
-      if (w.inside)
-        visit(along, w.begin, cross);
-      else
-        w.begin = cross;
-      w.inside = !w.inside;
+  /// 1 where the material of a node that is wholly in the tool pushes as if it were all in one place, 0 where it is to
+  /// be looked at box by box, and between them in part.
+  double together(const Sphere& s, double distance) const {
+    const double room = -distance - s.radius;  // to the tool's surface
+    if (!(room > 0) || s.radius == 0) return room > 0;
+    const Vec3 p = frame_.to_tool(s.centre);
+    double least = room;  // in radii: the room, and how far it is to where the direction changes
+    for (const Assembly::Stretch& st : assembly_.stretches())
+      if (st.low > 0) least = std::min(least, std::abs(p.z - st.low) - s.radius - 0.5 * boxes_.spacing());
+    const double far = glm::length(p - Vec3(0, 0, target(p.z)));
+    return std::clamp(std::min(least / s.radius, (far / s.radius - 6) / 3), 0.0, 1.0);
+  }
+
+  void push(const Push& sum) {
+    if (!(sum.volume > 0)) return;
+    const Vec3 arm = sum.middle / sum.volume, at = frame_.to_tool(frame_.tip + arm);
+    const Vec3 towards = frame_.turned(Vec3(0, 0, target(at.z)) - at);
+    // No direction in the very middle.
+    const Vec3 way = towards / std::max(glm::length(towards), boxes_.spacing());
+    contact_.push(arm, stiffness_ * sum.volume * way);
+    // As the tool goes on by δ, the volume in it grows by area (normal · δ) and pushes along `way`: the resistance is
+    // −way normalᵀ, of which Balance can use what is symmetric and positive. That is along the difference of both.
+    if (const double normal = glm::length(sum.normal); normal > 0)
+      contact_.resist(arm, sum.normal / normal - way, 0.25 * stiffness_ * sum.area);
+    contact_.points.push_back(frame_.tip + arm), contact_.touches.push_back(Touch::Fixture);
+  }
+
+  void look(const SphereGroup& spheres, const BoxGroup& boxes, double weight, Deadline& deadline, Counts& counts) {
+    counts.boxes += kLanes;
+    BoxShares at;
+    box_shares(assembly_.lane_edges(), frame_, spheres, boxes, at);
+    const bool late = deadline.passed();
+    Push sum;
+    for (int k = 0; k < kLanes; ++k) {
+      if (!(at.distance[k] < spheres.radius[k])) continue;
+      const Vec3 middle = spheres.sphere(k).centre, half(boxes.half[0][k], boxes.half[1][k], boxes.half[2][k]);
+      double rest = weight;
+      if (!late && std::max({half.x, half.y, half.z}) > widest_) {
+        rest *= together(spheres.sphere(k), at.distance[k]);
+        if (rest < weight) pieces_.push_back({middle, half, boxes.volume[k], weight - rest});
+        if (rest == 0) continue;
+      }
+      const double volume = rest * boxes.volume[k], area = volume * at.rise[k];
+      sum.add(middle - frame_.tip, at.share[k] * volume);
+      sum.area += area, sum.normal += area * Vec3(at.normal[0][k], at.normal[1][k], at.normal[2][k]);
     }
-    w.s = next, w.f = g;
-    if (w.inside && next >= w.high) visit(along, w.begin, w.high);
+    push(sum);
+  }
+
+  /// Into halves along every side that is too long.
+  void divide(const Piece& p, Deadline& deadline, Counts& counts) {
+    SphereGroup spheres;
+    BoxGroup boxes;
+    Vec3 half = p.half;
+    int parts = 1;
+    for (int i = 0; i < 3; ++i)
+      if (half[i] > widest_) half[i] *= 0.5, parts *= 2;
+    for (int k = 0, bit = 1; k < parts; ++k, bit = 1) {
+      Vec3 middle = p.middle;
+      for (int i = 0; i < 3; ++i)
+        if (half[i] < p.half[i]) middle[i] += k & bit ? half[i] : -half[i], bit *= 2;
+      spheres.put(k, {middle, glm::length(half)});
+      for (int i = 0; i < 3; ++i) boxes.half[i][k] = half[i];
+      boxes.volume[k] = p.volume / parts;
+    }
+    look(spheres, boxes, p.weight, deadline, counts);
+  }
+
+  void open(const Node& n, Deadline& deadline, Counts& counts) {
+    const SphereTree& tree = boxes_.tree();
+    const SphereGroup& spheres = tree.group(n.group);
+    const BoxGroup& boxes = boxes_.boxes(n.group);
+    if (tree.holds_items(n.group)) return look(spheres, boxes, n.weight, deadline, counts);
+    double distance[kLanes];
+    centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
+    counts.nodes += kLanes;
+    const bool late = deadline.passed();
+    Push sum;
+    for (int k = 0; k < kLanes; ++k) {
+      const Sphere s = spheres.sphere(k);
+      if (!(distance[k] < s.radius)) continue;
+      const double whole = late ? std::clamp(0.5 - 0.5 * distance[k] / s.radius, 0.0, 1.0) : together(s, distance[k]);
+      sum.add(s.centre - frame_.tip, n.weight * whole * boxes.volume[k]);
+      if (!late && whole < 1)
+        nodes_.push_back({kLanes * n.group + 1 + static_cast<std::size_t>(k), n.weight * (1 - whole)});
+    }
+    push(sum);
   }
 
   const Assembly& assembly_;
   const ToolFrame& frame_;
-  Vec3 way_;
-  double least_, now_[kLanes];
-  int count_ = 0;
-  Walk all_[kLanes];
+  const MaterialBoxes& boxes_;
+  double stiffness_;
+  Contact& contact_;
+  double widest_;  // half of a box
+  BlockVector<Node> nodes_;
+  BlockVector<Piece> pieces_;
 };
 
 }  // namespace
 
-Fixture::Fixture(const Volume& volume, const Mesh& mesh) : volume_(volume), surface_(mesh), sides_(mesh, true) {
+Fixture::Fixture(const Volume& volume, const Mesh& mesh, double spacing)
+    : boxes_(volume, spacing), surface_(divided(mesh, 8 * boxes_.spacing())), sides_(mesh, true) {
   const Box3 box = bounds(mesh);
   whole_ = {0.5 * (box.lower + box.upper), 0.5 * glm::length(box.size())};
 }
@@ -125,54 +213,9 @@ bool Fixture::near(const Assembly& assembly, const ToolFrame& frame, double dist
   return distance_at(assembly, frame.to_tool(whole_.centre)) - whole_.radius < distance;
 }
 
-void Fixture::add_dexel(const Assembly& assembly, const ToolFrame& frame, const Vec3& middle, double length,
-                        double stiffness, Contact& contact) const {
-  const Part part = assembly.part_at(middle.z);
-  double low = 0, high = 0;
-  for (const Assembly::Stretch& s : assembly.stretches())
-    if (s.part == part) low = s.low, high = s.high;
-  const Vec3 towards = Vec3(0, 0, 0.5 * (low + high)) - middle, at = frame.turned(middle);
-  contact.points.push_back(frame.tip + at), contact.touches.push_back(Touch::Fixture);
-  const double away = glm::length(towards), pitch = volume_.frame().pitch;
-  if (away == 0) return;
-  const Vec3 force = frame.turned(stiffness * length * pitch * pitch / away * towards);
-  // The volume in the tool grows with the first to about the third power of the depth: the second stands for all.
-  contact.push(at, force, 0.5 * std::max(contact.depth, 1e-2 * pitch));
-}
-
 void Fixture::add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, Deadline& deadline,
                         Contact& contact, Counts& counts) const {
-  const Grid& grid = volume_.reference();
-  const Box3 box = to_local(grid.axis(), box_of(assembly, frame));
-  const double h = grid.pitch();
-  const auto index = [&](double x, double lower, int n) {
-    return std::clamp(std::floor((x - lower) / h), 0.0, n - 1.0);
-  };
-  const int i0 = static_cast<int>(index(box.lower.x, grid.box().lower.x, grid.nu()));
-  const int i1 = static_cast<int>(index(box.upper.x, grid.box().lower.x, grid.nu()));
-  const int j0 = static_cast<int>(index(box.lower.y, grid.box().lower.y, grid.nv()));
-  const int j1 = static_cast<int>(index(box.upper.y, grid.box().lower.y, grid.nv()));
-  Walks walks(assembly, frame, to_world(grid.axis(), {0, 0, 1}), 1e-2 * h);
-  int step = 1;
-  const auto flush = [&] {
-    walks.run([&](const Along& along, double begin, double end) {
-      add_dexel(assembly, frame, along.p + 0.5 * (begin + end) * along.d, end - begin, step * stiffness, contact);
-    });
-  };
-  for (int i = i0; i <= i1; i += step) {
-    step = deadline.passed() ? 4 : 1;
-    for (int j = j0; j <= j1; ++j) {
-      ++counts.dexels;
-      for (const Span& s : grid.ray(i, j)) {
-        // What of it can be in the tool.
-        const double low = std::max(s.near, box.lower.z), high = std::min(s.far, box.upper.z);
-        if (!(low < high)) continue;
-        walks.add(to_world(grid.axis(), {grid.u(i), grid.v(j), 0}), low, high);
-        if (walks.full()) flush();
-      }
-    }
-    flush();
-  }
+  if (boxes_.size() > 0) Sum(assembly, frame, boxes_, stiffness, contact).run(deadline, counts);
 }
 
 }  // namespace riffler

@@ -1,4 +1,4 @@
-// A vise, a clamp: a dexel volume of its own pitch, with the force of its dexels on a tool.
+// A vise, a clamp: a dexel volume of its own pitch, with the force of its material on a tool.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +6,7 @@
 #include "collide/assembly.hpp"
 #include "collide/contact.hpp"
 #include "collide/deadline.hpp"
+#include "collide/material_boxes.hpp"
 #include "collide/surface.hpp"
 #include "collide/tool_frame.hpp"
 #include "dexel/volume.hpp"
@@ -16,27 +17,24 @@ namespace riffler {
 /// Its shape is that of its mesh (marching/to_mesh.hpp says what that keeps), and its inside counts.
 class Fixture {
  public:
-  /// `mesh` is that of `volume`, not empty.
-  Fixture(const Volume& volume, const Mesh& mesh);
+  /// `mesh` is that of `volume`, not empty. `spacing`: of the pieces that push, mm; none is narrower than the pitch.
+  Fixture(const Volume& volume, const Mesh& mesh, double spacing);
 
   const Surface& surface() const { return surface_; }
   bool holds(const Vec3& p) const;
   /// Whether any of it can be nearer to the tool than `distance`.
   bool near(const Assembly& assembly, const ToolFrame& frame, double distance) const;
 
-  /// Adds |f| = k Δz A of every dexel, Δz its length in the tool and A the square of the pitch, from the middle of that
-  /// length towards the middle of what it is in: cutter, shank or holder (4.9)–(4.11). Torque about the tip.
-  /// Rays of the grid that defines the volume; stretches shorter than a hundredth of the pitch may be missed. After the
-  /// deadline every fourth row stands for four.
+  /// Adds the force of what of its material is in the tool: k times the volume, each piece of it towards the middle of
+  /// what it is in: cutter, shank or holder. That is (4.9)–(4.11) with dexels cut into short pieces, so that the
+  /// direction of the rays does not matter. Material is in boxes (collide/material_boxes.hpp), of which the tool cuts
+  /// off what lies behind its tangent plane: the force is continuous, and so is its derivative but for faces that come
+  /// on flat. Torque about the tip. After the deadline nodes of any size stand for what is in them.
   void add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, Deadline& deadline,
                  Contact& contact, Counts& counts) const;
 
  private:
-  /// Of one dexel whose part in the tool is `length` long, about `middle` in the tool's frame.
-  void add_dexel(const Assembly& assembly, const ToolFrame& frame, const Vec3& middle, double length, double stiffness,
-                 Contact& contact) const;
-
-  Volume volume_;
+  MaterialBoxes boxes_;
   Surface surface_;
   Closest sides_;
   Sphere whole_;  // round all of it

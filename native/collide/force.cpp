@@ -63,7 +63,9 @@ class Sum {
     const Vec3 point = points_.tree().group(group).sphere(k).centre;
     const double z = glm::dot(point - frame_.tip, frame_.axis);
     const Vec3 force = -distance * weight * stiffness_at(z) * points_.areas(group).area[k];
-    contact_.push(point - frame_.tip, force, -distance);
+    contact_.push(point - frame_.tip, force);
+    if (const double size = glm::length(force); size > 0)
+      contact_.resist(point - frame_.tip, force / size, size / -distance);
     if (weight < 0.5) return;
     contact_.points.push_back(point), contact_.touches.push_back(static_cast<Touch>(assembly_.part_at(z)));
   }

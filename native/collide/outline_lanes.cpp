@@ -8,74 +8,12 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include "geom/lanes-inl.hpp"
+#include "collide/outline-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
 namespace {
-
-HWY_INLINE V squared(V a, V b) {
-  return add(mul(a, a), mul(b, b));
-}
-
-HWY_INLINE V dot(V x, V y, V z, const Vec3& d) {
-  return add(add(mul(x, set(d.x)), mul(y, set(d.y))), mul(z, set(d.z)));
-}
-
-/// Whether a place, from the centre of an arc, is in its sector: as faces() of tool/outline.hpp.
-HWY_INLINE M in_sector(const LaneEdge& e, V x, V y) {
-  return both(hn::Ge(mul(y, set(e.first[0])), mul(x, set(e.first[1]))),
-              hn::Ge(mul(x, set(e.last[1])), mul(y, set(e.last[0]))));
-}
-
-/// Centres of spheres in the half-plane of the tool.
-struct Centres {
-  V x, y, h;  // from the tip, in the part's directions
-  V u, v, rho, z;
-
-  HWY_INLINE Centres(const ToolFrame& frame, const SphereGroup& spheres, int k) {
-    x = sub(hn::Load(kD, spheres.x + k), set(frame.tip.x)), y = sub(hn::Load(kD, spheres.y + k), set(frame.tip.y));
-    h = sub(hn::Load(kD, spheres.z + k), set(frame.tip.z));
-    u = dot(x, y, h, frame.u), v = dot(x, y, h, frame.v), z = dot(x, y, h, frame.axis);
-    rho = sqrt(squared(u, v));
-  }
-};
-
-/// Points in the half-plane, the square of the least distance from the edges so far, and whether inside.
-struct Points {
-  V rho, z, square;
-  M inside;
-
-  HWY_INLINE Points(V radius, V height) : rho(radius), z(height), square(set(kInfinity)), inside(no_lane()) {}
-
-  HWY_INLINE M level_with(const LaneEdge& e) const { return both(hn::Ge(z, set(e.from[1])), hn::Le(z, set(e.to[1]))); }
-
-  HWY_INLINE void add_line(const LaneEdge& e) {
-    const V wx = set(e.way[0]), wz = set(e.way[1]), x = sub(rho, set(e.from[0])), y = sub(z, set(e.from[1]));
-    const V along = min(max(mul(add(mul(x, wx), mul(y, wz)), set(e.per_square)), zero()), set(1));
-    square = min(square, squared(sub(x, mul(along, wx)), sub(y, mul(along, wz))));
-    if (e.rises) inside = either(inside, both(level_with(e), hn::Le(mul(x, wz), mul(y, wx))));
-  }
-
-  HWY_INLINE void add_arc(const LaneEdge& e) {
-    const V x = sub(rho, set(e.centre[0])), y = sub(z, set(e.centre[1])), r = set(e.radius);
-    const V length = sqrt(squared(x, y));
-    const M on = in_sector(e, x, y);
-    const V off = sub(length, r);
-    const V ends = min(squared(sub(rho, set(e.from[0])), sub(z, set(e.from[1]))),
-                       squared(sub(rho, set(e.to[0])), sub(z, set(e.to[1]))));
-    square = min(square, pick(both(on, hn::Gt(length, zero())), mul(off, off), ends));
-    const M hidden =
-        e.side > 0 ? either(hn::Le(x, zero()), hn::Le(length, r)) : both(hn::Le(x, zero()), hn::Ge(length, r));
-    inside = either(inside, both(level_with(e), hidden));
-  }
-
-  HWY_INLINE V distance() const {
-    const V d = sqrt(square);
-    return pick(inside, hn::Neg(d), d);
-  }
-};
 
 /// Of the tangent planes of a run's edges the one that is highest at a point: distance from it, and its normal. And the
 /// way from the nearest place of the run, which may be a corner.

@@ -232,35 +232,46 @@ TEST(SculptStep, ALiftedToolLeavesWhatItTouchedAtOnce) {
   }
 }
 
-TEST(SculptStep, ContactsOfAnyStiffnessStayQuietUnderAnyHand) {
-  // A holder between two walls and a ball on a floor, part and fixture.
-  const Tool tool = cutters::ball(6, 20).with_holder({{20, 15, 40, 15}});
-  for (const double stiffness : {0.1, 10.0, 1e3}) {
-    std::vector<Volume> fixtures;  // of which a whole row comes into a tool at once: weak ones balance
-    if (stiffness < 1) fixtures.push_back(Volume::block({{{-40, -40, -10}, {40, -15.5, 30}}, 0.5, "z"}));
-    const Collider part(
-        box({-20, -20, -5}, {20, 20, 0}), std::move(fixtures),
-        {.spacing = 0.3, .stiffness = stiffness, .holder_stiffness = stiffness, .fixture_stiffness = stiffness});
-    SculptStep step(springs_only(), tool, nullptr, &part);
-    stress::Random random(9);
-    Pose grip{{0, 0, 1}, kUp};
-    step.place(grip);
-    Vec3 speed(0);
-    double blow = 0, last = 0;
-    int touched = 0;
-    for (int k = 0; k < 4000; ++k) {
-      speed = 0.98 * speed + random.uniform(0, 6) * random.direction() - 0.3 * (grip.tip - Vec3(0, 0, -0.3));
-      grip.tip += kTick * speed;
-      const SculptStep::Result r = step.step(grip, {speed, {}}, kTick);
-      ASSERT_TRUE(finite(r.on_grip));
-      const double force = glm::length(r.on_grip.force);
-      // The hand moves by |speed| in a tick: a coupling of 1 N/mm cannot change by much more where nothing jumps.
-      if (k > 10) blow = std::max(blow, force - last - 4 * kTick * glm::length(speed));
-      last = force, touched += step.contact().depth > 0;
-    }
-    EXPECT_GT(touched, 500) << stiffness;
-    EXPECT_LT(blow, 0.15) << stiffness;
+/// The largest change of force in a tick that the hand's own motion does not explain, N, and how many ticks touched.
+struct Shaken {
+  double blow = 0;
+  int touched = 0;
+};
+
+Shaken shake(const Tool& tool, const Collider& part) {
+  SculptStep step(springs_only(), tool, nullptr, &part);
+  stress::Random random(9);
+  Pose grip{{0, 0, 1}, kUp};
+  step.place(grip);
+  Vec3 speed(0);
+  double last = 0;
+  Shaken out;
+  for (int k = 0; k < 4000; ++k) {
+    speed = 0.98 * speed + random.uniform(0, 6) * random.direction() - 0.3 * (grip.tip - Vec3(0, 0, -0.3));
+    grip.tip += kTick * speed;
+    const SculptStep::Result r = step.step(grip, {speed, {}}, kTick);
+    EXPECT_TRUE(finite(r.on_grip));
+    const double force = glm::length(r.on_grip.force);
+    // The hand moves by |speed| in a tick: a coupling of 1 N/mm cannot change by much more where nothing jumps.
+    if (k > 10) out.blow = std::max(out.blow, force - last - 4 * kTick * glm::length(speed));
+    last = force, out.touched += step.contact().depth > 0;
   }
+  return out;
+}
+
+TEST(SculptStep, PartsAndFixturesOfAnyStiffnessAndPitchStayQuietUnderAnyHand) {
+  // A ball on a floor, and its holder at the wall of a fixture, whose dexels stand along that wall and across it.
+  const Tool tool = cutters::ball(6, 20).with_holder({{20, 15, 40, 15}});
+  for (const double stiffness : {0.1, 10.0, 1e3})
+    for (const double pitch : {0.1, 0.25, 0.5})
+      for (const char* directions : {"z", "x"}) {
+        const Collider part(
+            box({-20, -20, -5}, {20, 20, 0}), {Volume::block({{{-10, -20, 10}, {10, -14.8, 30}}, pitch, directions})},
+            {.spacing = 0.3, .stiffness = stiffness, .holder_stiffness = stiffness, .fixture_stiffness = stiffness});
+        const Shaken shaken = shake(tool, part);
+        EXPECT_GT(shaken.touched, 500) << stiffness << ", " << pitch << directions;
+        EXPECT_LT(shaken.blow, 0.15) << stiffness << ", " << pitch << directions;
+      }
 }
 
 TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {

@@ -1,0 +1,135 @@
+#include "collide/box_lanes.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "collide/box_lanes.cpp"
+// Clang-format would sort foreach_target.h away from its place.
+// clang-format off
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format on
+
+#include "collide/outline-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace riffler::HWY_NAMESPACE {
+
+namespace {
+
+/// As Points, with the direction away from the outline.
+struct Slopes {
+  Points points;
+  V out, up;            // from the nearest place so far
+  V edge_out, edge_up;  // the edge's normal there: the direction where that is too near to have one
+
+  HWY_INLINE Slopes(const Centres& at)
+      : points(at.rho, at.z), out(zero()), up(zero()), edge_out(zero()), edge_up(zero()) {}
+
+  HWY_INLINE void look(const LaneEdge& e) {
+    const V before = points.square;
+    if (e.arc)
+      add_arc(e, before);
+    else
+      add_line(e, before);
+  }
+
+  HWY_INLINE void take(M nearer, V x, V y, V normal_out, V normal_up) {
+    out = pick(nearer, x, out), up = pick(nearer, y, up);
+    edge_out = pick(nearer, normal_out, edge_out), edge_up = pick(nearer, normal_up, edge_up);
+  }
+  HWY_INLINE void add_line(const LaneEdge& e, V before) {
+    points.add_line(e);
+    const V wx = set(e.way[0]), wy = set(e.way[1]), x = sub(points.rho, set(e.from[0])),
+            y = sub(points.z, set(e.from[1]));
+    const V along = min(max(mul(add(mul(x, wx), mul(y, wy)), set(e.per_square)), zero()), set(1));
+    take(hn::Lt(points.square, before), sub(x, mul(along, wx)), sub(y, mul(along, wy)), set(e.normal[0]),
+         set(e.normal[1]));
+  }
+  HWY_INLINE void add_arc(const LaneEdge& e, V before) {
+    points.add_arc(e);
+    const V x = sub(points.rho, set(e.centre[0])), y = sub(points.z, set(e.centre[1])), length = sqrt(squared(x, y));
+    const M on = both(in_sector(e, x, y), hn::Gt(length, zero()));
+    const V fx = sub(points.rho, set(e.from[0])), fy = sub(points.z, set(e.from[1])),
+            tx = sub(points.rho, set(e.to[0])), ty = sub(points.z, set(e.to[1]));
+    const M first = hn::Le(squared(fx, fy), squared(tx, ty));
+    const V per = hn::Div(set(1), pick(on, length, set(e.radius))), off = sub(set(1), mul(set(e.radius), per)),
+            outward = mul(set(e.side), per);
+    take(hn::Lt(points.square, before), pick(on, mul(off, x), pick(first, fx, tx)),
+         pick(on, mul(off, y), pick(first, fy, ty)),
+         pick(on, mul(outward, x), mul(per, pick(first, set(e.first[0]), set(e.last[0])))),
+         pick(on, mul(outward, y), mul(per, pick(first, set(e.first[1]), set(e.last[1])))));
+  }
+
+  /// Out of the solid.
+  HWY_INLINE void normal(V distance, V& x, V& y) const {
+    const V size = abs(distance);
+    const M far = hn::Gt(size, set(1e-9));
+    const V per = hn::Div(set(1), pick(far, distance, set(1)));
+    x = pick(far, mul(per, out), edge_out), y = pick(far, mul(per, up), edge_up);
+  }
+};
+
+/// Of a rectangle's area the share that lies behind a line at depth t from its middle; p ≥ q are what its half sides
+/// measure across the line. And by how much that grows with t.
+HWY_INLINE void add_rectangle(V t, V p, V q, V per_p, V& share, V& rise) {
+  const V size = abs(t);
+  // Behind all of one side the share is a trapezium's, and a triangle is missing or begun in the corners.
+  const V corner = max(sub(add(p, q), size), zero());
+  const M slanted = hn::Gt(size, sub(p, q));
+  const V part = mul(corner, hn::Div(per_p, mul(set(4), max(q, set(1e-150)))));  // corner / 4 p q
+  const V half = pick(slanted, sub(set(0.5), mul(mul(set(0.5), corner), part)), mul(set(0.5), mul(size, per_p)));
+  share = add(share, add(set(0.5), with_sign(max(half, zero()), t)));
+  rise = add(rise, pick(slanted, part, mul(set(0.5), per_p)));
+}
+
+}  // namespace
+
+void Shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
+            const BoxGroup& boxes, BoxShares& out) {
+  const V root = set(0.57735026918962576);  // of ⅓: the places of Gauss's rule
+  for (int k = 0; k < kLanes; k += lanes()) {
+    const Centres at(frame, spheres, k);
+    Slopes slopes(at);
+    for (const LaneEdge& e : outline) slopes.look(e);
+    const V distance = slopes.points.distance();
+    V radial, up;
+    slopes.normal(distance, radial, up);
+    const M off_axis = hn::Gt(at.rho, set(1e-150));
+    const V per = mul(radial, hn::Div(set(1), pick(off_axis, at.rho, set(1))));
+    // On the axis any direction will do.
+    const V u = pick(off_axis, mul(per, at.u), radial), v = pick(off_axis, mul(per, at.v), zero());
+    const auto along = [&](double fu, double fv, double fa) {
+      return add(add(mul(u, set(fu)), mul(v, set(fv))), mul(up, set(fa)));
+    };
+    const V nx = along(frame.u.x, frame.v.x, frame.axis.x), ny = along(frame.u.y, frame.v.y, frame.axis.y),
+            nz = along(frame.u.z, frame.v.z, frame.axis.z);
+    const V a = mul(abs(nx), hn::Load(kD, boxes.half[0] + k)), b = mul(abs(ny), hn::Load(kD, boxes.half[1] + k)),
+            c = mul(abs(nz), hn::Load(kD, boxes.half[2] + k));
+    const V p = max(max(max(a, b), c), set(1e-12)), s = mul(root, min(min(a, b), c)),
+            q = max(min(a, b), min(max(a, b), c));
+    const V per_p = hn::Div(set(1), p), t = hn::Neg(distance);
+    V share = zero(), rise = zero();
+    add_rectangle(add(t, s), p, q, per_p, share, rise), add_rectangle(sub(t, s), p, q, per_p, share, rise);
+    hn::StoreU(distance, kD, out.distance + k);
+    hn::StoreU(mul(set(0.5), share), kD, out.share + k), hn::StoreU(mul(set(0.5), rise), kD, out.rise + k);
+    hn::StoreU(nx, kD, out.normal[0] + k), hn::StoreU(ny, kD, out.normal[1] + k);
+    hn::StoreU(nz, kD, out.normal[2] + k);
+  }
+}
+
+}  // namespace riffler::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace riffler {
+
+HWY_EXPORT(Shares);
+
+void box_shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
+                const BoxGroup& boxes, BoxShares& out) {
+  HWY_DYNAMIC_DISPATCH(Shares)(outline, frame, spheres, boxes, out);
+}
+
+}  // namespace riffler
+
+#endif
