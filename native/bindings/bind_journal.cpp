@@ -153,8 +153,8 @@ void add_records(Class& c) {
           py::arg("tool"), py::arg("poses"), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
           py::arg("name") = "", py::kw_only(), py::arg("forces") = py::none(), py::arg("removed") = py::none(),
           R"(A stroke with a tool that was added: poses (n, 6), n ≥ 1; each of the others may be None. times (n,) s that
-never fall; forces (n, 6) N, N·mm about the tip, on the hand at the end of the move to the row; removed (n,) mm³ of the
-move that ends at the row.)")
+never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
+ends at the row.)")
       .def(
           "extend_stroke",
           [](T& self, const Doubles& poses, const py::object& times, const py::object& forces,
@@ -195,7 +195,7 @@ void bind_journal(py::module_& m) {
             if (s.get().forces.empty()) return py::none();
             return take<double>(std::vector<Wrench>(s.get().forces), 6);
           },
-          "(n, 6) N, N·mm about the tip, on the hand; or None.")
+          "(n, 6) N, N·mm about the grip: what the device was told to give the hand; or None.")
       .def_property_readonly(
           "removed",
           [](const StrokeView& s) -> py::object {

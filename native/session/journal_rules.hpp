@@ -26,7 +26,7 @@ struct JournalStock {
 struct JournalRows {
   std::span<const Pose> poses;
   std::span<const double> times{};    ///< s, never falling
-  std::span<const Wrench> forces{};   ///< N, N·mm about the tip: on the hand, at the end of the move to the row
+  std::span<const Wrench> forces{};   ///< N, N·mm that the device was told to give the hand: about the grip
   std::span<const double> removed{};  ///< mm³ by the move that ends at the row
 };
 

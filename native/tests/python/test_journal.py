@@ -148,6 +148,7 @@ def test_replay_gives_the_session_again(journal, tmp_path):
     shares = []
     left = riffler.Journal.read(tmp_path / "a.rjournal").replay(tmp_path, shares.append)
     assert left.volume < 50 * 40 * 30 and same(left, session)
+    assert same(riffler.Session.replay(tmp_path / "a.rjournal"), session)
     assert shares == sorted(shares) and shares[-1] == 1
     with pytest.raises(riffler.Cancelled):
         journal.replay(tmp_path, lambda share: share < 0.5)
