@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bindings/bindings.hpp"
+#include "pen/kinematics.hpp"
 #include "pen/open_error.hpp"
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
@@ -165,7 +166,21 @@ void bind_state(py::module_& m) {
       .def_property_readonly(
           "fault", [](const State& s) { return s.sample.fault; }, "The device's own code, or 0.")
       .def_property_readonly(
-          "stretch", [](const State& s) { return s.sample.stretch; }, "mm between two measurements of one length.");
+          "stretch", [](const State& s) { return s.sample.stretch; }, "mm between two measurements of one length.")
+      .def_property_readonly(
+          "powered", [](const State& s) { return s.sample.powered; }, "Whether the device is ready to push.")
+      .def_property_readonly(
+          "counts",
+          [](const State& s) {
+            return take<std::int32_t>(std::vector(s.sample.counts.begin(), s.sample.counts.end()));
+          },
+          R"((6,) int32: the counters of a pen that has a geometry, in its order, as if homing had preset them.)")
+      .def_property_readonly(
+          "applied",
+          [](const State& s) {
+            return py::make_tuple(from_vec3(s.sample.applied.force), from_vec3(s.sample.applied.torque));
+          },
+          "(force, torque), N and N·mm: what the hand felt of the motors, where the device says so; zero elsewhere.");
 }
 
 void bind_device(py::module_& m) {
@@ -174,6 +189,12 @@ void bind_device(py::module_& m) {
 Reports are read, and forces written, in a thread of its own; a device that goes away is looked for until it is back.)")
       .def_property_readonly("kind", &Pen::kind)
       .def_property_readonly("about", &Pen::about)
+      .def_property_readonly(
+          "geometry",
+          [](const Pen& p) {
+            return p.geometry() == nullptr ? py::object(py::none()) : py::cast(PenKinematics(*p.geometry()));
+          },
+          "PenGeometry of a pen of two arms, with the currents that the device allows; None of everything else.")
       .def_property_readonly("limits", &limits, R"(dict: "x", "y", "z" and turns "a", "b", "c", each a dict of senses
 ("position", "rate" or None), pushes, low, high, resolution (mm, rad, or a second of them), peak, continuous (N, N·mm).)")
       .def(
@@ -206,7 +227,9 @@ void bind_simulated(py::module_& m) {
       .def("aim", &aim, "pose"_a, py::kw_only(), "spin"_a = 0.0, "grip"_a = 1.0, "buttons"_a = 0U,
            R"(The hand goes to `pose`, (6,) point and axis, at up to 300 mm/s and 5 rad/s, as far as the arms reach;
 with `grip` below 1 it holds more loosely, with 0 not at all. `spin` in rad about the axis.)")
-      .def("wander", &SimulatedDevice::wander, "The hand goes round on its own curve again.");
+      .def("wander", &SimulatedDevice::wander, "The hand goes round on its own curve again.")
+      .def("lose", &SimulatedDevice::lose, "channel"_a, "counts"_a,
+           "A counter (0 to 5) loses so many counts in all, one by one: a fault to practise with.");
 }
 
 PointerFrame to_frame(const py::object& origin, const py::object& right, const py::object& up, double scale,

@@ -12,6 +12,8 @@
 
 namespace riffler {
 
+struct PenGeometry;
+
 enum class NotPushed : unsigned char {
   None,          // all of it will be felt
   NoMotors,      // some or all of it has no motor: `missing`
@@ -43,6 +45,8 @@ class Pen {
   virtual PassivitySettings passivity() const { return passivity_settings(capability()); }
   /// Of the device itself, for people.
   virtual std::string about() const { return {}; }
+  /// Of a pen of two arms, with the currents that the device allows; null for everything else. Does not change.
+  virtual const PenGeometry* geometry() const noexcept { return nullptr; }
 
   /// The newest sample; sample.time is in seconds of `now`. Any thread; never waits.
   virtual PenSample newest() const noexcept = 0;

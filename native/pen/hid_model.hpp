@@ -15,6 +15,8 @@
 
 namespace riffler {
 
+struct PenGeometry;
+
 /// What one read brought.
 struct Taken {
   unsigned reports = 0;    // samples that it held
@@ -34,6 +36,8 @@ class HidModel {
   virtual PassivitySettings passivity() const { return passivity_settings(capability()); }
   /// Its own limits and identity, for people; may be empty.
   virtual std::string about() const { return {}; }
+  /// Of a pen of two arms; null for everything else. Does not change.
+  virtual const PenGeometry* geometry() const noexcept { return nullptr; }
 
   /// Whether what was just opened is this very device, in the state that the model expects. Throws OpenError. Not in
   /// the driver's thread, and never while that thread uses the model.

@@ -70,6 +70,7 @@ class HidPen : public Pen {
   const DeviceCapability& capability() const noexcept override { return model_->capability(); }
   PassivitySettings passivity() const override { return model_->passivity(); }
   std::string about() const override { return model_->about(); }
+  const PenGeometry* geometry() const noexcept override { return model_->geometry(); }
   PenSample newest() const noexcept override { return status().sample; }
   double now() const noexcept override { return steady_seconds(); }
   PushAnswer push(const Wrench& wrench) noexcept override;

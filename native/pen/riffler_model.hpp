@@ -22,6 +22,7 @@ class RifflerModel final : public HidModel {
   double period() const noexcept override { return 1e-6 * limits_.period_us; }
   PassivitySettings passivity() const override { return passivity_settings(geometry_, share_); }
   std::string about() const override;
+  const PenGeometry* geometry() const noexcept override { return &geometry_; }
   void check(Transport& transport) override;
   /// Counters count from where they were when power came on: somebody has to hold the pen in its home posture and say
   /// so.

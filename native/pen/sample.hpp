@@ -1,6 +1,7 @@
 // What the hand does, as of one report.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "geom/pose.hpp"
@@ -26,6 +27,8 @@ struct PenSample {
   /// account of energy is right with this, and wrong with what was asked for.
   Wrench applied{};
   bool says_applied = false;
+  /// Of a device with a PenGeometry: what its counters would read had homing preset them, in its own order.
+  std::array<std::int32_t, 6> counts{};
   bool homed = false;    ///< the pose is sure
   bool powered = false;  ///< the device is ready to push
 };

@@ -1,8 +1,11 @@
 #include "pen/simulated_device.hpp"
 
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -38,12 +41,29 @@ struct SimulatedDevice::Hand {
   }
 };
 
+/// What the encoders are told to lose, and what they have lost.
+struct SimulatedDevice::Losses {
+  std::array<std::atomic<std::int32_t>, kPenChannels> told{};
+  std::array<std::int32_t, kPenChannels> gone{};  // of the thread that moves the pen
+
+  /// One count of each in a turn of the firmware: all at once would be seen as a speed.
+  void take(riffler_pen_sensors& sensors) {
+    for (std::size_t k = 0; k < kPenChannels; ++k) {
+      const std::int32_t wanted = told[k].load(std::memory_order_relaxed);
+      gone[k] += (wanted > gone[k]) - (wanted < gone[k]);
+      sensors.counters[k] -= gone[k];
+    }
+  }
+};
+
 std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
                                                        const DriverSettings& driver, const Compensation& compensation) {
   auto hand = std::make_shared<Hand>();
   auto pen = std::make_shared<SimulatedPen>(settings);
   hand->curve = hand_on_a_curve(pen->arms().posture().pose);
   pen->hand().follow([hand](double seconds) { return hand->wish(seconds); });
+  auto losses = std::make_shared<Losses>();
+  pen->on_sense = [losses](riffler_pen_sensors& sensors) { losses->take(sensors); };
   const auto clock = std::make_shared<SystemClock>();
   const double start = clock->now();
   auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
@@ -55,13 +75,16 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
     model->check(*next);
     return next;
   };
-  return std::unique_ptr<SimulatedDevice>(
-      new SimulatedDevice(std::move(hand), std::move(model), std::move(transport), std::move(again), driver));
+  return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(std::move(hand), std::move(losses), std::move(model),
+                                                              std::move(transport), std::move(again), driver));
 }
 
-SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<HidModel> model,
-                                 std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver)
-    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver), hand_(std::move(hand)) {}
+SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
+                                 std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
+                                 Driver::Open open, const DriverSettings& driver)
+    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver),
+      hand_(std::move(hand)),
+      losses_(std::move(losses)) {}
 
 void SimulatedDevice::aim(const HandWish& wish) {
   HandWish checked = wish;
@@ -76,6 +99,11 @@ void SimulatedDevice::aim(const HandWish& wish) {
 
 void SimulatedDevice::wander() noexcept {
   hand_->told.set({{}, true});
+}
+
+void SimulatedDevice::lose(std::size_t channel, std::int32_t counts) {
+  if (channel >= kPenChannels) throw std::invalid_argument("channel must be 0 to 5, not " + std::to_string(channel));
+  losses_->told[channel].store(counts, std::memory_order_relaxed);
 }
 
 }  // namespace riffler

@@ -24,13 +24,18 @@ class SimulatedDevice final : public HidPen {
   void aim(const HandWish& wish);
   /// On the curve again. By the same thread.
   void wander() noexcept;
+  /// From now on a counter reads `counts` too few, as an encoder that loses them one by one; of the pen as it was made,
+  /// not of what it has lost by now. Any thread. std::invalid_argument for a channel that is not there.
+  void lose(std::size_t channel, std::int32_t counts);
 
  private:
   struct Hand;
-  SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
-                  Driver::Open open, const DriverSettings& driver);
+  struct Losses;
+  SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses, std::shared_ptr<HidModel> model,
+                  std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver);
 
   std::shared_ptr<Hand> hand_;
+  std::shared_ptr<Losses> losses_;
 };
 
 }  // namespace riffler

@@ -10,7 +10,8 @@ import argparse
 import os
 import sys
 import traceback
-from typing import NoReturn
+from types import ModuleType
+from typing import Any, NoReturn
 
 from . import Cancelled, __version__
 from .command import audit, bench, carve, convert, doctor, machines, mesh, pen, pencil, post, replay, verify
@@ -37,15 +38,24 @@ def parser() -> Parser:
     top.add_argument("--version", action="version", version=f"riffler {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="command")
     for module in COMMANDS:
-        name = module.__name__.rpartition(".")[2]
-        sub = commands.add_parser(
-            name, help=module.HELP, description=module.__doc__, epilog=EPILOG, allow_abbrev=False,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )  # fmt: skip
-        module.add_arguments(sub)
-        sub.add_argument("--json", action="store_true", help="print the result, or the error, as JSON")
-        sub.set_defaults(run=module.run)
+        add_command(commands, module, module.__name__.rpartition(".")[2])
     return top
+
+
+def add_command(commands: Any, module: ModuleType, name: str) -> None:
+    """One command, or with PARTS the commands that it consists of: ``riffler pen list``."""
+    sub = commands.add_parser(
+        name, help=module.HELP, description=module.__doc__, epilog=EPILOG, allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )  # fmt: skip
+    if hasattr(module, "PARTS"):
+        parts = sub.add_subparsers(dest="part", required=True, metavar="command")
+        for part in module.PARTS:
+            add_command(parts, part, part.__name__.rpartition("_")[2])
+        return
+    module.add_arguments(sub)
+    sub.add_argument("--json", action="store_true", help="print the result, or the error, as JSON")
+    sub.set_defaults(run=module.run)
 
 
 def joined(argv: list[str]) -> list[str]:

@@ -81,17 +81,17 @@ def input_file(text: str, suffixes: tuple[str, ...]) -> Path:
     return path
 
 
-def output_file(text: str, suffixes: tuple[str, ...]) -> Path:
+def output_file(text: str, suffixes: tuple[str, ...], option: str = "--out") -> Path:
     """Checked before the work begins, not after it."""
     path = Path(text)
     if path.suffix.lower() not in suffixes:
-        raise ValueError(f"--out {path.name}: a name that ends with {' or '.join(suffixes)} expected")
+        raise ValueError(f"{option} {path.name}: a name that ends with {' or '.join(suffixes)} expected")
     if path.is_dir():
-        raise ValueError(f"--out {path.name}: is a directory")
+        raise ValueError(f"{option} {path.name}: is a directory")
     if not path.parent.is_dir():
-        raise ValueError(f"--out {text}: there is no folder {str(path.parent)!r}")
+        raise ValueError(f"{option} {text}: there is no folder {str(path.parent)!r}")
     if not os.access(path.parent, os.W_OK):
-        raise ValueError(f"--out {text}: the folder {str(path.parent)!r} cannot be written")
+        raise ValueError(f"{option} {text}: the folder {str(path.parent)!r} cannot be written")
     return path
 
 

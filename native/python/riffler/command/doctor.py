@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import __version__, _core, pen
 from .console import Console, number
-from .pen import describe
+from .pen_list import describe
 
 HELP = "versions, instruction set, devices found and why one did not open"
 

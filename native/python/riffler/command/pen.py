@@ -1,43 +1,14 @@
-"""Say which devices are plugged in, what each can do, and exactly why one does not open.
+"""Pens and other devices: what is plugged in, what it says, whether it is right, and one without hardware.
 
 riffler pen list
-
-The Polhem protocol's devices have numbers that any board may have, so they are listed and not tried; riffler.pen.open
-takes their kind.
+riffler pen monitor
+riffler pen calibrate
+riffler pen simulate
 """
 
 from __future__ import annotations
 
-import argparse
-from typing import Any
+from . import pen_calibrate, pen_list, pen_monitor, pen_simulate
 
-from .. import pen
-from .console import Console
-
-HELP = "the devices that are plugged in, and why one does not open"
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("what", choices=("list",), help="list: what is plugged in")
-
-
-def run(arguments: argparse.Namespace, console: Console) -> int:
-    found = [device for device in pen.devices() if device["kind"]]
-    rows = [(device["path"], describe(device)) for device in found]
-    known = ", ".join(pen.kinds())
-    console.result(
-        {"devices": found, "kinds": pen.kinds()}, "pens", rows or [("none", f"no device of the kinds {known}")]
-    )
-    return 0
-
-
-def describe(device: dict[str, Any]) -> str:
-    """One device in one line."""
-    name = f"{device['name']} {device['id']}"
-    if device["problem"]:
-        return f"{name}: {device['problem']}: {device['text']}"
-    if device["kind"] is None:
-        return f"{name}: can be opened"
-    if not device["tried"]:
-        return f'{name}: can be opened; if it is one, as "{device["kind"]}": {pen.kinds()[device["kind"]]}'
-    return f"{name}: {device['kind']}, {device['capability']}; {device['about']}"
+HELP = "pens and other devices: list, monitor, calibrate, simulate"
+PARTS = (pen_list, pen_monitor, pen_calibrate, pen_simulate)

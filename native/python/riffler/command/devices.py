@@ -1,0 +1,49 @@
+"""Devices as the command line names them, and what to say where one does not open."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from .. import pen
+
+
+def add_device(parser: argparse.ArgumentParser, default: str | None = None) -> None:
+    more = f"default {default}" if default else "default: the first that is plugged in and opens"
+    parser.add_argument(
+        "device", nargs="?", default=default, metavar="DEVICE",
+        help=f"{', '.join(pen.kinds())}, a path of riffler pen list, or a .rjournal; {more}",
+    )  # fmt: skip
+
+
+def open_device(what: str | None, **options: Any) -> pen.PenDevice:
+    """Opens it; ValueError and PenError say what there is instead."""
+    if what is None:
+        what = first_plugged()
+    known = pen.kinds()
+    path = any(mark in what for mark in "/\\:") or what.endswith(".rjournal")
+    if what not in known and not path:
+        raise ValueError(f"no device {what!r}: {', '.join(known)}, a path of riffler pen list, or a .rjournal expected")
+    try:
+        return pen.open(what, **options)
+    except pen.PenError as error:
+        raise pen.PenError(f"{error}; {plugged()}") from None
+
+
+def first_plugged() -> str:
+    """The path of the first device that opens."""
+    for device in pen.devices():
+        if device["tried"] and device["problem"] is None:
+            return device["path"]
+    raise pen.PenError(f"no device to open; {plugged()}")
+
+
+def plugged() -> str:
+    """What there is, and why some of it does not open, in one line."""
+    found = [
+        f"{device['path']} ({device['name']}" + (f": {device['problem']})" if device["problem"] else ")")
+        for device in pen.devices()
+        if device["kind"]
+    ]
+    there = f"plugged in: {', '.join(found)}" if found else "no device of a kind that riffler knows is plugged in"
+    return f'{there}; "simulated" needs none'

@@ -1,0 +1,43 @@
+"""Say which devices are plugged in, what each can do, and exactly why one does not open.
+
+riffler pen list
+
+The Polhem protocol's devices have numbers that any board may have, so they are listed and not tried; riffler.pen.open
+takes their kind.
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from .. import pen
+from .console import Console
+
+HELP = "the devices that are plugged in, and why one does not open"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    pass
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    found = [device for device in pen.devices() if device["kind"]]
+    rows = [(device["path"], describe(device)) for device in found]
+    known = ", ".join(pen.kinds())
+    console.result(
+        {"devices": found, "kinds": pen.kinds()}, "pens", rows or [("none", f"no device of the kinds {known}")]
+    )
+    return 0
+
+
+def describe(device: dict[str, Any]) -> str:
+    """One device in one line."""
+    name = f"{device['name']} {device['id']}"
+    if device["problem"]:
+        return f"{name}: {device['problem']}: {device['text']}"
+    if device["kind"] is None:
+        return f"{name}: can be opened"
+    if not device["tried"]:
+        return f'{name}: can be opened; if it is one, as "{device["kind"]}": {pen.kinds()[device["kind"]]}'
+    return f"{name}: {device['kind']}, {device['capability']}; {device['about']}"

@@ -1,0 +1,95 @@
+"""Figures of a run of the simulated pen: a file of the whole run, or a window while it runs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+
+from ..bench.plotting import COLOURS, INK, STYLE, TARGET
+
+if TYPE_CHECKING:
+    from .pen_simulate import Log
+
+
+def draw(log: Log, what: str) -> Figure:
+    """Position, force, energy, removed volume against time; the processor's time of a step as a distribution."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(11, 7.2))
+        panels = figure.subplots(3, 2, gridspec_kw={"width_ratios": (2, 1)})
+        fill(panels, log)
+        figure.suptitle(f"Simulated pen carving a block, {what}", x=0.01, ha="left", fontsize=12)
+        figure.tight_layout(rect=(0, 0, 1, 0.98))
+    return figure
+
+
+def fill(panels: np.ndarray, log: Log) -> None:
+    times, poses, forces = log.column("times"), log.column("poses"), log.column("forces")
+    (place, above), (push, spent), (energy, removed) = panels
+    for k, name in enumerate("xyz"):
+        place.plot(times, poses[:, k] - (poses[0, k] if len(poses) else 0), color=COLOURS[k], label=name)
+        push.plot(times, forces[:, k], color=COLOURS[k], label=name)
+    place.set_ylabel("position from the start  mm")
+    push.set_ylabel("force on the hand  N")
+    for axis in (place, push):
+        axis.legend(loc="upper right", ncols=3)
+    frames = np.array(log.frame_times[1:])
+    energy.plot(frames, log.energies(), color=COLOURS[3])
+    energy.axhline(0, color=TARGET, linewidth=1, linestyle=":")
+    energy.set_ylabel("energy from the hand  N·mm")
+    for axis in (place, push, energy):
+        axis.set_xlim(0, max(frames[-1] if len(frames) else 0, 1))
+        axis.set_xlabel("time  s")
+    above.plot(poses[:, 0], poses[:, 1], color=INK, linewidth=0.8)
+    above.set(xlabel="x  mm", ylabel="y  mm", aspect="equal")
+    above.set_title("from above", fontsize=9, loc="left")
+    removed.plot(log.frame_times, log.removed, color=COLOURS[2])
+    removed.set(xlabel="time  s", ylabel="removed  mm³")
+    steps(spent, 1e6 * log.column("step_seconds"))
+
+
+def steps(axis: object, spent: np.ndarray) -> None:
+    """How many steps took at least so long: the tail is what a haptic loop is judged by."""
+    spent = np.sort(spent[spent > 0])
+    if len(spent):
+        axis.plot(spent, 100 * (1 - np.arange(len(spent)) / len(spent)), color=COLOURS[4])
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.set(xlabel="processor's time of a step  µs", ylabel="of the steps took longer  %")
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+class Window:
+    """The same panels on a display, drawn again a few times a second."""
+
+    def __init__(self) -> None:
+        import matplotlib.pyplot as plt
+
+        if plt.get_backend().lower() in ("agg", "pdf", "svg", "ps", "cairo", "template"):
+            raise ValueError(f"--window: matplotlib has no window here ({plt.get_backend()}): "
+                             "install PyQt or tkinter, or take --plot FILE.png")  # fmt: skip
+        self.plt = plt
+        plt.ion()
+        with plt.rc_context(STYLE):
+            self.figure, self.panels = plt.subplots(3, 2, figsize=(11, 7.2), gridspec_kw={"width_ratios": (2, 1)})
+        self.drawn = 0
+
+    def show(self, log: Log) -> bool:
+        """False where somebody closed it."""
+        if not self.plt.fignum_exists(self.figure.number):
+            return False
+        self.drawn += 1
+        if self.drawn % 3 == 1:
+            for axis in self.panels.flat:
+                axis.clear()
+            fill(self.panels, log)
+            if self.drawn == 1:
+                self.figure.tight_layout()
+            self.figure.canvas.draw_idle()
+        self.figure.canvas.flush_events()
+        return True
