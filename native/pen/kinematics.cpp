@@ -38,6 +38,14 @@ void PenKinematics::home_at(const EncoderCounts& raw, std::int32_t probe) noexce
   at_home_ = raw, probe_at_home_ = probe;
 }
 
+EncoderCounts PenKinematics::preset(const EncoderCounts& raw) const noexcept {
+  EncoderCounts out{};
+  for (std::size_t k = 0; k < kPenChannels; ++k)
+    out[k] = static_cast<std::int32_t>(static_cast<std::uint32_t>(geometry_.channels[k].home) +
+                                       static_cast<std::uint32_t>(counted(at_home_[k], raw[k])));
+  return out;
+}
+
 JointAngles PenKinematics::angles(const EncoderCounts& raw) const noexcept {
   JointAngles out{};
   for (std::size_t k = 0; k < kPenChannels; ++k) {

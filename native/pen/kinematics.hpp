@@ -50,6 +50,8 @@ class PenKinematics {
   /// start of the device's counters is as good as another, and they may wrap. Until then they are taken to be preset.
   void home_at(const EncoderCounts& raw, std::int32_t probe) noexcept;
 
+  /// What the counters would read had homing preset them; they wrap.
+  EncoderCounts preset(const EncoderCounts& raw) const noexcept;
   /// (2.9) of counters as they are read.
   JointAngles angles(const EncoderCounts& raw) const noexcept;
   /// The nearest counts, counters taken as angles() takes them; they wrap.

@@ -195,7 +195,7 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   posture_ = kinematics_.posture(raw);
   const PenSpeed speed = kinematics_.speed(posture_, speed_.rates());
   sample_.pose = posture_.pose;
-  sample_.counts = kinematics_.counts(posture_.angles);
+  sample_.counts = kinematics_.preset(raw);
   sample_.spin = kinematics_.probe_angle(report.probe);
   sample_.velocity = speed.twist.linear;
   sample_.turning = speed.twist.angular;

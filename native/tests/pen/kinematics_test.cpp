@@ -126,6 +126,7 @@ TEST(PenKinematics, AnyStartOfTheCountersIsAsGoodAsThePresets) {
     }
     EXPECT_EQ(preset.angles(counts), homed.angles(raw)) << "past the counters' ends";
     EXPECT_EQ(homed.counts(homed.angles(raw)), raw);
+    EXPECT_EQ(homed.preset(raw), counts);
     EXPECT_EQ(preset.counts(preset.angles(counts)), counts);
   }
   EXPECT_EQ(homed.probe_angle(kLeast), preset.probe_angle(1));

@@ -9,6 +9,7 @@
 #include <limits>
 #include <thread>
 
+#include "pen/redundancy.hpp"
 #include "pen/registry.hpp"
 #include "support/error_of.hpp"
 
@@ -78,6 +79,22 @@ TEST(SimulatedDevice, AWrenchThatItHasMotorsForIsMissingNothing) {
   }
   const PushAnswer twist = pen->push({{}, 30.0 * pen->newest().pose.axis});
   EXPECT_GT(glm::length(twist.missing.torque), 29);
+}
+
+TEST(SimulatedDevice, LosesCountsAndTheGripShowsIt) {
+  const auto pen = SimulatedDevice::open();
+  ASSERT_NE(pen->geometry(), nullptr);
+  const PenKinematics kinematics(*pen->geometry());
+  ASSERT_TRUE(comes_true([&] { return pen->newest().homed; }));
+  pen->aim({.pose = pen->newest().pose});
+  EXPECT_TRUE(comes_true([&] { return std::abs(pen->newest().stretch) < pen->geometry()->grip_tolerance; }));
+  pen->lose(1, 60);  // R3, which moves its end along the grip at home
+  EXPECT_TRUE(comes_true([&] { return std::abs(pen->newest().stretch) > 3 * pen->geometry()->grip_tolerance; }));
+  const PenSample sample = pen->newest();
+  EXPECT_EQ(check_grip(kinematics, kinematics.posture(sample.counts)).stretch, sample.stretch);
+  pen->lose(1, 0);
+  EXPECT_TRUE(comes_true([&] { return std::abs(pen->newest().stretch) < pen->geometry()->grip_tolerance; }));
+  EXPECT_EQ(test::error_of([&] { pen->lose(6, 1); }), "channel must be 0 to 5, not 6");
 }
 
 TEST(SimulatedDevice, WishesThatCannotBeAreRefused) {

@@ -171,12 +171,12 @@ def rows_of(verdict: Verdict, seen: list[Joint], beyond: list[str], data: dict[s
     ]  # fmt: skip
     if not verdict.fits and verdict.channels:
         rows.append(("after", f"{stretch['rms_after']:.3f} mm rms would be left"))
-    for joint in seen:
+    for joint in sorted(seen, key=lambda joint: joint.name):
         low, high = (math.degrees(v) for v in (joint.low, joint.high))
         limits = ", ".join(f"{math.degrees(v):.0f}°" for v in joint.limits)
-        shown = f"from {joint.noticed:.0f} counts on" if math.isfinite(joint.noticed) else "not at all"
+        shown = f"; {joint.noticed:.0f} lost counts would show" if 0 < joint.noticed < math.inf else ""
         note = "BEYOND its limits" if joint.beyond else "" if joint.share >= ENOUGH else "move it further"
-        rows.append((joint.name, f"{low:6.1f}° … {high:5.1f}° of ({limits}); a loss shows {shown}"
+        rows.append((joint.name, f"{low:6.1f}° … {high:5.1f}° of ({limits}){shown}"
                                  + (f"; {note}" if note else "")))  # fmt: skip
     if beyond:
         rows.append(("limits", f"{', '.join(beyond)} went where the file says that they cannot: measure low and high"))

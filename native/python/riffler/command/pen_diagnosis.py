@@ -11,6 +11,7 @@ from .. import pen
 
 STRAY = 0.02  # rad that some joint turns between two postures that are kept: closer ones say nothing new
 CHANNELS = 6
+TOLD = 64  # postures that the diagnosis keeps, the last ones: it is given some from all over the stroke
 
 
 class Postures:
@@ -45,7 +46,7 @@ class Joint:
     low: float
     high: float
     limits: tuple[float, float]
-    noticed: float  # counts lost of this encoder alone from which on one of the postures would have shown it
+    noticed: float  # counts of this encoder alone from which on a loss would have shown; 0 where the grip does not fit
 
     @property
     def share(self) -> float:
@@ -98,7 +99,7 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
 
     if most <= geometry.grip_tolerance:
         return verdict("the grip's length comes out in every posture", fits=True)
-    found = geometry.diagnose(counts)
+    found = geometry.diagnose(counts[np.unique(np.linspace(0, len(counts) - 1, TOLD).round().astype(int))])
     if found["fault"] == "channel":
         k, off = found["channel"], round(found["counts"])
         home[k] -= off
@@ -108,6 +109,10 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
             f"{home[k]}, not {home[k] + off}",
             found["left"],
             channels=(names[k],),
+        )
+    if found["fault"] == "unclear":
+        return verdict(
+            "a counter is off, and the postures are too alike to tell which: lean the pen further, and begin anew"
         )
     after, change = min(_wirings(geometry, counts, home), key=lambda found: found[0])
     if after > geometry.grip_tolerance / 2:

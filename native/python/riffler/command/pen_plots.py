@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
-from ..bench.plotting import COLOURS, INK, STYLE, TARGET
+from ..bench.plotting import COLOURS, INK, STYLE, TARGET, logarithmic
 
 if TYPE_CHECKING:
     from .pen_simulate import Log
@@ -36,7 +35,7 @@ def fill(panels: np.ndarray, log: Log) -> None:
     place.set_ylabel("position from the start  mm")
     push.set_ylabel("force on the hand  N")
     for axis in (place, push):
-        axis.legend(loc="upper right", ncols=3)
+        axis.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=3)  # over the panel, where no line is
     frames = np.array(log.frame_times[1:])
     energy.plot(frames, log.energies(), color=COLOURS[3])
     energy.axhline(0, color=TARGET, linewidth=1, linestyle=":")
@@ -57,11 +56,9 @@ def steps(axis: object, spent: np.ndarray) -> None:
     spent = np.sort(spent[spent > 0])
     if len(spent):
         axis.plot(spent, 100 * (1 - np.arange(len(spent)) / len(spent)), color=COLOURS[4])
-    axis.set_xscale("log")
-    axis.set_yscale("log")
+    logarithmic(axis.xaxis, sub=True)
+    logarithmic(axis.yaxis)
     axis.set(xlabel="processor's time of a step  µs", ylabel="of the steps took longer  %")
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 class Window:
