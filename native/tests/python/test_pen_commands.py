@@ -184,7 +184,7 @@ def test_monitor_ends_with_ctrl_c_and_keeps_what_it_saw(tmp_path):
 def test_monitor_draws_in_a_terminal(tmp_path):
     out, status = in_terminal("pen", "monitor", "simulated", "--seconds", "2", keys={}, cwd=tmp_path)
     assert status == 0
-    for word in ("position  mm", "force felt  N", "stretch", "lost 0", "Ctrl-C ends it", "⠀"):
+    for word in ("position from the start  mm", "force felt  N", "stretch", "lost 0", "Ctrl-C ends it", "⠀"):
         assert word in out
 
 
@@ -320,9 +320,10 @@ def test_postures_are_kept_where_a_joint_has_turned(geometry, stroke):
 def test_the_home_posture_is_drawn_from_the_geometry(geometry):
     """At home the upper arms hang and the fore arms are level: an L for each arm, and the grip between their ends."""
     lines = side_view(geometry)
-    assert len(lines) == 16 and all(len(line) == 56 for line in lines)
+    assert len(lines) == 16 and all(len(line) == 36 for line in lines)
     full = [k for k, line in enumerate(lines) if sum(c != "⠀" for c in line) > 20]
     assert len(full) == 2, "two fore arms, one above the other"
+    assert lines[full[0]].rstrip("⠀").endswith("R") and lines[full[1]].rstrip("⠀").endswith("L")
     assert all(any(c != "⠀" for c in line[:4]) for line in lines[1:-1]), "and the upper arms down to them"
 
 
@@ -389,5 +390,5 @@ def test_simulate_says_what_is_wrong(tmp_path):
 def test_simulate_draws_in_a_terminal(tmp_path):
     out, status = in_terminal("pen", "simulate", "--seconds", "2", "--pitch", "1", keys={}, cwd=tmp_path)
     assert status == 0
-    for word in ("position  mm", "force felt  N", "energy", "removed", "Ctrl-C ends it"):
+    for word in ("position from the start  mm", "force felt  N", "energy", "removed", "Ctrl-C ends it"):
         assert word in out

@@ -277,7 +277,7 @@ def home_angles(geometry: pen.PenGeometry) -> list[float]:
     return [c["sign"] * c["home"] / c["steps"] * 2 * math.pi for c in geometry.channels]
 
 
-def side_view(geometry: pen.PenGeometry, columns: int = 56, rows: int = 16) -> list[str]:
+def side_view(geometry: pen.PenGeometry, columns: int = 36, rows: int = 16) -> list[str]:
     """Both arms in their own planes: shoulder, elbow, end; and the grip between the ends.
 
     The derivative of an end by θ2 is the upper arm, turned by a right angle (2.7): so it says where the elbow is.
@@ -296,7 +296,12 @@ def side_view(geometry: pen.PenGeometry, columns: int = 56, rows: int = 16) -> l
     for arm in arms:
         polyline(canvas, (arm - lower) * scale)
     polyline(canvas, (np.array([arms[0][2], arms[1][2]]) - lower) * scale)
-    return canvas.lines()
+    lines = canvas.lines()
+    for name, arm in zip("RL", arms, strict=True):
+        x, y = (arm[2] - lower) * scale
+        row, column = rows - 1 - round(y) // 4, round(x) // 2 + 2
+        lines[row] = f"{lines[row][:column]}{name}{lines[row][column + 1 :]}"
+    return lines
 
 
 # ---- a puck

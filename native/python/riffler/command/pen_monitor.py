@@ -104,6 +104,7 @@ class Watch:
         self.sequence = 0
         self.history = {"position": History(SHOWN), "force": History(SHOWN)}
         self.charted = self.start
+        self.first: np.ndarray | None = None
         self.links: deque[tuple[float, dict[str, Any]]] = deque()  # of the last second
         self.seen = 0
         self.most = {"stretch_mm": 0.0, "speed_mm_s": 0.0, "force_N": 0.0, "age_s": 0.0}
@@ -138,7 +139,9 @@ class Watch:
         self.most["age_s"] = max(self.most["age_s"], state.age_s)
         if now - self.charted >= 0.01:
             self.charted = now
-            self.history["position"].add(now, *state.pose[:3])
+            if self.first is None:
+                self.first = state.pose[:3]
+            self.history["position"].add(now, *(state.pose[:3] - self.first))
             self.history["force"].add(now, *state.applied[0])
 
     def look(self, now: float) -> None:
@@ -181,7 +184,7 @@ class Watch:
         for name, value in self.rows():
             table.add_row(Text(name), Text(value))
         charts = [
-            chart("position  mm", "xyz", self.history["position"], width, 7, least=1),
+            chart("position from the start  mm", "xyz", self.history["position"], width, 7, least=1),
             chart("force felt  N", "xyz", self.history["force"], width, 5, least=0.2, zero=True),
         ]
         end = Text("Ctrl-C ends it", style="dim")

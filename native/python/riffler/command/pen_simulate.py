@@ -116,6 +116,7 @@ class Log:
         self.start = time.monotonic()
         self.newest = Frame()
         self.causes: list[str] = []
+        self.first: np.ndarray | None = None
         self.charts = {"position": History(SHOWN), "force": History(SHOWN), "energy": History(SHOWN)}
 
     def add(self, frame: Frame) -> None:
@@ -125,7 +126,9 @@ class Log:
         now = time.monotonic() - self.start
         self.frame_times.append(now)
         for at, pose, force in zip(frame.times, frame.poses, frame.forces, strict=True):
-            self.charts["position"].add(at, *pose[:3])
+            if self.first is None:
+                self.first = pose[:3]
+            self.charts["position"].add(at, *(pose[:3] - self.first))
             self.charts["force"].add(at, *force[:3])
         self.charts["energy"].add(now, frame.energy)
         if frame.cause is not None and (not self.causes or self.causes[-1] != frame.cause):
@@ -169,7 +172,7 @@ class Log:
         for name, value in table(self.summary()):
             grid.add_row(Text(name), Text(value))
         charts = [
-            chart("position  mm", "xyz", self.charts["position"], width, 7, least=1),
+            chart("position from the start  mm", "xyz", self.charts["position"], width, 7, least=1),
             chart("force felt  N", "xyz", self.charts["force"], width, 6, least=0.2, zero=True),
             chart("energy given by the hand  N·mm", [""], self.charts["energy"], width, 4, least=1, zero=True),
         ]
