@@ -52,17 +52,31 @@ def answers(number: int, descriptor: bytes, features: tuple[bytes, ...] = ()) ->
     return "\n".join(lines) + "\n"
 
 
+def escaped(report: bytes) -> bytes:
+    """As scripts of umockdev have them: control characters and ^ after a ^."""
+    return b"".join(
+        bytes([0x5E, b ^ 0x40 if b != 0x5E else 0x60]) if b < 32 or b == 0x5E else bytes([b]) for b in report
+    )
+
+
 @pytest.fixture
 def plugged(tmp_path):
-    """Runs a command of riffler where the devices are plugged in: (vendor, product, name, descriptor, *features)."""
+    """Runs a command of riffler where the devices are plugged in: (vendor, product, name, descriptor, *features).
 
-    def run(*words: str, devices: list[tuple]) -> subprocess.CompletedProcess:
+    `says`: reports that the first one sends, one each 20 ms.
+    """
+
+    def run(*words: str, devices: list[tuple], says: tuple[bytes, ...] = ()) -> subprocess.CompletedProcess:
         command = ["umockdev-run"]
         for number, (vendor, product, name, descriptor, *features) in enumerate(devices):
             described, answered = tmp_path / f"{number}.umockdev", tmp_path / f"{number}.ioctl"
             described.write_text(device(number, vendor, product, name, descriptor))
             answered.write_text(answers(number, descriptor, tuple(features)))
             command += ["-d", str(described), "-i", f"/dev/hidraw{number}={answered}"]
+        if says:
+            script = tmp_path / "0.script"
+            script.write_bytes(b"".join(b"r 20 " + escaped(report) + b"\n" for report in says))
+            command += ["-s", f"/dev/hidraw0={script}"]
         command += ["--", *RIFFLER, *words]
         return subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=120, check=False)
 
@@ -113,6 +127,36 @@ def test_each_reason_is_told(plugged):
     assert len(all_of_them) == 5 and all_of_them[3]["kind"] is None and all_of_them[3]["problem"] is None
     table = plugged("doctor", devices=devices).stdout
     assert "/dev/hidraw3" in table and "Keyboard 046d:c31c: can be opened" in table
+
+
+@virtual
+def test_a_pucks_noise_is_measured_and_its_bubble_is_larger(plugged):
+    puck = (0x256F, 0xC631, "SpaceMouse Pro Wireless", PUCK)
+    noise = tuple(b"\x01" + struct.pack("<6h", 14 * (-1) ** k, 0, 0, 0, 0, 7) for k in range(100))
+    words = "pen", "calibrate", "--yes", "--seconds", "1", "--json"
+    done = plugged(*words, devices=[puck], says=noise)
+    assert done.returncode == 0, done.stderr
+    data = json.loads(done.stdout)
+    assert data["device"] == "spacemouse" and data["noise"] == {"moving": 0.04, "turning": 0.02}  # 14 and 7 of 350
+    assert data["bubble"] == 0.07
+    touched = plugged(
+        *words, devices=[puck], says=tuple(b"\x01" + struct.pack("<6h", 300, k, 0, 0, 0, 0) for k in range(99))
+    )
+    assert touched.returncode == 1 and not json.loads(touched.stdout)["fits"]
+    still = json.loads(plugged(*words, devices=[puck]).stdout)
+    assert still["bubble"] == 0.01 and still["fits"]
+
+
+@virtual
+def test_a_puck_is_monitored_without_force(plugged):
+    puck = (0x256F, 0xC631, "SpaceMouse Pro Wireless", PUCK)
+    pushed = tuple(b"\x01" + struct.pack("<6h", 350, 0, 0, 0, 0, k % 2) for k in range(100))
+    done = plugged("pen", "monitor", "--seconds", "1.5", "--json", devices=[puck], says=pushed)
+    assert done.returncode == 0, done.stderr
+    data = json.loads(done.stdout)
+    assert data["link"]["reports"] > 20 and data["pose"][0] > 10 and data["most"]["speed_mm_s"] == 60
+    table = plugged("pen", "monitor", "--seconds", "1.5", devices=[puck]).stdout
+    assert "connected" in table and "force" not in table
 
 
 def test_what_is_not_there_does_not_open():

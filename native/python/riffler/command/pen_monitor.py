@@ -99,6 +99,7 @@ class Watch:
 
     def __init__(self, device: pen.PenDevice, write: Callable[[list[Any]], None] | None = None) -> None:
         self.device, self.write = device, write
+        self.pushes = any(axis["pushes"] for axis in device.limits.values())
         self.start = time.monotonic()
         self.state = device.state()
         self.sequence = 0
@@ -150,7 +151,7 @@ class Watch:
         self.links.append((now, self.health))
         while len(self.links) > 2 and self.links[1][0] < now - 1:
             self.links.popleft()
-        cause = self.health["cause"]
+        cause = self.health["cause"] if self.pushes else None
         if cause is not None and (not self.causes or self.causes[-1] != cause):
             self.causes.append(cause)
 
@@ -165,13 +166,16 @@ class Watch:
         state, health = self.state, self.health
         rates = self.rates()
         place = " ".join(f"{v:8.2f}" for v in state.pose[:3])
-        force = float(np.linalg.norm(state.applied[0]))
+        force = f"  {np.linalg.norm(state.applied[0]):5.2f} N" if self.pushes else ""
         return (
-            f"{time.monotonic() - self.start:7.1f} s  {place} mm  {np.linalg.norm(state.velocity):6.1f} mm/s  "
-            f"{force:5.2f} N  buttons {buttons(state.buttons)}  {health['state']}, {health['force_state']}"
-            f"  {rates['reports']:.0f}/s, lost {health['lost']}, malformed {health['malformed']}, "
-            f"late {health[LATE]}" + (f"  {health['cause']}" if health["cause"] else "")
+            f"{time.monotonic() - self.start:7.1f} s  {place} mm  {np.linalg.norm(state.velocity):6.1f} mm/s{force}"
+            f"  buttons {buttons(state.buttons)}  {self.states()}  {rates['reports']:.0f}/s, lost {health['lost']}, "
+            f"malformed {health['malformed']}, late {health[LATE]}" + (f"  {self.trouble()}" if self.trouble() else "")
         )
+
+    def states(self) -> str:
+        """Of the link, and of the force where there can be one."""
+        return self.health["state"] + (f", force {self.health['force_state']}" if self.pushes else "")
 
     def picture(self, width: int) -> RenderableType:
         from rich.console import Group
@@ -183,10 +187,9 @@ class Watch:
         table.add_column(overflow="fold")
         for name, value in self.rows():
             table.add_row(Text(name), Text(value))
-        charts = [
-            chart("position from the start  mm", "xyz", self.history["position"], width, 7, least=1),
-            chart("force felt  N", "xyz", self.history["force"], width, 5, least=0.2, zero=True),
-        ]
+        charts = [chart("position from the start  mm", "xyz", self.history["position"], width, 7, least=1)]
+        if self.pushes:
+            charts.append(chart("force felt  N", "xyz", self.history["force"], width, 5, least=0.2, zero=True))
         end = Text("Ctrl-C ends it", style="dim")
         return Group(Text(f"{self.device.kind}  {self.device.about}", style="bold"), table, *charts, end)
 
@@ -201,9 +204,15 @@ class Watch:
             ("axis", f"{vector(state.pose[3:])}   spin {math.degrees(state.spin):.1f}°"),
             ("speed", f"{np.linalg.norm(state.velocity):.1f} mm/s, {np.linalg.norm(state.turning):.2f} rad/s"),
             ("buttons", buttons(state.buttons)),
-            ("force", f"asked {vector(wanted)} N, felt {vector(force)} N"),
-            ("torque", f"asked {vector(health['torque'])} N·mm, felt {vector(torque)} N·mm"),
-            ("state", f"{health['state']}, force {health['force_state']}, {'homed' if state.homed else 'not homed'}"),
+            *(
+                [
+                    ("force", f"asked {vector(wanted)} N, felt {vector(force)} N"),
+                    ("torque", f"asked {vector(health['torque'])} N·mm, felt {vector(torque)} N·mm"),
+                ]
+                if self.pushes
+                else []
+            ),
+            ("state", f"{self.states()}, {'homed' if state.homed else 'not homed'}"),
             ("cause", self.trouble() or "none"),
             ("link", ", ".join(link)),
             ("age", f"{1e3 * state.age_s:.1f} ms, at most {1e3 * self.most['age_s']:.1f} ms"),
@@ -223,7 +232,7 @@ class Watch:
             return f"the device reports fault {state.fault}: switch it off and on again (docs/device.md lists faults)"
         if not state.homed and self.device.geometry is not None:
             return "not homed: riffler pen calibrate"
-        return health["cause"] or ""
+        return (health["cause"] or "") if self.pushes else ""
 
     def summary(self) -> dict[str, Any]:
         seconds = time.monotonic() - self.start
@@ -238,7 +247,7 @@ class Watch:
             "link": counts | {"connections": health["connections"], "attempts": health["attempts"]},
             "state": health["state"],
             "problem": health["problem"],
-            "force_state": health["force_state"],
+            "force_state": health["force_state"] if self.pushes else None,
             "causes": self.causes,
             "homed": self.state.homed,
             "fault": self.state.fault,
@@ -248,12 +257,20 @@ class Watch:
 
 
 def table(data: dict[str, Any]) -> list[tuple[str, str]]:
-    link, most = data["link"], data["most"]
+    link, most, force = data["link"], data["most"], data["force_state"]
     rows = [
         ("reports", f"{number(link['reports'])}, {data['reports_per_s']:.0f}/s; {number(data['seen'])} seen here"),
         ("lost", f"{number(link['lost'])}; malformed {number(link['malformed'])}, late {number(link[LATE])}"),
-        ("at most", f"{most['speed_mm_s']:.1f} mm/s, {most['force_N']:.2f} N, stretch {most['stretch_mm']:.3f} mm"),
-        ("state", f"{data['state']}, force {data['force_state']}, {'homed' if data['homed'] else 'not homed'}"),
+        (
+            "at most",
+            f"{most['speed_mm_s']:.1f} mm/s"
+            + (f", {most['force_N']:.2f} N" if force else "")
+            + (f", stretch {most['stretch_mm']:.3f} mm" if most["stretch_mm"] else ""),
+        ),
+        (
+            "state",
+            data["state"] + (f", force {force}" if force else "") + f", {'homed' if data['homed'] else 'not homed'}",
+        ),
         *(("cause", cause) for cause in data["causes"]),
     ]
     if data["problem"]:
