@@ -24,9 +24,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> int:
     found = [device for device in pen.devices() if device["kind"]]
     rows = [(device["path"], describe(device)) for device in found]
-    known = ", ".join(pen.kinds())
+    known = ", ".join(kind for kind in pen.kinds() if kind != "simulated")
     console.result(
-        {"devices": found, "kinds": pen.kinds()}, "pens", rows or [("none", f"no device of the kinds {known}")]
+        {"devices": found, "kinds": pen.kinds()},
+        "pens",
+        rows or [("none", f'no device of the kinds {known}; "simulated" needs none')],
     )
     return 0
 
