@@ -17,7 +17,7 @@ import riffler
 from commands import ENVIRONMENT, RIFFLER, result, riffle
 from riffler.command.live import SCALE, Braille, History, chart
 from riffler.command.pen_calibrate import side_view, toml, tour
-from riffler.command.pen_carving import block_at, hand_at
+from riffler.command.pen_carving import TOOL, block_at, hand_at, table_at
 from riffler.command.pen_diagnosis import Postures, bubble_of, joints, judge
 
 terminal = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudo-terminals of this kind")
@@ -349,21 +349,29 @@ def test_reports_are_toml():
 
 
 def test_the_simulated_hand_carves(tmp_path):
-    data = result("pen", "simulate", "--seconds", "6", "--pitch", "1", cwd=tmp_path)
-    assert data["removed"] > 100 and data["steps"] > 200
+    words = "--seconds", "6", "--pitch", "1", "--out", "a.rvol", "--journal", "a.rjournal"
+    data = result("pen", "simulate", *words, cwd=tmp_path)
+    assert data["strokes"] >= 1 and data["steps"] > 500
+    assert data["removed"] > 100
     assert 0 < data["step_us"]["p50"] <= data["step_us"]["p99"]
-    assert data["lost"] == 0
+    assert data["force_n"] > 0.05 and data["energy_least"] > -1
+    block = 50 * 40 * 16
+    assert riffler.Volume.load(tmp_path / "a.rvol").volume == pytest.approx(block - data["removed"], rel=1e-12)
+    strokes = riffler.Journal.read(tmp_path / "a.rjournal").strokes
+    assert len(strokes) == data["strokes"] and all(len(stroke.poses) > 10 for stroke in strokes)
 
 
 def test_the_hand_stays_over_the_block_and_goes_down_only_with_its_button_held(geometry):
     home = geometry.forward([geometry.home])[0]
-    volume = block_at(home, 1.0)
+    volume, table = block_at(home, 1.0), table_at(home)
     poses, buttons = zip(*(hand_at(home, t) for t in np.arange(0, 60, 0.02)), strict=True)
     poses, held = np.array(poses), np.array(buttons) == 1
     assert geometry.inverse(poses[::25])[1] == [("reached", "reached")] * len(poses[::25])
     assert (poses[~held, 2] > volume.upper[2]).all()
     assert (poses[:, :2] > volume.lower[:2]).all() and (poses[:, :2] < volume.upper[:2]).all()
     assert held.mean() > 0.5
+    clear = table.clearance(riffler.Tool.ball(TOOL, 40.0), poses[::25])
+    assert clear[0] > 5 and clear.min() == pytest.approx(-2, abs=0.5), "the last passes press on the table"
 
 
 def test_a_run_becomes_a_figure(tmp_path):
@@ -379,7 +387,7 @@ def test_simulate_says_what_is_wrong(tmp_path):
         assert done.returncode == 2 and done.stdout == ""
         return done.stderr
 
-    assert "--stiffness must not be negative" in refused("--stiffness", "-1")
+    assert "--stiffness must be positive" in refused("--stiffness", "-1")
     assert "ends with .png" in refused("--plot", "a.pdf")
     pytest.importorskip("matplotlib")
     if sys.platform.startswith("linux"):
@@ -390,5 +398,5 @@ def test_simulate_says_what_is_wrong(tmp_path):
 def test_simulate_draws_in_a_terminal(tmp_path):
     out, status = in_terminal("pen", "simulate", "--seconds", "2", "--pitch", "1", keys={}, cwd=tmp_path)
     assert status == 0
-    for word in ("position from the start  mm", "force felt  N", "energy", "removed", "Ctrl-C ends it"):
+    for word in ("tool from the start  mm", "force felt  N", "energy", "removed", "Ctrl-C ends it"):
         assert word in out

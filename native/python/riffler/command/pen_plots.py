@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,27 +28,27 @@ def draw(log: Log, what: str) -> Figure:
 
 
 def fill(panels: np.ndarray, log: Log) -> None:
-    times, poses, forces = log.column("times"), log.column("poses"), log.column("forces")
+    times, poses, forces = log.column("times"), log.column("poses"), log.column("applied")
     (place, above), (push, spent), (energy, removed) = panels
     for k, name in enumerate("xyz"):
         place.plot(times, poses[:, k] - (poses[0, k] if len(poses) else 0), color=COLOURS[k], label=name)
         push.plot(times, forces[:, k], color=COLOURS[k], label=name)
-    place.set_ylabel("position from the start  mm")
+    place.set_ylabel("tool from the start  mm")
     push.set_ylabel("force on the hand  N")
     for axis in (place, push):
         axis.legend(loc="lower right", bbox_to_anchor=(1, 0.98), ncols=3)  # over the panel, where no line is
-    frames = np.array(log.frame_times[1:])
-    energy.plot(frames, log.energies(), color=COLOURS[3])
+    energy.plot(times, log.column("energy"), color=COLOURS[3])
     energy.axhline(0, color=TARGET, linewidth=1, linestyle=":")
-    energy.set_ylabel("energy from the hand  N·mm")
-    for axis in (place, push, energy):
-        axis.set_xlim(0, max(frames[-1] if len(frames) else 0, 1))
+    energy.set_ylabel("energy for the hand  N·mm")
+    removed.plot(times, np.cumsum(log.column("removed")), color=COLOURS[2])
+    removed.set_ylabel("removed  mm³")
+    for axis in (place, push, energy, removed):
+        axis.set_xlim(0, max(times[-1] if len(times) else 0, 1))
         axis.set_xlabel("time  s")
     above.plot(poses[:, 0], poses[:, 1], color=INK, linewidth=0.8)
-    above.set(xlabel="x  mm", ylabel="y  mm", aspect="equal")
-    above.set_title("from above", fontsize=9, loc="left")
-    removed.plot(log.frame_times, log.removed, color=COLOURS[2])
-    removed.set(xlabel="time  s", ylabel="removed  mm³")
+    above.set(xlabel="x  mm", ylabel="y  mm")
+    above.set_aspect("equal", adjustable="datalim")
+    above.set_title("tool from above", fontsize=9, loc="left")
     steps(spent, 1e6 * log.column("step_seconds"))
 
 
@@ -74,19 +75,21 @@ class Window:
         plt.ion()
         with plt.rc_context(STYLE):
             self.figure, self.panels = plt.subplots(3, 2, figsize=(11, 7.2), gridspec_kw={"width_ratios": (2, 1)})
-        self.drawn = 0
+        self.next = 0.0
 
     def show(self, log: Log) -> bool:
         """False where somebody closed it."""
         if not self.plt.fignum_exists(self.figure.number):
             return False
-        self.drawn += 1
-        if self.drawn % 3 == 1:
+        began = time.monotonic()
+        if began >= self.next:
             for axis in self.panels.flat:
                 axis.clear()
-            fill(self.panels, log)
-            if self.drawn == 1:
-                self.figure.tight_layout()
-            self.figure.canvas.draw_idle()
+            with self.plt.rc_context(STYLE):
+                fill(self.panels, log)
+            self.figure.tight_layout()
+            self.figure.canvas.draw()
+            # The rest of the time is the pen's.
+            self.next = time.monotonic() + max(0.3, 2 * (time.monotonic() - began))
         self.figure.canvas.flush_events()
         return True

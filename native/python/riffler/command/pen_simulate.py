@@ -1,11 +1,12 @@
-"""Carve a block with the simulated pen: firmware, cable, driver and force in real time, without hardware.
+"""Carve a block with the simulated pen: firmware, cable, driver, haptic step and force in real time, without hardware.
 
 riffler pen simulate                        live in the terminal
-riffler pen simulate --seconds 20 --plot run.png
+riffler pen simulate --seconds 20 --plot run.png --out block.stl
 riffler pen simulate --window               a window instead, with matplotlib
 
-A simulated hand makes passes over a block, each deeper than the last. Shown are where it is, what pushes it, the energy
-that it has given to what it feels (below zero it would be driven), and the processor's time of a step.
+A simulated hand makes passes over a block, each deeper than the last, until the tool comes to a table that it stays out
+of. Shown are where the tool is, what pushes the hand, the account of energy (what may go to the hand: below zero it
+would be driven), what was cut, and the processor's time of a step.
 """
 
 from __future__ import annotations
@@ -13,63 +14,106 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import threading
 import time
+from collections.abc import Callable
 from contextlib import nullcontext
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import pen
-from .arguments import finite, length, output_file
+from .. import Tool, pen
+from .._core import Session, SessionFrame
+from .arguments import MESHES, VOLUMES, length, output_file
 from .console import Console, number
 from .live import FRAMES, History, chart, screen, width_of_terminal
-from .pen_carving import Carving, Frame, PushedField, block_at, hand_at
+from .pen_carving import TOOL, block_at, hand_at, table_at
+from .shapes import write_mesh, write_volume
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 HELP = "carve with the simulated pen, and see it"
-HOME = 0.5  # s until the hand begins
 SHOWN = 10  # s that the charts show
+LATE = 2e-3  # s from one step to the next, of steps that count as late
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", default="20", metavar="N", help="how long (default 20)")
-    parser.add_argument("--stiffness", default="0.5", metavar="N/MM", help="of what the tool meets (default 0.5)")
+    parser.add_argument("--stiffness", default="1", metavar="N/MM", help="between hand and tool (default 1)")
     parser.add_argument("--pitch", default="0.5", metavar="MM", help="of the block (default 0.5)")
     parser.add_argument("--plot", metavar="FILE", help="a .png of the whole run; needs matplotlib")
     parser.add_argument("--window", action="store_true", help="plots in a window while it runs; needs matplotlib")
+    parser.add_argument("--journal", metavar="FILE", help="a new .rjournal of the strokes; riffler post takes it")
+    parser.add_argument("--out", metavar="FILE", help="what is left: .stl, .obj, .ply, .3mf or .rvol")
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     seconds = length(arguments.seconds, "--seconds")
-    stiffness = finite(arguments.stiffness, "--stiffness")
-    if stiffness < 0:
-        raise ValueError(f"--stiffness must not be negative, not {arguments.stiffness}")
+    stiffness = length(arguments.stiffness, "--stiffness")
     pitch = length(arguments.pitch, "--pitch")
     plot = None if arguments.plot is None else output_file(arguments.plot, (".png",), "--plot")
+    out = None if arguments.out is None else output_file(arguments.out, MESHES + VOLUMES)
+    journal = None if arguments.journal is None else output_file(arguments.journal, (".rjournal",), "--journal")
     if plot is not None or arguments.window:
         need_matplotlib()
     window = open_window() if arguments.window else None
+    log = Log()
     with pen.open("simulated") as device:
         home = homed(device)
-        log = Log()
-        carving: Carving = PushedField(device, block_at(home, pitch), stiffness)
-        carving.start()
+        block = block_at(home, pitch)
+        before = block.volume
+        start, _ = hand_at(home, 0)
+        come_to(device, start)
+        # The tool is where the grip is: one frame for the pen, the block and the tool.
+        session = Session(
+            block, Tool.ball(TOOL, 40.0), device, obstacles=table_at(home), at=device.state().pose, stiffness=stiffness
+        )
+        if journal is not None:
+            session.journal(journal)
+        session.start()
         try:
-            carve(device, home, carving, log, seconds, console, window)
+            carve(device, home, session, log, seconds, screen(console) if window is None else nullcontext(), window)
         finally:
-            carving.stop()
-        log.add(carving.frame())
-        health = device.health()
-    data = log.summary() | {"stiffness": stiffness, "lost": health["lost"], "plot": None if plot is None else str(plot)}
+            log.add(session.stop())
+            log.trips = trips(session)
+        link = device.health()
+    data = log.summary() | {
+        "stiffness": stiffness,
+        "pitch": pitch,
+        "lost": link["lost"],
+        "removed": before - block.volume,
+    }
+    written = {"plot": plot, "out": out, "journal": journal}
     if plot is not None:
         from .pen_plots import draw
 
         with console.writing(plot) as beside:
-            draw(log, f"{stiffness:g} N/mm").savefig(beside, dpi=120, facecolor="white", format="png")
+            draw(log, f"{stiffness:g} N/mm between hand and tool").savefig(
+                beside, dpi=120, facecolor="white", format="png"
+            )
+    if out is not None:
+        write(block, out, console)
+    data |= {key: None if path is None else str(path) for key, path in written.items()}
     console.result(data, f"simulated pen, {data['seconds']:.1f} s", table(data))
     return 0
+
+
+def write(block: Any, out: Path, console: Console) -> None:
+    if out.suffix.lower() in VOLUMES:
+        write_volume(block, out, console)
+    else:
+        write_mesh(block.to_mesh(), out, console)
+
+
+def trips(session: Session) -> dict[str, int]:
+    """How often the force was taken away, by its reason; letting go of the button is none."""
+    found: dict[str, int] = {}
+    for _, _, why, _ in session.trips:
+        if "dead-man" not in why:
+            found[why] = found.get(why, 0) + 1
+    return found
 
 
 def homed(device: pen.PenDevice) -> np.ndarray:
@@ -82,83 +126,118 @@ def homed(device: pen.PenDevice) -> np.ndarray:
     return device.geometry.forward([device.geometry.home])[0]
 
 
+def come_to(device: pen.PenDevice, pose: np.ndarray) -> None:
+    """The hand goes there; for two seconds at most."""
+    device.aim(pose)
+    end = time.monotonic() + 2
+    while np.linalg.norm(device.state().pose[:3] - pose[:3]) > 0.3 and time.monotonic() < end:
+        time.sleep(0.02)
+
+
 def carve(
-    device: pen.PenDevice, home: np.ndarray, carving: Carving, log: Log, seconds: float, console: Console, window: Any
+    device: pen.PenDevice, home: np.ndarray, session: Session, log: Log, seconds: float, live: Any, window: Any
 ) -> None:
     """Moves the hand, and shows what happens, until the time is over; Ctrl-C ends it sooner."""
     start = time.monotonic()
     shown = start
     try:
-        with screen(console) if window is None else nullcontext() as draw:
-            while (now := time.monotonic() - start) < seconds:
-                pose, buttons = hand_at(home, max(0.0, now - HOME))
-                device.aim(pose, buttons=buttons if now > HOME else 0)
-                log.add(carving.frame())
-                if time.monotonic() - shown > 1 / FRAMES:
-                    shown = time.monotonic()
-                    if draw is not None:
-                        draw(log.picture(width_of_terminal()))
-                    elif window is not None and not window.show(log):
+        with live as draw, Hand(device, home):
+            show: Callable[[Log], bool] | None = None
+            if window is not None:
+                show = window.show
+            elif draw is not None:
+                show = lambda log: draw(log.picture(width_of_terminal())) or True  # noqa: E731
+            while (now := time.monotonic()) - start < seconds:
+                log.add(session.frame())
+                if log.state == "tripped" and not device.state().fault:
+                    session.reset()  # what a person does who has seen what it was
+                if show is not None and now - shown > 1 / FRAMES:
+                    shown = now
+                    if not show(log):
                         break
-                time.sleep(0.015)
+                time.sleep(0.01)
     except KeyboardInterrupt:
         pass
-    device.aim(home)
+
+
+class Hand:
+    """Moves the simulated hand in a thread of its own: drawing takes longer than a hand stands still."""
+
+    def __init__(self, device: pen.SimulatedPen, home: np.ndarray) -> None:
+        self.device, self.home = device, home
+        self.ended = threading.Event()
+        self.thread = threading.Thread(target=self._move, daemon=True)
+
+    def __enter__(self) -> None:
+        self.thread.start()
+
+    def __exit__(self, *_: object) -> None:
+        self.ended.set()
+        self.thread.join()
+
+    def _move(self) -> None:
+        start = time.monotonic()
+        while not self.ended.wait(0.01):
+            pose, buttons = hand_at(self.home, time.monotonic() - start)
+            self.device.aim(pose, buttons=buttons)
+        self.device.aim(hand_at(self.home, 0)[0])
 
 
 class Log:
     """The frames of a run."""
 
+    COLUMNS = ("times", "poses", "applied", "energy", "removed", "step_seconds", "dt", "missed")
+
     def __init__(self) -> None:
-        self.frames: list[Frame] = []
-        self.removed = [0.0]
-        self.frame_times = [0.0]
-        self.start = time.monotonic()
-        self.newest = Frame()
-        self.causes: list[str] = []
+        self.parts: dict[str, list[np.ndarray]] = {name: [] for name in self.COLUMNS}
+        self.state, self.strokes, self.untold = "off", 0, 0
+        self.why: str | None = None  # there is no force, or nothing is cut, now
+        self.trips: dict[str, int] = {}
+        self.removed = 0.0
         self.first: np.ndarray | None = None
         self.charts = {"position": History(SHOWN), "force": History(SHOWN), "energy": History(SHOWN)}
 
-    def add(self, frame: Frame) -> None:
-        self.frames.append(frame)
-        self.newest = frame
-        self.removed.append(self.removed[-1] + frame.removed)
-        now = time.monotonic() - self.start
-        self.frame_times.append(now)
-        for at, pose, force in zip(frame.times, frame.poses, frame.forces, strict=True):
-            if self.first is None:
-                self.first = pose[:3]
-            self.charts["position"].add(at, *(pose[:3] - self.first))
-            self.charts["force"].add(at, *force[:3])
-        self.charts["energy"].add(now, frame.energy)
-        if frame.cause is not None and (not self.causes or self.causes[-1] != frame.cause):
-            self.causes.append(frame.cause)
+    def add(self, frame: SessionFrame) -> None:
+        self.state, self.strokes, self.untold = frame.state, frame.strokes, frame.untold
+        self.why = frame.problem or (frame.cause if frame.state != "ready" else None)
+        if not len(frame):
+            return
+        for name, parts in self.parts.items():
+            parts.append(getattr(frame, name))
+        poses, applied, energy = frame.poses, frame.applied, frame.energy
+        self.removed += float(frame.removed.sum())
+        if self.first is None:
+            self.first = poses[0, :3]
+        # A chart has some 200 columns for its ten seconds: each fifth step is more than it shows.
+        for k in range(0, len(frame), 5):
+            at = float(frame.times[k])
+            self.charts["position"].add(at, *(poses[k, :3] - self.first))
+            self.charts["force"].add(at, *applied[k, :3])
+            self.charts["energy"].add(at, energy[k])
 
     def column(self, name: str) -> np.ndarray:
-        parts = [getattr(frame, name) for frame in self.frames if len(frame.times)]
-        return np.concatenate(parts) if parts else getattr(Frame(), name)
-
-    def energies(self) -> np.ndarray:
-        """After each frame, N·mm."""
-        return np.array([frame.energy for frame in self.frames])
+        empty = np.zeros((0, 6) if name in ("poses", "applied") else 0)
+        return np.concatenate([empty, *self.parts[name]])
 
     def summary(self) -> dict[str, Any]:
-        times, spent = self.column("times"), 1e6 * self.column("step_seconds")
-        forces = np.linalg.norm(self.column("forces")[:, :3], axis=1)
+        times, spent, dt = self.column("times"), 1e6 * self.column("step_seconds"), self.column("dt")
+        forces, energy = np.linalg.norm(self.column("applied")[:, :3], axis=1), self.column("energy")
         p50, p99 = np.percentile(spent, [50, 99]) if len(spent) else (0.0, 0.0)
-        seconds = self.frame_times[-1]
+        seconds = float(times[-1]) if len(times) else 0.0
         return {
             "seconds": round(seconds, 3),
-            "steps": len(times),
-            "steps_per_s": round(len(times) / seconds, 1),
-            "late": self.newest.late,
+            "steps": len(times) + self.untold,
+            "late": int((dt > LATE).sum()),
+            "missed": int(self.column("missed").sum()),
             "step_us": {"p50": round(float(p50), 1), "p99": round(float(p99), 1)},
             "force_n": round(float(forces.max(initial=0.0)), 4),
-            "energy": round(self.newest.energy, 4),
-            "energy_least": round(float(self.energies().min(initial=0.0)), 4),
-            "removed": round(self.removed[-1], 4),
-            "state": self.newest.state,
-            "causes": self.causes,
+            "energy": round(float(energy[-1]) if len(energy) else 0.0, 4),
+            "energy_least": round(float(energy.min()) if len(energy) else 0.0, 4),
+            "removed": self.removed,
+            "strokes": self.strokes,
+            "state": self.state,
+            "why": self.why,
+            "trips": self.trips,
         }
 
     def picture(self, width: int) -> RenderableType:
@@ -169,27 +248,28 @@ class Log:
         grid = Table(show_header=False, box=None, padding=(0, 1))
         grid.add_column(style="cyan", no_wrap=True)
         grid.add_column(overflow="fold")
-        for name, value in table(self.summary()):
+        for name, value in [*table(self.summary()), ("now", self.why or "nothing is wrong")]:
             grid.add_row(Text(name), Text(value))
         charts = [
-            chart("position from the start  mm", "xyz", self.charts["position"], width, 7, least=1),
+            chart("tool from the start  mm", "xyz", self.charts["position"], width, 7, least=1),
             chart("force felt  N", "xyz", self.charts["force"], width, 6, least=0.2, zero=True),
-            chart("energy given by the hand  N·mm", [""], self.charts["energy"], width, 4, least=1, zero=True),
+            chart("energy that may go to the hand  N·mm", [""], self.charts["energy"], width, 4, least=1, zero=True),
         ]
         return Group(grid, *charts, Text("Ctrl-C ends it", style="dim"))
 
 
 def table(data: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
-        ("steps", f"{number(data['steps'])}, {data['steps_per_s']:.0f}/s, {data['late']} late"),
+        ("steps", f"{number(data['steps'])}, {data['late']} later than {1e3 * LATE:g} ms, {data['missed']} held over"),
         ("a step", f"{data['step_us']['p50']:.0f} µs of the processor at p50, {data['step_us']['p99']:.0f} at p99"),
         ("force", f"{data['force_n']:.2f} N at most; {data['state']}"),
-        ("energy", f"{data['energy']:.1f} N·mm, {data['energy_least']:.1f} at the least"),
-        ("removed", number(data["removed"], "mm³")),
-        *(("cause", cause) for cause in data["causes"]),
+        ("energy", f"{data['energy']:.2f} N·mm may go to the hand, {data['energy_least']:.2f} at the least"),
+        ("removed", f"{number(data['removed'], 'mm³')} in {data['strokes']} strokes"),
+        *(("trips", f"{count} × {why}") for why, count in data["trips"].items()),
     ]
-    if data.get("plot"):
-        rows.append(("written", data["plot"]))
+    for key in ("plot", "journal", "out"):
+        if data.get(key):
+            rows.append((key, data[key]))
     return rows
 
 
