@@ -349,15 +349,21 @@ def test_reports_are_toml():
 
 
 def test_the_simulated_hand_carves(tmp_path):
-    words = "--seconds", "6", "--pitch", "1", "--out", "a.rvol", "--journal", "a.rjournal"
-    data = result("pen", "simulate", *words, cwd=tmp_path)
+    # On a machine that is busy the force is taken away for a while, and nothing is cut then.
+    for seconds in (6, 12, 24):
+        folder = tmp_path / str(seconds)
+        folder.mkdir()
+        words = "--seconds", seconds, "--pitch", "1", "--out", "a.rvol", "--journal", "a.rjournal"
+        data = result("pen", "simulate", *words, cwd=folder)
+        if data["removed"] > 100:
+            break
     assert data["strokes"] >= 1 and data["steps"] > 500
     assert data["removed"] > 100
     assert 0 < data["step_us"]["p50"] <= data["step_us"]["p99"]
     assert data["force_n"] > 0.05 and data["energy_least"] > -1
     block = 50 * 40 * 16
-    assert riffler.Volume.load(tmp_path / "a.rvol").volume == pytest.approx(block - data["removed"], rel=1e-12)
-    strokes = riffler.Journal.read(tmp_path / "a.rjournal").strokes
+    assert riffler.Volume.load(folder / "a.rvol").volume == pytest.approx(block - data["removed"], rel=1e-12)
+    strokes = riffler.Journal.read(folder / "a.rjournal").strokes
     assert len(strokes) == data["strokes"] and all(len(stroke.poses) > 10 for stroke in strokes)
 
 

@@ -48,6 +48,7 @@ def fill(panels: np.ndarray, log: Log) -> None:
     above.plot(poses[:, 0], poses[:, 1], color=INK, linewidth=0.8)
     above.set(xlabel="x  mm", ylabel="y  mm")
     above.set_aspect("equal", adjustable="datalim")
+    above.ticklabel_format(useOffset=False)
     above.set_title("tool from above", fontsize=9, loc="left")
     steps(spent, 1e6 * log.column("step_seconds"))
 
