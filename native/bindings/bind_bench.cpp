@@ -8,6 +8,7 @@
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
 #include "stress/mesh_run.hpp"
+#include "stress/sculpting_run.hpp"
 
 namespace riffler {
 
@@ -142,6 +143,27 @@ py::dict mesh_stress(std::uint64_t volumes, std::uint64_t seed, const py::object
                   py::arg("thread_checks") = results.thread_checks);
 }
 
+py::dict sculpting(double seconds, double pitch, const std::string& directions, double stiffness, bool controlled,
+                   std::int64_t jitter_us) {
+  stress::SculptingOptions options;
+  options.seconds = seconds, options.pitch = pitch, options.directions = directions;
+  options.stiffness = stiffness, options.controlled = controlled, options.jitter_us = jitter_us;
+  options.warm = std::min(options.warm, 0.3 * seconds);
+  stress::SculptingRun run;
+  {
+    const py::gil_scoped_release release;
+    run = stress::sculpting_run(options);
+  }
+  py::dict out;
+  out["seconds"] = take<float>(std::move(run.step_seconds));
+  out["resident_mb"] = run.resident;
+  out["removed"] = run.removed, out["gained"] = run.gained, out["given"] = run.given, out["account"] = run.account;
+  out["greatest"] = run.greatest, out["steps"] = run.steps, out["strokes"] = run.strokes, out["missed"] = run.missed;
+  out["frames"] = run.frames, out["tiles"] = run.tiles, out["from_system"] = run.from_system;
+  out["replayed"] = run.replayed, out["triangles"] = run.triangles;
+  return out;
+}
+
 }  // namespace
 
 void bind_bench(py::module_& parent) {
@@ -165,6 +187,11 @@ or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many
       R"(A stroke of the haptic step (native/bench/haptic_run.hpp): a dict of ``seconds`` of processor time of every step,
 ``force`` (n, 3) N on the hand and ``grip`` (n, 3) mm at every ms, mm³ ``removed``, and the shares of steps ``touching``
 and ``held`` for want of time. ``period`` above 1: a step every so many ms and straight lines between.)");
+  m.def("sculpting", &sculpting, py::arg("seconds") = 600.0, py::arg("pitch") = 0.25, py::arg("directions") = "z",
+        py::arg("stiffness") = 1.0, py::arg("controlled") = true, py::arg("jitter_us") = 200,
+        R"(Minutes of sculpting with the simulated pen on a virtual clock (native/stress/sculpting_run.hpp): a dict of
+``seconds`` of processor time of every step after the warm-up, ``resident_mb`` after each tenth, mm³ ``removed``, N·mm that
+the hand ``gained`` at most and that were ``given`` in all, N ``greatest``, and counts.)");
   m.def(
       "mesh_stress", &mesh_stress, py::arg("volumes"), py::arg("seed") = 1, py::arg("progress") = py::none(),
       R"(Meshes random volumes from the degenerate limits and checks each mesh: a dict of ``scenes`` (what was meshed),

@@ -177,6 +177,7 @@ std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume,
   if (!volume) throw py::type_error("volume: None");
   if (!pen) pen = std::make_shared<PointerPen>(PointerPen::Kind::Mouse);
   Options options;
+  options.settings.loop.passivity = pen->passivity();
   if (pen->capability().has_force()) options.settings.loop.sculpt.budget = 4e-4;
   options.read(given);
   // Python's collider is immutable, and kept by the object.

@@ -130,6 +130,7 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   settings.workspace.scale = 2;
   settings.carving.removal_constant = 0.01;
   settings.sculpt.coupling.stiffness = options.stiffness;
+  settings.passivity = model.passivity();
   if (!options.controlled) settings.passivity.reserve = settings.passivity.storage = 1e9;
   Again again(stock, ball, settings.carving);
   SculptLoop loop(settings, stock, ball, nullptr, model.capability(), Pose{{0, 0, 3}, {0, 0, 1}}, &again);

@@ -153,7 +153,8 @@ def test_damaged_3mf_is_a_format_error_or_a_valid_mesh(tmp_path_factory, data):
     except riffler.FormatError as error:
         assert "bad.3mf" in str(error)
     else:
-        assert len(mesh.triangles) in (12, 24) and np.isfinite(mesh.vertices).all()
+        # An element whose name was damaged is one of somebody else's.
+        assert 0 < len(mesh.triangles) <= 24 and np.isfinite(mesh.vertices).all()
         assert mesh.triangles.max() < len(mesh.vertices)
 
 

@@ -87,14 +87,13 @@ def test_a_recording_becomes_nc_code_and_a_session_again(tmp_path):
     volume, _, _ = carve_with_the_simulated_pen(tmp_path)
     journal = riffler.Journal.read(tmp_path / "a.rjournal")
     program = journal.program(feed=600, spindle=10000)
-    text = program.post("rs274", machine="xyzac-trt")
-    back = (
-        riffler.Program.read(text, machine="xyzac-trt", tools={1: BALL}) if hasattr(riffler.Program, "read") else None
-    )
-    if back is not None:
-        again = stock()
-        riffler.verify(back, again)
-        assert abs(again.volume - volume.volume) < 0.02 * (stock().volume - volume.volume)
+    program.write(tmp_path / "a.ngc", post="linuxcnc-xyzac")
+    back = riffler.Program.read(tmp_path / "a.ngc", machine="linuxcnc-xyzac")
+    again = stock()
+    for _, poses in back.cuts():
+        again.carve(BALL, poses)
+    removed = stock().volume - volume.volume
+    assert again.volume == pytest.approx(volume.volume, abs=0.01 * removed)
     # Played as a device, where it was and as fast as it was, it carves nearly the same again.
     again = stock()
     with (
@@ -186,7 +185,6 @@ def test_the_volume_is_the_sessions_while_it_runs():
         volume.carve(BALL, [(0, 0, -1, 0, 0, 1), (5, 0, -1, 0, 0, 1)])
         with pytest.raises(RuntimeError, match="changed by somebody else"):
             session.frame()
-        session.volume.restore(stock().snapshot()) if False else None
         with pytest.raises(RuntimeError, match="changed by somebody else"):
             session.stop()
 
@@ -213,7 +211,7 @@ def test_bad_input_is_named(tmp_path):
     (tmp_path / "there.rjournal").write_bytes(b"")
     with pytest.raises(ValueError, match="is there already"):
         session.journal(tmp_path / "there.rjournal")
-    with pytest.raises((RuntimeError, OSError), match="none"):
+    with pytest.raises(RuntimeError, match="cannot be written: No such file"):
         session.journal(tmp_path / "none" / "a.rjournal")
     session.start()
     with pytest.raises(RuntimeError, match="once"):

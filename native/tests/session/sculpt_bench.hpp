@@ -77,6 +77,12 @@ struct SculptBench {
     run(seconds, [](const SculptTick&) {});
   }
 
+  /// The host does nothing for so long.
+  void alone(double seconds) {
+    clock->wait(seconds);
+    pen->advance(std::llround(1e6 * clock->now()));
+  }
+
   double end = 0;
   std::shared_ptr<SimulatedPen> pen;
   std::shared_ptr<SimulatedClock> clock = std::make_shared<SimulatedClock>();

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from . import contact_plots, gouge_plots, nc_plots, pencil_plots, verify_plots
+from . import contact_plots, gouge_plots, haptic_plots, nc_plots, pencil_plots, verify_plots
 from .plotting import (
     COLOURS,
     INK,
@@ -353,7 +353,7 @@ def mesh(data: Data) -> Figure:
 PLOTS: dict[str, dict[str, Callable[[Data], Figure | None]]] = {
     "b200": {"b200": b200},
     "b5x": {"b5x": b5x, "b5x-tolerance": tolerance, "b5x-single": single},
-    "haptic": {"haptic": haptic},
+    "haptic": {"haptic": haptic, "rendered": haptic_plots.rendered, "session": haptic_plots.session},
     "force": {"force": force},
     "pitch": {"pitch": pitch},
     "mesh": {"mesh": mesh},

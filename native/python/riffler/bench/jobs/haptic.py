@@ -1,5 +1,6 @@
 """Haptic step: a Ø20 ball, 0.5 mm a step, one call a step with force and torque, as a pen makes it; the whole step with
-coupling, cut, contact and fixtures; and its force beside that of very small steps and of interpolation."""
+coupling, cut, contact and fixtures; its force beside that of very small steps and of interpolation; and minutes of a
+session."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ import time
 import numpy as np
 
 from ... import Tool, Volume
-from .. import rendering, report, scenes
+from .. import rendering, report, scenes, sculpting
 from ..measure import Progress, Settings, quantile, steady, watched
 from ..report import Column, Report
 
@@ -57,6 +58,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     )
     rendering.times(out, settings)
     rendering.errors(out, settings)
+    sculpting.sessions(out, settings)
     return out
 
 
