@@ -10,6 +10,7 @@ STROKE = 3.0  # s
 SIZE = np.array([50.0, 40.0, 16.0])  # mm, of the block
 TABLE = 6.0  # mm below the block's top: what the tool stays out of
 TOOL = 8.0  # mm, diameter of the ball
+REMOVAL = 0.004  # N·s/mm³: soft enough for the hand to keep its pace
 ABOVE = 6.0  # mm over the block's top, between strokes
 
 

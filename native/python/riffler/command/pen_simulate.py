@@ -23,12 +23,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import Tool, pen
-from .._core import Session, SessionFrame
+from .. import Material, Session, SessionFrame, Tool, pen
 from .arguments import MESHES, VOLUMES, length, output_file
 from .console import Console, number
 from .live import FRAMES, History, chart, screen, width_of_terminal
-from .pen_carving import TOOL, block_at, hand_at, table_at
+from .pen_carving import REMOVAL, TOOL, block_at, hand_at, table_at
 from .shapes import write_mesh, write_volume
 
 if TYPE_CHECKING:
@@ -68,7 +67,13 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         come_to(device, start)
         # The tool is where the grip is: one frame for the pen, the block and the tool.
         session = Session(
-            block, Tool.ball(TOOL, 40.0), device, obstacles=table_at(home), at=device.state().pose, stiffness=stiffness
+            block,
+            Tool.ball(TOOL, 40.0),
+            device,
+            obstacles=table_at(home),
+            at=device.state().pose,
+            stiffness=stiffness,
+            material=Material(removal_constant=REMOVAL),
         )
         if journal is not None:
             session.journal(journal)
