@@ -29,8 +29,8 @@ struct Contact {
   Vec3 force{0};   ///< N, out of what is touched
   Vec3 torque{0};  ///< N·mm, about the tip
   /// Of a point of the part k times its area along its normal: the derivative of its force where the tool's surface
-  /// runs along the part's. Of a fixture k times the area of the tool's surface in it: of its derivative, which is not
-  /// symmetric where force and normal differ, the positive part of what is.
+  /// runs along the part's. Of a fixture k times the area of the tool's surface in it, along the force and along the
+  /// tool's normal: twice the derivative where both agree, and no less than what of it is symmetric anywhere.
   ContactStiffness stiffness{};
   /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
   double depth = 0;

@@ -118,9 +118,11 @@ class Sum {
     const Vec3 way = towards / std::max(glm::length(towards), boxes_.spacing());
     contact_.push(arm, stiffness_ * sum.volume * way);
     // As the tool goes on by δ, the volume in it grows by area (normal · δ) and pushes along `way`: the resistance is
-    // −way normalᵀ, of which Balance can use what is symmetric and positive. That is along the difference of both.
+    // −way normalᵀ, which is not symmetric. Half the sum of both squares is no less than what of it is symmetric; all
+    // of the sum also holds what turns the tool aside. With less, stiff fixtures shake a tool.
+    contact_.resist(arm, way, stiffness_ * sum.area);
     if (const double normal = glm::length(sum.normal); normal > 0)
-      contact_.resist(arm, sum.normal / normal - way, 0.25 * stiffness_ * sum.area);
+      contact_.resist(arm, sum.normal / normal, stiffness_ * sum.area);
     contact_.points.push_back(frame_.tip + arm), contact_.touches.push_back(Touch::Fixture);
   }
 

@@ -79,14 +79,13 @@ TEST(Fixture, AFlatEndIsPushedByItsAreaTimesItsDepthFromTheFirstTouch) {
   const Assembly flat(cutters::flat(6, 4000));  // whose middle is so far up that all of it pushes that way
   for (const double pitch : {0.5, 0.13}) {
     const Collider collider = beside(kBlock, pitch, 0.3);
-    const double top = 10;
+    // Boxes at the rim, which is a corner, take its one or the other side for a plane: a quarter of their width.
+    const double top = 10, rim = 2 * kPi * 3 * 0.3 * 0.5;
     for (const double depth : {1e-6, 1e-3, 0.1, 0.37, 1.1}) {
       const Contact c = collider.query(flat, {{14.1, 9.7, top - depth}, {0, 0, 1}});
-      EXPECT_NEAR(c.force.z, kStiffness * 9 * kPi * depth, 0.015 * kStiffness * 9 * kPi * depth)
-          << pitch << ' ' << depth;
-      // Of the side, square to what it is pushed along, a quarter is counted.
-      EXPECT_GT(c.stiffness[2][2], 0.985 * kStiffness * 9 * kPi) << pitch << ' ' << depth;
-      EXPECT_LT(c.stiffness[2][2], kStiffness * kPi * (1.015 * 9 + 1.7 * depth)) << pitch << ' ' << depth;
+      EXPECT_NEAR(c.force.z, kStiffness * 9 * kPi * depth, kStiffness * rim * depth) << pitch << ' ' << depth;
+      EXPECT_GT(c.stiffness[2][2], 2 * 0.985 * kStiffness * 9 * kPi) << pitch << ' ' << depth;
+      EXPECT_LT(c.stiffness[2][2], kStiffness * (2 * (9 * kPi + rim) + 1.1 * 6 * kPi * depth)) << pitch << ' ' << depth;
     }
   }
 }
@@ -113,7 +112,7 @@ TEST(Fixture, ForceAndItsDerivativeHaveNoStepsAsASideMovesOverDexels) {
   }
 }
 
-TEST(Fixture, StiffnessIsTheDerivativeWhereForceAndNormalAgreeAndElsewhereHardlyLess) {
+TEST(Fixture, StiffnessIsTwiceTheDerivativeWhereForceAndNormalAgreeAndNowhereLess) {
   const Assembly assembly(cutters::flat(6, 20).with_holder({{20, 15, 40, 15}}));
   const auto slope = [&](const Collider& collider, const Pose& pose, const Vec3& way) {
     const double e = 1e-3;
@@ -125,7 +124,7 @@ TEST(Fixture, StiffnessIsTheDerivativeWhereForceAndNormalAgreeAndElsewhereHardly
   const Collider ledge = beside({{0, 0, 4}, {30, 20, 6}}, 0.5, 0.3);
   const Pose at{{-14.7, 10, -25}, {0, 0, 1}};
   const double exact = slope(ledge, at, {1, 0, 0});
-  EXPECT_NEAR(ledge.query(assembly, at).stiffness[0][0], exact, 0.05 * exact);
+  EXPECT_NEAR(ledge.query(assembly, at).stiffness[0][0], 2 * exact, 0.1 * exact);
 
   const Collider block = beside(kBlock, 0.25, 0.3);
   Random random(8);
@@ -134,12 +133,10 @@ TEST(Fixture, StiffnessIsTheDerivativeWhereForceAndNormalAgreeAndElsewhereHardly
     const Contact c = block.query(assembly, pose);
     if (c.depth < 0.1) continue;
     const Vec3 way = random.direction();
-    double resists = 0, most = 0;
-    for (int i = 0; i < 3; ++i) {
-      most += c.stiffness[i][i];
+    double resists = 0;
+    for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) resists += way[i] * c.stiffness[i][j] * way[j];
-    }
-    EXPECT_GT(resists, slope(block, pose, way) - 0.2 * most) << n;
+    EXPECT_GT(resists, slope(block, pose, way)) << n;
   }
 }
 
