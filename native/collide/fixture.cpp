@@ -87,13 +87,17 @@ class Sum {
   };
 
   /// Height of the middle of what is at a height: of the cutter, of the shank, of the holder. Between them it goes over
-  /// from one to the other, so that the force has no step there.
+  /// from one to the other, so that the force has no step there, and within the narrower one: a box that the face of
+  /// the wider one cuts is pushed by that.
   double target(double z) const {
     const std::vector<Assembly::Stretch>& all = assembly_.stretches();
     const auto middle = [](const Assembly::Stretch& s) { return 0.5 * (s.low + s.high); };
+    const double width = boxes_.spacing();
     double out = middle(all[0]);
-    for (std::size_t i = 1; i < all.size(); ++i)
-      out += std::clamp((z - all[i].low) / boxes_.spacing() + 0.5, 0.0, 1.0) * (middle(all[i]) - middle(all[i - 1]));
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      const double step = all[i].radius - all[i - 1].radius, at = all[i].low - (step > 0) * width + (step < 0) * width;
+      out += std::clamp((z - at) / width + 0.5, 0.0, 1.0) * (middle(all[i]) - middle(all[i - 1]));
+    }
     return out;
   }
 
@@ -105,7 +109,7 @@ class Sum {
     const Vec3 p = frame_.to_tool(s.centre);
     double least = room;  // in radii: the room, and how far it is to where the direction changes
     for (const Assembly::Stretch& st : assembly_.stretches())
-      if (st.low > 0) least = std::min(least, std::abs(p.z - st.low) - s.radius - 0.5 * boxes_.spacing());
+      if (st.low > 0) least = std::min(least, std::abs(p.z - st.low) - s.radius - 1.5 * boxes_.spacing());
     const double far = glm::length(p - Vec3(0, 0, target(p.z)));
     return std::clamp(std::min(least / s.radius, (far / s.radius - 6) / 3), 0.0, 1.0);
   }
