@@ -125,7 +125,7 @@ void bind_contact(py::module_& m) {
                     "mm: the true depth is at most depth + missed_depth_bound.")
       .def_property_readonly(
           "points", [](const Contact& c) { return from_vec3s(c.points); },
-          "(k, 3) mm: the deepest point, then the sample points and dexels that are in the tool.")
+          "(k, 3) mm: the deepest point, then the sample points and pieces of fixtures that are in the tool.")
       .def_property_readonly(
           "parts",
           [](const Contact& c) {

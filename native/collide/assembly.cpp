@@ -69,8 +69,8 @@ Assembly::Assembly(const Tool& tool)
     if (e.centre) reach_ = std::max(reach_, glm::length(*e.centre) + std::abs(e.bulge));
     if (e.from.y == e.to.y) continue;
     if (stretches_.empty() || stretches_.back().part != e.part)
-      stretches_.push_back({stretches_.empty() ? e.from.y : stretches_.back().high, e.to.y, e.part, 0});
-    stretches_.back().high = e.to.y;
+      stretches_.push_back({stretches_.empty() ? e.from.y : stretches_.back().high, e.to.y, e.part, 0, e.from.x, 0});
+    stretches_.back().high = e.to.y, stretches_.back().top = e.to.x;
     stretches_.back().radius = std::max(stretches_.back().radius, widest(e));
   }
 }

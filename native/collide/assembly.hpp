@@ -26,7 +26,7 @@ class Assembly {
   struct Stretch {
     double low, high;
     Part part;
-    double radius;  // where it is widest
+    double radius, bottom, top;  // where it is widest, and at both ends
   };
   const std::vector<Stretch>& stretches() const { return stretches_; }
   Part part_at(double z) const;

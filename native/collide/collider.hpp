@@ -19,11 +19,13 @@ namespace riffler {
 class Collider {
  public:
   struct Settings {
-    double spacing = 0;             ///< of the points on the part, mm; 0: √(its area / 100 000)
-    double coarse = 4;              ///< away from the cutter, points are this many times as far apart
-    double stiffness = 1;           ///< k of (4.7) against the cutter, N per mm of depth and mm² of surface
-    double holder_stiffness = 10;   ///< the same against shank and holder (4.4.3: tracing weak, collision strong)
-    double fixture_stiffness = 10;  ///< k_D of (4.9), N per mm³ of a fixture in the tool
+    double spacing = 0;            ///< of the points on the part, mm; 0: √(its area / 100 000)
+    double coarse = 4;             ///< away from the cutter, points are this many times as far apart
+    double stiffness = 1;          ///< k of (4.7) against the cutter, N per mm of depth and mm² of surface
+    double holder_stiffness = 10;  ///< the same against shank and holder (4.4.3: tracing weak, collision strong)
+    /// k_D of (4.9), N per mm³ of a fixture in the tool. Up to 10 a held tool is quiet (SculptStep); at 1000 some 0.4 N
+    /// may come at once.
+    double fixture_stiffness = 10;
   };
   /// Copies nothing of the volumes but pointers to their tiles. std::invalid_argument for an empty or invalid mesh, for
   /// settings that are negative or not finite, and where a fixture has no mesh (marching/to_mesh.hpp), naming it. An

@@ -88,14 +88,14 @@ class Sum {
 
   /// Height of the middle of what is at a height: of the cutter, of the shank, of the holder. Between them it goes over
   /// from one to the other, so that the force has no step there, and within the narrower one: a box that the face of
-  /// the wider one cuts is pushed by that.
+  /// the wider one cuts is pushed by that. Where they are as wide, half in each.
   double target(double z) const {
     const std::vector<Assembly::Stretch>& all = assembly_.stretches();
     const auto middle = [](const Assembly::Stretch& s) { return 0.5 * (s.low + s.high); };
     const double width = boxes_.spacing();
     double out = middle(all[0]);
     for (std::size_t i = 1; i < all.size(); ++i) {
-      const double step = all[i].radius - all[i - 1].radius, at = all[i].low - (step > 0) * width + (step < 0) * width;
+      const double step = all[i].bottom - all[i - 1].top, at = all[i].low - (step > 0) * width + (step < 0) * width;
       out += std::clamp((z - at) / width + 0.5, 0.0, 1.0) * (middle(all[i]) - middle(all[i - 1]));
     }
     return out;

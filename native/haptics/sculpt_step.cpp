@@ -138,7 +138,7 @@ bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
   asked_ = moved(tool_, way);
   obstacles_->query(assembly_, asked_, part.budget, contact_, 0.1 * settings_.missed);
   touching_ = contact_.depth > 0;
-  // Dexels come into a tool one by one, so between two of them no pose balances. What resisted lately slows the tool
+  // What pushes need not push along the tool's normal, and shakes a stiff contact. What resisted lately slows the tool
   // down, along the same directions, and it stays there instead of going to and fro.
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j)
