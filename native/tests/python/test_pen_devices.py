@@ -176,6 +176,7 @@ def test_a_recording_opens_as_a_device(tmp_path):
     path = tmp_path / "a.rjournal"
     journal.write(path)
     with riffler.pen.open(path) as pen:
+        assert pen.geometry is None
         assert pen.kind == "recording" and pen.limits["x"]["senses"] == "position" and not pen.limits["x"]["pushes"]
         assert pen.state().sequence == 1
         while pen.health()["state"] != "stopped":
@@ -279,3 +280,26 @@ def test_a_pointer_says_what_is_wrong_and_stays_as_it_was():
             mouse.set_frame(**wrong)
     assert mouse.give(0, 0, time=0)
     np.testing.assert_allclose(mouse.state().pose, [1, 2, 3, 0, 0, 1])
+
+
+def test_a_pens_counts_are_those_of_its_geometry():
+    with riffler.pen.open("simulated") as device:
+        geometry = device.geometry
+        assert geometry.name == "riffler"
+        end = time.monotonic() + 20
+        while not device.state().homed and time.monotonic() < end:
+            time.sleep(0.01)
+        for _ in range(20):
+            state = device.state()
+            assert state.counts.dtype == np.int32 and state.counts.shape == (6,)
+            np.testing.assert_allclose(geometry.forward([state.counts])[0], state.pose, atol=1e-9)
+            assert geometry.stretch([state.counts])[0] == pytest.approx(state.stretch, abs=1e-9)
+            time.sleep(0.01)
+        force, torque = state.applied
+        assert force.shape == torque.shape == (3,) and state.powered
+        device.lose(1, 100)  # R3
+        while abs(device.state().stretch) < 1 and time.monotonic() < end:
+            time.sleep(0.01)
+        assert abs(device.state().stretch) > 1
+        with pytest.raises(ValueError, match="channel must be 0 to 5, not 7"):
+            device.lose(7, 1)
