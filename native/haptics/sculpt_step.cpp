@@ -92,6 +92,13 @@ SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCar
   contact_.points.reserve(kPoints), contact_.touches.reserve(kPoints);
 }
 
+void SculptStep::set_coupling(const CouplingSettings& coupling) {
+  SculptSettings changed = settings_;
+  changed.coupling = coupling;
+  changed.validate();
+  settings_ = changed;
+}
+
 void SculptStep::place(const Pose& pose) {
   tool_ = grip_ = pose;
   rate_ = {}, slowing_ = {};

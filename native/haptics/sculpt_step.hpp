@@ -58,6 +58,9 @@ class SculptStep {
   /// Without `cutting` the stock is as air.
   Result step(const Pose& grip, const Twist& twist, double dt, bool cutting = true);
 
+  /// std::invalid_argument naming the field; then nothing is changed.
+  void set_coupling(const CouplingSettings& coupling);
+
   const Pose& tool() const { return tool_; }
   /// What touched the tool at the last query.
   const Contact& contact() const { return contact_; }

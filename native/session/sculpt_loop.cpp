@@ -26,6 +26,19 @@ bool sure(ForceState state) {
   return state == ForceState::Ready || lets_force_through(state);
 }
 
+/// The coupling at the tool that the hand feels as `at_hand`: ways are `scale` times as long there, and forces come
+/// back times the scale.
+CouplingSettings at_tool(CouplingSettings at_hand, double scale) {
+  at_hand.stiffness /= scale * scale, at_hand.damping /= scale * scale;
+  at_hand.max_stretch *= scale;
+  return at_hand;
+}
+
+SculptSettings at_tool(SculptSettings settings, double scale) {
+  settings.coupling = at_tool(settings.coupling, scale);
+  return settings;
+}
+
 }  // namespace
 
 void SculptLoopSettings::validate() const {
@@ -43,7 +56,7 @@ struct SculptLoop::Scene {
   Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const Collider* obstacles)
       : volume(stock),
         carver(volume, tool, s.carving),
-        step(s.sculpt, tool, &carver, obstacles),
+        step(at_tool(s.sculpt, s.workspace.scale), tool, &carver, obstacles),
         workspace(s.workspace) {}
 
   Volume volume;
@@ -227,6 +240,7 @@ void SculptLoop::tell_undo() noexcept {
 void SculptLoop::set_workspace(const WorkspaceSettings& settings) {
   const std::lock_guard lock(mutex_);
   scene_->workspace.set(settings);
+  scene_->step.set_coupling(at_tool(settings_.sculpt.coupling, settings.scale));
   dead_man_mask_.store(settings.dead_man_mask);
 }
 

@@ -60,6 +60,21 @@ class Counted final : public PenStep {
   SculptingRun& run_;
 };
 
+/// What the hand gains in one contact, from motors without current to motors without current: between two nothing is
+/// stored, so no spring gives back in one what it took in another.
+struct Contacts {
+  double gained = 0, before = 0;
+  std::int64_t pushed_us = 0;
+
+  void add(const SimulatedPen& pen) {
+    const PenEnergy energy = pen.arms().energy();
+    const double net = energy.motors - energy.lost;
+    if (pen.pushes()) pushed_us = pen.time_us();
+    if (pen.time_us() - pushed_us > 10'000) before = net;
+    gained = std::max(gained, net - before);
+  }
+};
+
 /// The simulated pen is never gone.
 struct NoConnector final : Connector {
   void begin() noexcept override {}
@@ -137,8 +152,8 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   Counted counted(loop, options, run);
   NoConnector connector;
   DriverLoop driver(model, counted, connector, *clock, std::move(transport));
-  double most = 0;
-  pen->on_turn = [&] { most = std::max(most, pen->arms().energy().motors); };
+  Contacts contacts;
+  pen->on_turn = [&] { contacts.add(*pen); };
 
   Volume shown = stock;
   Mesher mesher(shown);
@@ -166,7 +181,7 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   again.catch_up();
   take_ticks(loop, options, run);
   run.resident.push_back(resident_mb());
-  run.gained = most, run.given = -pen->arms().energy().motors;
+  run.gained = contacts.gained, run.given = -pen->arms().energy().motors;
   run.trips = loop.trips().count();
   run.replayed = check_same_bytes(shown, again.volume).empty();
   mesher.update(shown);

@@ -28,10 +28,11 @@ struct SculptingRun {
   std::vector<float> step_seconds;  ///< of processor time, of each step after the warm-up
   std::vector<double> resident;     ///< MB that the process held after each tenth of the run
   double removed = 0;               ///< mm³
-  double gained = 0;                ///< N·mm: the most that the motors had given more than they took
-  double given = 0;                 ///< N·mm that they took from the hand in all
-  double account = 0;               ///< N·mm: the least that the account held
-  double greatest = 0;              ///< N: of the force that the hand felt
+  /// N·mm: the most that the motors gave in a contact more than they took and the arms' friction lost.
+  double gained = 0;
+  double given = 0;     ///< N·mm that they took from the hand in all
+  double account = 0;   ///< N·mm: the least that the account held
+  double greatest = 0;  ///< N: of the force that the hand felt
   std::uint64_t steps = 0, strokes = 0, trips = 0, missed = 0, frames = 0, tiles = 0;
   std::uint64_t from_system = 0;  ///< blocks, in steps after the warm-up
   long allocations = 0;           ///< calls of operator new in steps after the warm-up

@@ -88,7 +88,11 @@ void TileCut::put(int r, const Span* spans, const SpanNormals* normals, std::uin
   packed_ = false;
   if (n == 0) return;
   TileScratch& at = scratch_;
-  if (at.pool.empty()) at.begin.resize(kTileRays), at.count.resize(kTileRays), at.room.assign(kTileRays, 0);
+  if (at.pool.empty()) {
+    at.begin.resize(kTileRays), at.count.resize(kTileRays), at.room.assign(kTileRays, 0);
+    // More than rough tiles have, so that a pen's step seldom has to grow it.
+    at.pool.reserve(16 * kTileRays), at.pool_normals.reserve(with_normals_ ? 16 * kTileRays : 0);
+  }
   if (n > at.room[r]) {
     // Twice as much for a ray that grows again, so that all its places together are a few times the last.
     at.room[r] = at.room[r] > 0 ? 2 * n : n;

@@ -29,6 +29,7 @@ struct Fault {
   std::function<void(SculptBench&)> begin;
   std::function<void(SculptBench&)> end;
   double within;  // s, after which no motor pushes, as long as it lasts
+  bool comes_back = true;
 };
 
 void falsify(SculptBench& b, const std::function<void(riffler_pen_sensors&)>& change) {
@@ -48,7 +49,8 @@ std::vector<Fault> faults() {
       {"host dead", [](SculptBench& b) { b.alone(0.3); }, [](SculptBench&) {}, 0.0225},
       {"late by 30 ms", [](SculptBench& b) { b.alone(0.03); }, [](SculptBench&) {}, 0.0225},
       {"processor stands", [](SculptBench& b) { b.pen->halt(150'000); }, [](SculptBench&) {}, 0.0105},
-      {"restarted", [](SculptBench& b) { b.pen->restart(); }, [](SculptBench& b) { b.model.home(); }, 0.001},
+      // Nobody takes it to its home posture, so its pose stays in doubt.
+      {"restarted", [](SculptBench& b) { b.pen->restart(); }, [](SculptBench&) {}, 0.001, false},
       {"no reports", [](SculptBench& b) { b.pen->cable().set({.lost = 1}); },
        [](SculptBench& b) { b.pen->cable().set({}); }, 0.0275},
       {"deaf", [](SculptBench& b) { b.pen->cable().set({.lost_out = 1}); },
@@ -96,8 +98,8 @@ TEST(SculptFault, EachTakesTheForceAndLeavesAJournalThatReplaysWhatWasCut) {
     bench.loop.reset();
     double removed = 0;
     bench.run(6, [&](const SculptTick& tick) { removed += tick.removed; });
-    EXPECT_GT(removed, 1) << "it does not work again";
-    EXPECT_GT(pushed, began + 1) << "the force does not come back";
+    EXPECT_EQ(removed > 1, fault.comes_back) << "it does not work again, or should not";
+    EXPECT_EQ(pushed > began + 1, fault.comes_back) << "the force does not come back, or should not";
     bench.loop.finish();
     Volume shown = stock;
     std::vector<SculptLoop::Place> places;

@@ -167,6 +167,36 @@ TEST(SculptLoop, TheClutchLiftsTheToolOffTheHand) {
   EXPECT_NEAR(tool.tip.x, 2.5, 0.25);  // half of the five millimetres before the clutch, behind the hand's wish
 }
 
+/// Against a plate the hand feels the coupling's stiffness, whatever the scale.
+TEST(SculptLoop, TheHandFeelsTheSameStiffnessAtEveryScale) {
+  Mesh plate;
+  plate.vertices = {{-200, -200, -1}, {200, -200, -1}, {200, 200, -1}, {-200, 200, -1}};
+  plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (int k = 0; k < 4; ++k) plate.vertices.push_back(plate.vertices[k] - Vec3(0, 0, 10));
+  for (const Vec3i& t : {Vec3i(4, 6, 5), Vec3i(4, 7, 6), Vec3i(0, 4, 5), Vec3i(0, 5, 1), Vec3i(1, 5, 6), Vec3i(1, 6, 2),
+                         Vec3i(2, 6, 7), Vec3i(2, 7, 3), Vec3i(3, 7, 4), Vec3i(3, 4, 0)})
+    plate.triangles.push_back(t);
+  const Collider obstacles(plate, {}, {.spacing = 0.3, .stiffness = 1e3});
+  for (const double scale : {0.5, 1.0, 4.0}) {
+    SculptLoopSettings settings;
+    settings.workspace.scale = scale;
+    SculptLoop loop(settings, test::sculpt_stock(1), kBall, &obstacles, pen_capability(load_pen("riffler")),
+                    Pose{{0, 0, 0}, {0, 0, 1}});
+    Wrench out;
+    double depth = 0;
+    for (int k = 0; k < 3000; ++k) {
+      PenSample sample;
+      depth = 1 / scale + std::min(2.0, 2e-3 * k);  // of which the first part is air
+      sample.pose = {{0, 0, -depth}, {0, 0, 1}};
+      sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = 1e-3 * k, sample.buttons = 1;
+      sample.homed = sample.powered = true;
+      if (k == 0) sample.pose.tip.z = 0;
+      out = loop.step(sample, 1e-3 * k, k ? 1e-3 : 0).wrench();
+    }
+    EXPECT_NEAR(out.force.z, 2.0, 0.1) << scale;
+  }
+}
+
 TEST(SculptLoop, UndoIsRefusedInAStrokeAndOtherwiseToldToTheSink) {
   RememberingSink sink;
   const Volume stock = test::sculpt_stock();
