@@ -121,9 +121,9 @@ typedef enum riffler_pen_fault {
   RIFFLER_PEN_OVER_TEMPERATURE = 8,   /* left when it is 10 °C cooler */
   RIFFLER_PEN_ENCODER_SIGNAL = 9,     /* the encoder's own error line, or a step of both phases at once */
   RIFFLER_PEN_ENCODER_JUMP = 10,      /* more counts than the arm can move in the time */
-  RIFFLER_PEN_STALL = 11,             /* no count under force, nor while it was eased to none: a dead encoder or a stop */
-  RIFFLER_PEN_LATE_STEP = 12,         /* the firmware's own loop was late while it pushed */
-  RIFFLER_PEN_WATCHDOG = 13           /* no new output report in the watchdog's time while it pushed */
+  RIFFLER_PEN_STALL = 11,     /* no count under force, nor while it was eased to none: a dead encoder or a stop */
+  RIFFLER_PEN_LATE_STEP = 12, /* the firmware's own loop was late while it pushed */
+  RIFFLER_PEN_WATCHDOG = 13   /* no new output report in the watchdog's time while it pushed */
 } riffler_pen_fault;
 enum { RIFFLER_PEN_FAULTS = 14 };
 
@@ -186,8 +186,8 @@ typedef struct riffler_pen_limits {
   uint32_t watchdog_us;                       /* age of a command at which the pen goes to fault, ≤ 1 000 000 */
   uint32_t ramp_us;                           /* from no force to full force, ≤ 60 000 000 */
   uint32_t speed_counts_per_s;                /* of a joint; faster is a jump, 1 … 100 000 000 */
-  uint16_t stall_ma;                          /* from which a joint without a count is suspected to stall, 1 … every continuous */
-  uint16_t stall_ms;                          /* … after how long, > 0; then the force is eased */
+  uint16_t stall_ma; /* from which a joint without a count is suspected to stall, 1 … every continuous */
+  uint16_t stall_ms; /* … after how long, > 0; then the force is eased */
 } riffler_pen_limits;
 
 typedef enum riffler_pen_result {

@@ -11,7 +11,6 @@ import time
 
 import numpy as np
 import pytest
-
 import riffler
 
 BALL = riffler.Tool.ball(6, 30)
