@@ -90,6 +90,10 @@ SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noex
   if (dt > 0) time_ += dt;
   tick.time = time_, tick.dt = dt, tick.grip = sample.pose;
   if (reset_.exchange(false)) safety_.reset();
+  if (dt == 0) {  // a connection: the hand may be anywhere else by now
+    safety_.interrupt();
+    has_grip_ = placed_ = false;
+  }
   const std::uint32_t dead_man_mask = dead_man_mask_.load();
   const ForceState state = safety_.observe({.dt = dt,
                                             .age = now - sample.time,
@@ -98,7 +102,8 @@ SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noex
                                             .redundancy = sample.stretch,
                                             .homed = sample.homed,
                                             .dead_man = dead_man_mask == 0 || (sample.buttons & dead_man_mask) != 0,
-                                            .device_fault = sample.fault});
+                                            .device_fault = sample.fault,
+                                            .device_late = sample.late});
   tick.applied = sample.says_applied ? sample.applied : held_;
   if (sure(state)) {
     if (has_grip_) {
@@ -146,6 +151,7 @@ Wrench SculptLoop::sculpt(const PenSample& sample, double dt, SculptTick& tick) 
 
 /// Where the hand is now is where the tool is: no way between is cut.
 void SculptLoop::place(Scene& scene, const PenSample& sample) noexcept {
+  end_stroke();
   if (absolute_) last_tool_ = sample.pose;
   scene.step.place(last_tool_), scene.workspace.place(last_tool_);
   held_over_.reset();

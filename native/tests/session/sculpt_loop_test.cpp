@@ -216,6 +216,29 @@ TEST(SculptLoop, UndoIsRefusedInAStrokeAndOtherwiseToldToTheSink) {
   EXPECT_TRUE(test::same_spans(shown, test::carved_again(stock, kBall, {sink.strokes[1]})));
 }
 
+TEST(SculptLoop, AConnectionInAStrokeBeginsAnotherWhereTheHandIsThen) {
+  const Volume stock = test::sculpt_stock(0.5);
+  for (const std::optional<Pose> start : {std::optional<Pose>(), std::optional(Pose{{-20, 0, -1}, {0, 0, 1}})}) {
+    RememberingSink sink;
+    SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), start, &sink);
+    for (int k = 0; k < 2000; ++k) {
+      PenSample sample;
+      sample.pose = {{(k < 1000 ? -20 : 10) + 0.005 * k, 0, -1}, {0, 0, 1}};
+      sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = 1e-3 * k, sample.buttons = 1;
+      sample.homed = sample.powered = true;
+      loop.step(sample, 1e-3 * k, k % 1000 ? 1e-3 : 0);
+    }
+    loop.finish();
+    Volume shown = stock;
+    std::vector<SculptLoop::Place> places;
+    loop.show(shown, places, 0);
+    EXPECT_EQ(sink.strokes.size(), 2U);
+    EXPECT_EQ(loop.trips().count(), 0U);
+    EXPECT_TRUE(test::same_spans(shown, test::carved_again(stock, kBall, sink.strokes)));
+    EXPECT_EQ(shown.grids()[0].ray(60, 59)[0].far, 0) << "a way that nobody made was cut";  // at x = 0.25
+  }
+}
+
 TEST(SculptLoop, AsksForNoMemoryOnceItIsWarm) {
   const Volume stock = test::sculpt_stock();
   SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
