@@ -16,6 +16,7 @@ void require_bounds(const char* linear, const char* angular, const Bounds& b) {
 void PassivitySettings::validate() const {
   require_positive("period", period);
   require_between("jitter", jitter, 0, period);
+  require_between("latency", latency, 0, 8 * period);
   require_bounds("acceleration.linear", "acceleration.angular", acceleration);
   require_bounds("resolution.linear", "resolution.angular", resolution);
   require_bounds("max_damping.linear", "max_damping.angular", max_damping);
@@ -37,6 +38,8 @@ void Passivity::reset() {
   last_dt_ = settings_.period;
   absorbed_ = {}, way_ = {}, way_time_ = {};
   kept_ = 1, damped_ = 0;
+  on_the_way_ = {};
+  waiting_ = static_cast<std::size_t>(std::ceil(settings_.latency / settings_.period - 1e-9));
 }
 
 /// What the device itself took from the hand, at the least. Damping: among all motions over a way the steady one loses
@@ -69,34 +72,63 @@ void Passivity::observe(const Wrench& held, const Twist& displacement, double dt
   if (dt > 0) rate_ = 1 / dt * displacement, last_dt_ = dt;
 }
 
-Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
+double Passivity::unsure(int k, double rate, std::size_t ahead) const {
   const double hold = settings_.period, longest = hold + settings_.jitter;
+  // From the mean rate of the last tick to that of the hold are half of both and all between; and either end of either
+  // displacement is known to half a step.
+  const double from_middle_to_middle = (2 * static_cast<double>(ahead) + 1) * longest + last_dt_;
+  return settings_.acceleration[k] * longest * from_middle_to_middle / 2 +
+         settings_.resolution[k] * (1 + hold / last_dt_) + settings_.jitter * std::abs(rate);
+}
+
+/// A wrench that was shrunk after the controller delivers no more than this, as less than nothing counts as nothing.
+double Passivity::on_the_way(const Capability& device) const {
+  const Twist rate{rate_.linear * device.axes, rate_.angular * device.axes};
+  double sum = 0;
+  for (std::size_t n = 0; n < waiting_; ++n) {
+    const Wrench force{on_the_way_[n].force * device.axes, on_the_way_[n].torque * device.axes};
+    double delivered = 0;
+    for (int k = 0; k < kCoordinates; ++k)
+      delivered += force[k] * rate[k] * settings_.period + std::abs(force[k]) * unsure(k, rate[k], n);
+    sum += std::max(0.0, delivered);
+  }
+  return sum;
+}
+
+Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
+  const double hold = settings_.period;
   // In the device's coordinates, where the damping of one is rendered by that one alone.
   const auto local = [&](const Vec3& v) { return v * device.axes; };
   const Wrench force{local(wanted.force), local(wanted.torque)};
   const Twist rate{local(rate_.linear), local(rate_.angular)};
 
-  // Largest energy that `wanted` can deliver during the next hold, and smallest that full damping takes from the hand.
+  // Largest energy that `wanted` can deliver during its hold, and smallest that full damping takes from the hand.
   double delivered = 0, taken = 0;
   Wrench damping;
   for (int k = 0; k < kCoordinates; ++k) {
-    // From the mean rate of the last tick to that of the next is half of both; and either end of either displacement is
-    // known to half a step.
-    const double unsure = settings_.acceleration[k] * longest * (longest + last_dt_) / 2 +
-                          settings_.resolution[k] * (1 + hold / last_dt_) + settings_.jitter * std::abs(rate[k]);
-    delivered += force[k] * rate[k] * hold + std::abs(force[k]) * unsure;
-    const double sure = std::abs(rate[k]) * hold - unsure;
+    const double off = unsure(k, rate[k], waiting_);
+    delivered += force[k] * rate[k] * hold + std::abs(force[k]) * off;
+    const double sure = std::abs(rate[k]) * hold - off;
     if (!device.push[static_cast<std::size_t>(k)] || sure <= 0) continue;
     damping[k] = -settings_.max_damping[k] * rate[k];
     taken += std::abs(damping[k]) * sure;
   }
   // The delivery of a sum is at most the sum of deliveries, so kept · delivered − damped · taken bounds it.
+  const double held = energy_ - on_the_way(device);
   kept_ = 1, damped_ = 0;
-  if (!(delivered > energy_)) return wanted;
-  if (taken > 0) damped_ = std::min(1.0, (delivered - energy_) / taken);
-  if (delivered > 0) kept_ = std::clamp((energy_ + damped_ * taken) / delivered, 0.0, 1.0);
-  const Wrench injected{device.axes * damping.force, device.axes * damping.torque};
-  return kept_ * wanted + damped_ * injected;
+  Wrench out = wanted;
+  if (delivered > held) {
+    if (taken > 0) damped_ = std::min(1.0, (delivered - held) / taken);
+    if (delivered > 0) kept_ = std::clamp((held + damped_ * taken) / delivered, 0.0, 1.0);
+    const Wrench injected{device.axes * damping.force, device.axes * damping.torque};
+    out = kept_ * wanted + damped_ * injected;
+  }
+  if (waiting_ > 0) {
+    std::move(on_the_way_.begin() + 1, on_the_way_.begin() + static_cast<std::ptrdiff_t>(waiting_),
+              on_the_way_.begin());
+    on_the_way_[waiting_ - 1] = finite(out) ? out : Wrench{};
+  }
+  return out;
 }
 
 }  // namespace riffler

@@ -7,7 +7,8 @@
 // account has no error of sampling. And the controller does not wait for a debt. The grip's acceleration is bounded, so
 // its next displacement is known up to an uncertainty; no wrench is let through which could deliver more than the
 // account holds, wherever in there the grip goes. While the bounds hold, the account is never below zero; a tick that
-// breaks them leaves a debt, which is accounted and paid before anything else is delivered.
+// breaks them leaves a debt, which is accounted and paid before anything else is delivered. Behind a cable the same
+// holds of all wrenches that are still on their way (PassivitySettings::latency).
 //
 // One account serves all coordinates. Energy per coordinate depends on the choice of axes and pivot, and a passive
 // object may take it in one and give it back in another for ever (a spring whose principal axes are not the coordinates
@@ -21,8 +22,11 @@
 namespace riffler {
 
 struct PassivitySettings {
-  double period = 1e-3;           ///< s: the hold that is counted on
-  double jitter = 1e-4;           ///< s: by how much it may be shorter or longer
+  double period = 1e-3;  ///< s: the hold that is counted on
+  double jitter = 1e-4;  ///< s: by how much it may be shorter or longer
+  /// s from a wrench that is let through to the hold with it, and back to its account, at most 8 periods. Wrenches on
+  /// their way have to be borne, too; the less is sure of where the hand will be then, the less stiff a wall can be.
+  double latency = 0;
   Bounds acceleration{1e5, 1e3};  ///< mm/s², rad/s²: of the grip, per coordinate
   Bounds resolution{0.03, 2e-3};  ///< mm, rad: step of the measured position
   Bounds max_damping{2e-3, 2};    ///< N·s/mm, N·mm·s/rad: the most that is injected
@@ -62,6 +66,10 @@ class Passivity {
   void reset();
 
  private:
+  /// How far coordinate k may end from where its rate leads, in the hold that begins after `ahead` others, mm or rad.
+  double unsure(int k, double rate, std::size_t ahead) const;
+  /// N·mm that wrenches on their way may still deliver.
+  double on_the_way(const Capability& device) const;
   double dissipated(const Twist& displacement, double dt);
 
   PassivitySettings settings_;
@@ -72,6 +80,9 @@ class Passivity {
   std::array<double, kCoordinates> way_time_{};
   std::array<double, kCoordinates> absorbed_{};
   double kept_ = 1, damped_ = 0;
+  static constexpr std::size_t kMostOnTheWay = 8;
+  std::array<Wrench, kMostOnTheWay> on_the_way_{};  // the first `waiting_`, oldest first
+  std::size_t waiting_ = 0;
 };
 
 }  // namespace riffler

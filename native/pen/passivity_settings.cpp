@@ -73,6 +73,9 @@ double resolution(const ArmBounds& arm, const ArmTraits& joints) {
   return std::hypot(arm.lever[0] * joints.step[0], arm.lever[1] * joints.step[1] + arm.lever[2] * joints.step[2]);
 }
 
+/// s: a frame of USB out, the frame in which the motors have it, and the report of it (pen/simulated_cable.hpp).
+constexpr double kLatency = 2e-3;
+
 }  // namespace
 
 PassivitySettings passivity_settings(const DeviceCapability& device) {
@@ -97,6 +100,7 @@ PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation&
   const double kept = 1 - share.friction, half = 0.5 * pen.grip_length;
   const double damps = kept * least_damping, rubs = kept * least_friction / std::numbers::sqrt3;
   PassivitySettings out;
+  out.latency = kLatency;
   // The pivot is midway between the ends, the axis along their difference.
   out.resolution = {0.5 * sum, sum / pen.grip_length};
   // Ends go at v ± w, w = ω × r with |r| half the grip: |v + w|² + |v − w|² = 2 |v|² + 2 |w|².

@@ -59,8 +59,13 @@ struct SculptBench {
               StrokeSink* sink = nullptr, const Collider* obstacles = nullptr,
               const Pose& start = {{0, 0, 3}, {0, 0, 1}})
       : pen(std::make_shared<SimulatedPen>(SimulatedPenSettings(), std::move(path))),
-        loop(settings, stock, tool, obstacles, model.capability(), start, sink) {
+        loop(of_this_pen(settings), stock, tool, obstacles, model.capability(), start, sink) {
     model.home();
+  }
+
+  SculptLoopSettings of_this_pen(SculptLoopSettings settings) const {
+    settings.passivity = model.passivity();
+    return settings;
   }
 
   /// Ticks for so long since the end of the last run, each given to visit.

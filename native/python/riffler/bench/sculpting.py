@@ -52,7 +52,7 @@ def sessions(out: Report, settings: Settings) -> None:
         out.check(run["replayed"], f"{what}: the moves made again leave other bytes")
         out.check(run["missed"] == 0, f"{what}: {run['missed']} steps were missed")
         out.check(run["from_system"] == 0, f"{what}: steps asked the system for {run['from_system']} blocks")
-        out.check(run["gained"] < 2.2, f"{what}: the hand gained {run['gained']:.2f} N·mm")
+        out.check(run["gained"] < 1.1, f"{what}: the hand gained {run['gained']:.2f} N·mm")
     table.notes.append(
         "A Ø6 ball wanders through 80 × 80 × 30 mm on a virtual clock, with firmware, cable and the driver's loop; a "
         "mesh follows thirty times a second. Memory is the process's, mesh and Python included."
