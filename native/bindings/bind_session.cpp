@@ -48,6 +48,7 @@ struct FrameView {
 /// A session with what it uses, which Python may have let go.
 struct SharedSession {
   std::shared_ptr<SharedVolume> volume;
+  std::shared_ptr<Pen> pen;
   py::object collider;
   Tool tool;
   MoveCarver::Options carving;
@@ -56,8 +57,9 @@ struct SharedSession {
   std::mutex mutex;
   SculptTick last{};
 
-  SharedSession(std::shared_ptr<SharedVolume> v, py::object c, const Tool& t, const MoveCarver::Options& o)
-      : volume(std::move(v)), collider(std::move(c)), tool(t), carving(o) {}
+  SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<Pen> p, py::object c, const Tool& t,
+                const MoveCarver::Options& o)
+      : volume(std::move(v)), pen(std::move(p)), collider(std::move(c)), tool(t), carving(o) {}
   ~SharedSession() {
     const NoGil release;  // the thread of the device may be waiting for it
     session.reset();
@@ -182,7 +184,7 @@ std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume,
   options.read(given);
   // Python's collider is immutable, and kept by the object.
   const Collider* collider = obstacles.is_none() ? nullptr : py::cast<const Collider*>(obstacles);
-  auto out = std::make_unique<SharedSession>(volume, obstacles, tool, options.settings.loop.carving);
+  auto out = std::make_unique<SharedSession>(volume, pen, obstacles, tool, options.settings.loop.carving);
   const Volume state = Reading(*volume).volume.snapshot();
   out->session =
       std::make_unique<Session>(state, tool, std::move(pen),
@@ -400,6 +402,8 @@ frames. How many that were; 0: there is none. RuntimeError in the middle of a st
       .def_property_readonly("running", [](const SharedSession& s) { return s.session->running(); })
       .def_property_readonly(
           "volume", [](const SharedSession& s) { return s.volume; }, "The one that is shown.")
+      .def_property_readonly(
+          "pen", [](const SharedSession& s) { return s.pen; }, "The device.")
       .def_property_readonly(
           "trips",
           [](SharedSession& s) {

@@ -38,7 +38,7 @@ from verify_reference import HeightMap
 PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
 PLOTS = {
-    *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "force", "pitch", "mesh"),
+    *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "rendered", "session", "force", "pitch", "mesh"),
     *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge", "nc", "verify"),
 }
 

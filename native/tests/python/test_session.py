@@ -188,6 +188,18 @@ def test_the_volume_is_the_sessions_while_it_runs():
             session.stop()
 
 
+def test_without_a_device_a_mouse_is_given():
+    volume = stock()
+    with riffler.Session(volume, BALL, material=riffler.Material(removal_constant=1e-4)) as session:
+        assert isinstance(session.pen, riffler.pen.Pointer) and session.pen.kind == "mouse"
+        session.pen.set_frame(depth=1)
+        for k in range(100):
+            session.pen.give(-30 + 0.4 * k, 0, pressure=1.0, buttons=1, time=0.002 * k)
+            time.sleep(0.002)
+        frames(session, 0.1)
+    assert volume.volume < stock().volume - 10
+
+
 def test_bad_input_is_named(tmp_path):
     volume = stock()
     with pytest.raises(TypeError, match='no option "speed"'):
