@@ -50,11 +50,24 @@ Scene cut(double pitch) {
   return s;
 }
 
-Scene wave(double pitch) {
+Scene wave(double pitch, double speed) {
   Scene s{cutters::ball(8, 40), {}, {}, {}, {}};
-  s.add_stock({{0, 0, -20}, {40, 40, 0}}, pitch, 1e-3);
-  s.grip = [](double t) {
+  s.add_stock({{0, 0, -20}, {40, 40, 0}}, pitch, 1e-3 / speed);
+  s.grip = [speed](double seconds) {
+    const double t = speed * seconds;
     return Pose{{8 + 20 * t, 20 + 2 * std::sin(11 * t), 0.5 - 1.5 * std::sin(17 * t) - 1.5 * t}, {0, 0, 1}};
+  };
+  return s;
+}
+
+/// Sideways into a block, which it enters from the side, 1 to 3 mm deep, leaning to and fro.
+Scene slot(double pitch, double speed, const Tool& tool) {
+  Scene s{tool, {}, {}, {}, {}};
+  s.add_stock({{0, 12, -20}, {40, 28, 0}}, pitch, 2e-3 / speed);
+  s.grip = [speed](double seconds) {
+    const double t = speed * seconds, tilt = 0.15 * std::sin(7 * t), turn = 0.1 * std::sin(5 * t);
+    return Pose{{-4 + 30 * t, 20 + 1.5 * std::sin(6 * t), -2 + std::cos(13 * t)},
+                glm::normalize(Vec3(std::sin(tilt), std::sin(turn), 1))};
   };
   return s;
 }
@@ -75,7 +88,9 @@ Scene trace(double pitch, bool fixture) {
 
 Scene scene_of(const HapticOptions& o) {
   if (o.scene == "cut") return cut(o.pitch);
-  if (o.scene == "wave") return wave(o.pitch);
+  if (o.scene == "wave") return wave(o.pitch, o.speed);
+  if (o.scene == "slot") return slot(o.pitch, o.speed, cutters::flat(6, 40));
+  if (o.scene == "groove") return slot(o.pitch, o.speed, cutters::fillet(6, 1, 40));
   if (o.scene == "trace" || o.scene == "fixture") return trace(o.pitch, o.scene == "fixture");
   throw std::invalid_argument("scene: there is no \"" + o.scene + '"');
 }
@@ -84,6 +99,7 @@ Scene scene_of(const HapticOptions& o) {
 
 HapticRun haptic_run(const HapticOptions& o) {
   if (o.period < 1) throw std::invalid_argument("period must be at least 1");
+  if (!(o.speed > 0) || !std::isfinite(o.speed)) throw std::invalid_argument("speed must be positive");
   Scene scene = scene_of(o);
   SculptSettings settings;
   settings.parts = o.parts, settings.queries = o.queries, settings.memory = o.memory, settings.budget = o.budget;

@@ -11,13 +11,17 @@ namespace riffler::bench {
 
 struct HapticOptions {
   /// "cut": a Ø20 ball, sunk to its centre, 0.5 mm a step, whose turns overlap. "wave": a Ø8 ball that a hand moves
-  /// into a block and out of it, at up to 40 mm/s. "trace": COL's ball over its part of 200 000 triangles, pressed 1 mm
+  /// into a block and out of it, at up to 40 mm/s. "slot": a Ø6 flat end,
+  /// sideways into a block, 1 to 3 mm deep, that leans to and fro. "groove": a Ø6 bull nose there. "trace": COL's ball over its part of 200 000 triangles, pressed 1 mm
   /// below it, 0.05 mm a step. "fixture": the same past a block of dexels, which its holder meets.
   std::string scene = "cut";
   double pitch = 0.1;  ///< mm, of the stock or the fixture
   int steps = 600;     ///< ms of the stroke
   int parts = 1, queries = 2;
-  double memory = 0.05;            ///< mm
+  std::optional<double> memory{};  ///< mm; without one that of the step
+  /// Of the hand in "wave", "slot" and "groove", as a share of theirs; the material is as much harder for the force to
+  /// be the same.
+  double speed = 1;
   std::optional<double> budget{};  ///< s
   /// Steps are made every so many ms, and the force between them is the straight line between the last two where this
   /// is above 1: the source's scheme is 10.

@@ -98,11 +98,11 @@ void bind_contact(py::module_& m) {
 and proven to be the most; at most ``gap`` apart, unless that takes more than a million triangles.)");
 }
 
-py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts, double memory,
-                    const std::optional<double>& budget, int period) {
+py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts,
+                    const std::optional<double>& memory, const std::optional<double>& budget, int period, double speed) {
   bench::HapticOptions options;
   options.scene = scene, options.pitch = pitch, options.steps = steps, options.parts = parts, options.memory = memory;
-  options.budget = budget, options.period = period;
+  options.budget = budget, options.period = period, options.speed = speed;
   bench::HapticRun run;
   {
     const py::gil_scoped_release release;
@@ -183,7 +183,7 @@ or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many
   bind_contact(m);
   m.def(
       "haptic_run", &haptic_run, py::arg("scene"), py::arg("pitch") = 0.1, py::arg("steps") = 600, py::arg("parts") = 1,
-      py::arg("memory") = 0.05, py::arg("budget") = py::none(), py::arg("period") = 1,
+      py::arg("memory") = py::none(), py::arg("budget") = py::none(), py::arg("period") = 1, py::arg("speed") = 1.0,
       R"(A stroke of the haptic step (native/bench/haptic_run.hpp): a dict of ``seconds`` of processor time of every step,
 ``force`` (n, 3) N on the hand and ``grip`` (n, 3) mm at every ms, mm³ ``removed``, and the shares of steps ``touching``
 and ``held`` for want of time. ``period`` above 1: a step every so many ms and straight lines between.)");

@@ -121,7 +121,6 @@ struct Options {
         number("turn_stiffness", coupling.turn_stiffness),
         number("damping", coupling.damping),
         number("turn_damping", coupling.turn_damping),
-        number("memory", loop.sculpt.memory),
         number("tolerance", loop.carving.tolerance),
         number("scale", loop.workspace.scale),
         number("max_force", loop.limits.wrench.linear),
@@ -166,6 +165,8 @@ struct Options {
       loop.workspace.clutch_mask = py::cast<std::uint32_t>(value);
     } else if (name == "budget") {
       loop.sculpt.budget = value.is_none() ? std::nullopt : std::optional(as_number(name, value));
+    } else if (name == "memory") {
+      loop.sculpt.memory = value.is_none() ? std::nullopt : std::optional(as_number(name, value));
     } else if (name == "undo") {
       settings.undo = py::cast<std::size_t>(value);
     } else {
@@ -355,7 +356,8 @@ pen: of ``riffler.pen.open``; None: a ``riffler.pen.Pointer`` of kind "mouse", s
 out of. Options: ``material`` (of the stock), ``at`` ((6,) where the tool stands at the start; for tablets, mice and
 recordings their own pose, otherwise 5 mm above the stock), ``scale`` and ``turn`` ((3, 3); from the hand's motion to the
 tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``, ``turn_damping`` (of the coupling between hand
-and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm, over which resistance is learnt), ``max_force`` (N),
+and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which resistance is
+learnt; None: by tool and stock), ``max_force`` (N),
 ``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp`` (s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget``
 (s for a step; None: as long as it takes), ``undo`` (strokes that can be taken back).)")
       .def(py::init(&make), "volume"_a, "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none())

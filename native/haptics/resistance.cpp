@@ -5,6 +5,8 @@
 
 namespace riffler {
 
+double memory_for(const Tool& tool, double pitch) { return tool.diameter() < 0 ? pitch : 0.05; }
+
 void Resistance::PerWay::add(double amount, double length, double memory) {
   if (way == 0) {
     if (!(amount > 0)) return;

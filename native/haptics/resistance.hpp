@@ -2,6 +2,7 @@
 #pragma once
 
 #include "haptics/wrench.hpp"
+#include "tool/tool.hpp"
 
 namespace riffler {
 
@@ -11,6 +12,9 @@ struct Damper {
   double linear = 0;   ///< N·s/mm
   double angular = 0;  ///< N·mm·s/rad
 };
+
+/// mm of way over which this tool's resistance is learnt in a stock of that pitch
+double memory_for(const Tool& tool, double pitch);
 
 /// The removal law's force is the volume removed per second times a constant. Along one direction that is a damper
 /// whose constant is the area that the tool cuts: force = k · area · speed. The area is learnt as volume per way, over

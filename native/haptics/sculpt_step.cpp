@@ -58,7 +58,7 @@ void SculptSettings::validate() const {
   coupling.validate();
   require_positive("coupling.stiffness", coupling.stiffness);
   require_positive("coupling.turn_stiffness", coupling.turn_stiffness);
-  require_positive("memory", memory);
+  if (memory) require_positive("memory", *memory);
   require_not_negative("damping", damping);
   require_between("parts", parts, 1, 64);
   require_between("queries", queries, 1, 64);
@@ -86,7 +86,8 @@ SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCar
       cutting_reach_(std::max(tool.length(), 0.5 * tool.diameter())),
       stock_(stock),
       obstacles_(obstacles),
-      resistance_((settings.validate(), settings.memory), settings.damping) {
+      resistance_((settings.validate(), settings.memory.value_or(stock ? memory_for(tool, stock->pitch()) : 1)),
+                  settings.damping) {
   if (!obstacles) return;
   assembly_.deepest();  // found now, not in a step
   contact_.points.reserve(kPoints), contact_.touches.reserve(kPoints);

@@ -14,7 +14,7 @@ namespace riffler {
 
 struct SculptSettings {
   CouplingSettings coupling;
-  double memory = 0.05;     ///< mm of way over which resistance is learnt; for flat ends two pitches of the stock
+  std::optional<double> memory{};  ///< mm of way over which resistance is learnt; without one memory_for
   double damping = 0;       ///< N·s/mm on a cutter in the cut: of its stock's material
   int parts = 1;            ///< of which a step consists, each with a cut of its own
   int queries = 2;          ///< of obstacles in each part, at most

@@ -32,6 +32,8 @@ class MoveCarver {
   /// Throws std::invalid_argument as `carve` does for poses or a `dt` (s) that make no move; then nothing was cut.
   Taken move(const Pose& from, const Pose& to, double dt);
 
+  double pitch() const { return volume_.reference().pitch(); }
+
   /// A tile by the numbers of its grid and in it.
   struct Place {
     std::uint32_t grid, tile;
