@@ -12,8 +12,9 @@ namespace riffler::bench {
 struct HapticOptions {
   /// "cut": a Ø20 ball, sunk to its centre, 0.5 mm a step, whose turns overlap. "wave": a Ø8 ball that a hand moves
   /// into a block and out of it, at up to 40 mm/s. "slot": a Ø6 flat end,
-  /// sideways into a block, 1 to 3 mm deep, that leans to and fro. "groove": a Ø6 bull nose there. "trace": COL's ball over its part of 200 000 triangles, pressed 1 mm
-  /// below it, 0.05 mm a step. "fixture": the same past a block of dexels, which its holder meets.
+  /// sideways into a block, 1 to 3 mm deep, that leans to and fro. "groove": a Ø6 bull nose there. "trace": COL's ball
+  /// over its part of 200 000 triangles, pressed 1 mm below it, 0.05 mm a step. "fixture": the same past a block of
+  /// dexels, which its holder meets.
   std::string scene = "cut";
   double pitch = 0.1;  ///< mm, of the stock or the fixture
   int steps = 600;     ///< ms of the stroke

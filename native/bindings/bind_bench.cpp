@@ -98,8 +98,8 @@ void bind_contact(py::module_& m) {
 and proven to be the most; at most ``gap`` apart, unless that takes more than a million triangles.)");
 }
 
-py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts,
-                    const std::optional<double>& memory, const std::optional<double>& budget, int period, double speed) {
+py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts, const std::optional<double>& memory,
+                    const std::optional<double>& budget, int period, double speed) {
   bench::HapticOptions options;
   options.scene = scene, options.pitch = pitch, options.steps = steps, options.parts = parts, options.memory = memory;
   options.budget = budget, options.period = period, options.speed = speed;

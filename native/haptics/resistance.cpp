@@ -5,7 +5,9 @@
 
 namespace riffler {
 
-double memory_for(const Tool& tool, double pitch) { return tool.diameter() < 0 ? pitch : 0.05; }
+double memory_for(double pitch) {
+  return std::max(0.02, pitch / 3);
+}
 
 void Resistance::PerWay::add(double amount, double length, double memory) {
   if (way == 0) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "haptics/wrench.hpp"
-#include "tool/tool.hpp"
 
 namespace riffler {
 
@@ -13,8 +12,12 @@ struct Damper {
   double angular = 0;  ///< N·mm·s/rad
 };
 
-/// mm of way over which this tool's resistance is learnt in a stock of that pitch
-double memory_for(const Tool& tool, double pitch);
+/// mm of way over which resistance is best learnt in a stock of that pitch. Of a longer way the force comes late, by
+/// about 1 % of the largest for 0.05 mm; a wall falls by rows of rays, and within a tenth of the pitch, in a slot along
+/// the rays' rows, a steady cut is felt by a third too weakly. A third of the pitch costs little of either for all
+/// cutters (docs/decisions.md). A ball that is sunk less than its radius would not need it: its rays come in from no
+/// length, and no pitch matters to it.
+double memory_for(double pitch);
 
 /// The removal law's force is the volume removed per second times a constant. Along one direction that is a damper
 /// whose constant is the area that the tool cuts: force = k · area · speed. The area is learnt as volume per way, over

@@ -86,7 +86,7 @@ SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCar
       cutting_reach_(std::max(tool.length(), 0.5 * tool.diameter())),
       stock_(stock),
       obstacles_(obstacles),
-      resistance_((settings.validate(), settings.memory.value_or(stock ? memory_for(tool, stock->pitch()) : 1)),
+      resistance_((settings.validate(), settings.memory.value_or(stock ? memory_for(stock->pitch()) : 1)),
                   settings.damping) {
   if (!obstacles) return;
   assembly_.deepest();  // found now, not in a step

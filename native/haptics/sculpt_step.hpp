@@ -15,12 +15,12 @@ namespace riffler {
 struct SculptSettings {
   CouplingSettings coupling;
   std::optional<double> memory{};  ///< mm of way over which resistance is learnt; without one memory_for
-  double damping = 0;       ///< N·s/mm on a cutter in the cut: of its stock's material
-  int parts = 1;            ///< of which a step consists, each with a cut of its own
-  int queries = 2;          ///< of obstacles in each part, at most
-  double settled = 1e-3;    ///< mm: a pose that changes less by what a query found is not asked about again
-  Bounds rest{0.02, 2e-3};  ///< mm, rad that it moves from rest in one, while the grip stands
-  Bounds most{2, 0.2};      ///< mm, rad that the tool moves in a step
+  double damping = 0;              ///< N·s/mm on a cutter in the cut: of its stock's material
+  int parts = 1;                   ///< of which a step consists, each with a cut of its own
+  int queries = 2;                 ///< of obstacles in each part, at most
+  double settled = 1e-3;           ///< mm: a pose that changes less by what a query found is not asked about again
+  Bounds rest{0.02, 2e-3};         ///< mm, rad that it moves from rest in one, while the grip stands
+  Bounds most{2, 0.2};             ///< mm, rad that the tool moves in a step
   double missed = 0.05;  ///< mm of depth that a query may miss, a tenth of it always; else the tool stays where it is
   std::optional<double> budget{};  ///< s for a step; without one a step is the same on any machine
 

@@ -11,7 +11,7 @@ from .plotting import COLOURS, INK, MARKS, Data, column, logarithmic, pick, rows
 
 def rendered(data: Data) -> Figure | None:
     """Left: 99 % of the whole step against pitch. Right: error of the force against the time that a step takes."""
-    times, errors = rows(data, "rendered"), rows(data, "force_error")
+    times, errors = rows(data, "rendered"), pick(rows(data, "force_error"), scene="wave")
     if not times or not errors:
         return None
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.6))
