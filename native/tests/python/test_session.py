@@ -204,6 +204,10 @@ def test_bad_input_is_named(tmp_path):
     volume = stock()
     with pytest.raises(TypeError, match='no option "speed"'):
         riffler.Session(volume, BALL, speed=3)
+    for memory in (None, 0.2):
+        riffler.Session(volume, BALL, memory=memory)
+    with pytest.raises(ValueError, match="memory must be positive"):
+        riffler.Session(volume, BALL, memory=0)
     with pytest.raises(ValueError, match="scale must be positive"):
         riffler.Session(volume, BALL, scale=0)
     with pytest.raises(TypeError, match="stiffness must be a number"):
