@@ -1,8 +1,10 @@
 """What the add-on keeps on scenes, meshes and the window manager. Lengths in mm, angles in rad."""
 
 import math
+import zlib
 
 import bpy
+import riffler
 from bpy.props import (
     BoolProperty,
     EnumProperty,
@@ -47,6 +49,16 @@ POSTS = (
         "Tip in part coordinates with A and C, for controllers with tool centre point control (G43.4)",
     ),
 )
+RECORDING = "recording"
+# The numbers are what a .blend keeps: those of a kind stay when another kind is added.
+DEVICES = tuple(
+    (kind, what.partition(",")[0], what, "NONE", zlib.crc32(kind.encode()) >> 1)
+    for kind, what in {**riffler.pen.kinds(), RECORDING: "Recording, played at its own pace"}.items()
+)
+STARTS = (
+    ("ABOVE", "Above the stock", "The tool stands upright above the middle of the stock when the session starts"),
+    ("CURSOR", "3D cursor", "The tool's tip stands upright at the 3D cursor when the session starts"),
+)
 KINDS = tuple((kind, *presets.LABELS[kind]) for kind in presets.SIZES)
 
 
@@ -84,6 +96,30 @@ class NcSettings:
     spindle: length("Spindle", 12000.0, "rev/min", 0.0, 1e6)
 
 
+class PenSettings:
+    device: EnumProperty(name="Device", items=DEVICES, default="simulated", description="What the hand holds")
+    recording: StringProperty(
+        name="Recording", subtype="FILE_PATH", description="A recording (.rjournal) to be played as a device"
+    )
+    start: EnumProperty(name="Start", items=STARTS, default="ABOVE")
+    gap: length("Gap", 1.0, "From the stock's top to the tool's tip at the start, in mm", 0.0, 1e4)
+    scale: length("Scale", 1.0, "Way of the tool for a way of the hand", 1e-3, 100.0)
+    stiffness: length("Stiffness", 1.0, "Of the pull between hand and tool, in N/mm", 1e-3, 100.0)
+    removal_constant: FloatProperty(
+        name="Resistance",
+        default=0.005,
+        min=0.0,
+        max=100.0,
+        precision=4,
+        step=0.1,
+        description="Of the material: N for every mm³ that is removed in a second",
+    )
+    record: BoolProperty(name="Record", default=False, description="Write a journal of every stroke into a folder")
+    folder: StringProperty(
+        name="Folder", subtype="DIR_PATH", default="//", description="For the journal and the stock that it begins with"
+    )
+
+
 class RifflerStock(StockSettings, bpy.types.PropertyGroup):
     pass
 
@@ -95,6 +131,10 @@ class RifflerCut(CutSettings, bpy.types.PropertyGroup):
 
 
 class RifflerNc(NcSettings, bpy.types.PropertyGroup):
+    pass
+
+
+class RifflerPen(PenSettings, bpy.types.PropertyGroup):
     pass
 
 
@@ -156,6 +196,7 @@ class RifflerScene(bpy.types.PropertyGroup):
     tool: PointerProperty(type=RifflerTool)
     cut: PointerProperty(type=RifflerCut)
     nc: PointerProperty(type=RifflerNc)
+    pen: PointerProperty(type=RifflerPen)
 
 
 class RifflerMesh(bpy.types.PropertyGroup):
@@ -176,14 +217,17 @@ class RifflerMesh(bpy.types.PropertyGroup):
 
 
 class RifflerProgress(bpy.types.PropertyGroup):
-    """On the window manager: the cut that runs now; never saved."""
+    """On the window manager: the cut or the pen's session that runs now; never saved."""
 
     running: BoolProperty()
     percent: FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100, precision=0)
     text: StringProperty()
+    sculpting: BoolProperty()
+    force: StringProperty()
+    why: StringProperty()
 
 
-CLASSES = (RifflerStock, RifflerTool, RifflerCut, RifflerNc, RifflerScene, RifflerMesh, RifflerProgress)
+CLASSES = (RifflerStock, RifflerTool, RifflerCut, RifflerNc, RifflerPen, RifflerScene, RifflerMesh, RifflerProgress)
 _OWNERS = ((bpy.types.Scene, RifflerScene), (bpy.types.Mesh, RifflerMesh), (bpy.types.WindowManager, RifflerProgress))
 
 

@@ -27,16 +27,18 @@ def _register_fallback(error):
 def _register_all():
     from . import properties
     from .bl import handlers
-    from .operators import cut, export, scene, stock
-    from .ui import panels
+    from .operators import cut, export, pen, scene, stock
+    from .ui import panels, pen_panel
 
     _classes(properties.CLASSES)
     properties.attach()
     _undo.append(properties.detach)
-    for module in (stock, cut, export, scene, panels):
+    for module in (stock, cut, pen, export, scene, panels, pen_panel):
         _classes(module.CLASSES)
     handlers.attach()
     _undo.append(handlers.detach)
+    pen.attach()
+    _undo.append(pen.detach)
 
 
 def _classes(classes):

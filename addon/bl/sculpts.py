@@ -16,10 +16,10 @@ def active(context):
     return ob if is_sculpt(ob) else None
 
 
-def new_object(context, name, volume, matrix):
+def new_object(context, name, volume, matrix, cuts=()):
     """A new sculpt in the active collection at `matrix` (world), active and the only one selected."""
     mesh = bpy.data.meshes.new(name)
-    commit(mesh, volume, [], units.mm_per_unit(context.scene))
+    commit(mesh, volume, list(cuts), units.mm_per_unit(context.scene))
     ob = bpy.data.objects.new(name, mesh)
     context.collection.objects.link(ob)
     ob.matrix_world = matrix

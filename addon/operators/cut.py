@@ -5,7 +5,6 @@ Esc takes everything back. Without a window (and when settings are changed in th
 way a finished cut is one undo step and a cancelled or failed one leaves nothing behind.
 """
 
-import json
 import time
 
 import bpy
@@ -21,25 +20,12 @@ from ..core.job import CutJob, RefreshClock, slice_budget
 from . import paths, shared
 
 TELL = 0.1  # s between two reports of progress
-NAVIGATION = {
-    "MIDDLEMOUSE",
-    "WHEELUPMOUSE",
-    "WHEELDOWNMOUSE",
-    "MOUSEMOVE",
-    "INBETWEEN_MOUSEMOVE",
-    "TRACKPADPAN",
-    "TRACKPADZOOM",
-}
 
 
-class CutShell:
+class CutShell(shared.TakesTool):
     """Mixin; a subclass makes the cuts."""
 
     bl_options = {"REGISTER", "UNDO"}
-
-    tool: bpy.props.StringProperty(
-        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the scene's tool"
-    )
 
     @classmethod
     def poll(cls, context):
@@ -47,14 +33,6 @@ class CutShell:
 
     def make_cuts(self, context, ob):
         raise NotImplementedError
-
-    def tool_dict(self, context):
-        if not self.tool:
-            return context.scene.riffler.tool.dictionary()
-        tool = json.loads(self.tool)
-        if not isinstance(tool, dict):
-            raise ValueError("tool must be a JSON object")
-        return tool
 
     # ------------------------------------------------------------------ in one go
     def execute(self, context):
@@ -98,7 +76,7 @@ class CutShell:
             self.report({"INFO"}, "Cut cancelled: the sculpt is as it was")
             return {"CANCELLED"}
         if event.type != "TIMER":
-            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+            return {"PASS_THROUGH"} if event.type in shared.NAVIGATION else {"RUNNING_MODAL"}
         ob = bpy.data.objects.get(self._object)
         if not sculpts.is_sculpt(ob) or store.identity(ob.data) != self._identity:
             self._end(context)
@@ -134,7 +112,7 @@ class CutShell:
         wm.progress_end()
         wm.riffler.running = False
         context.workspace.status_text_set(None)
-        _redraw(context)
+        shared.redraw_sidebars(context)
 
     def _tell(self, context):
         if time.perf_counter() - self._told < TELL:
@@ -145,7 +123,7 @@ class CutShell:
         state.text = f"Move {units.format_count(self._job.done)} of {units.format_count(self._job.total)}; Esc cancels"
         context.window_manager.progress_update(state.percent)
         context.workspace.status_text_set(f"Riffler: cutting, {state.percent:.0f} %    Esc: cancel")
-        _redraw(context)
+        shared.redraw_sidebars(context)
 
     def _refresh(self, ob):
         if self._clock.due():
@@ -172,16 +150,6 @@ class CutShell:
         level = {"INFO"} if job.removed > 0 else {"WARNING"}
         self.report(level, f"Removed {removed} in {units.format_count(job.total)} moves, {seconds:.2f} s")
         return {"FINISHED"}
-
-
-def _redraw(context):
-    """The sidebars only: the view itself is costly, and is drawn again when the mesh changes."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()
 
 
 class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator):

@@ -36,9 +36,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
     def poll(cls, context):
         if context.mode != "OBJECT":
             return shared.deny(cls, "Leave Edit Mode or Sculpt Mode first")
-        if context.window_manager.riffler.running:
-            return shared.deny(cls, "A cut is running: Esc cancels it")
-        return True
+        return not shared.busy(cls, context)
 
     def invoke(self, context, event):
         done = self.execute(context)

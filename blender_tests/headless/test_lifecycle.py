@@ -13,6 +13,9 @@ OPERATORS = {
     "fit_pitch",
     "millimetres",
     "new_stock",
+    "pen_home",
+    "pen_reset",
+    "pen_sculpt",
     "rebuild",
     "tool_preset",
 }
@@ -45,7 +48,7 @@ def test_the_native_core_is_the_one_that_was_installed():
 def test_everything_is_registered():
     assert set(dir(bpy.ops.riffler)) >= OPERATORS, dir(bpy.ops.riffler)
     panels = [c for c in bpy.types.Panel.__subclasses__() if getattr(c, "bl_category", "") == "Riffler"]
-    assert len(panels) == 5, panels
+    assert len(panels) == 6, panels
 
 
 def test_three_cycles_leave_nothing():

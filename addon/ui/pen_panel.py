@@ -1,0 +1,60 @@
+"""The pen's panel: which device, how it feels, what it is doing."""
+
+import bpy
+
+from .. import properties
+from ..core import diagnosis
+from ..operators import pen
+from .panels import Sidebar, lines
+
+
+class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_pen"
+    bl_label = "Pen (mm, N)"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_decorate = False
+        settings = context.scene.riffler.pen
+        state = context.window_manager.riffler
+        if state.sculpting:
+            self._session(layout, context, state)
+        else:
+            op = layout.operator(pen.RIFFLER_OT_pen_sculpt.bl_idname, icon="STYLUS_PRESSURE")
+            for key in properties.PenSettings.__annotations__:
+                setattr(op, key, getattr(settings, key))
+        self._settings(layout, settings, not state.sculpting)
+
+    def _session(self, layout, context, state):
+        layout.operator(pen.RIFFLER_OT_pen_sculpt.bl_idname, text="End Session", icon="CANCEL", depress=True)
+        lines(layout, state.force, state.text)
+        if state.why:
+            # The sidebar's labels do not wrap: fit them to its width.
+            width = max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6)
+            lines(layout, *diagnosis.wrap(state.why, width), icon="INFO")
+        row = layout.row(align=True)
+        row.operator(pen.RIFFLER_OT_pen_home.bl_idname)
+        row.operator(pen.RIFFLER_OT_pen_reset.bl_idname)
+
+    def _settings(self, layout, settings, enabled):
+        column = layout.column()
+        column.enabled = enabled
+        column.use_property_split = True
+        column.prop(settings, "device")
+        if settings.device == properties.RECORDING:
+            column.prop(settings, "recording")
+        else:
+            column.prop(settings, "start")
+            if settings.start == "ABOVE":
+                column.prop(settings, "gap")
+            column.prop(settings, "scale")
+        group = column.column(align=True)
+        group.prop(settings, "stiffness")
+        group.prop(settings, "removal_constant")
+        column.prop(settings, "record")
+        if settings.record:
+            column.prop(settings, "folder")
+
+
+CLASSES = (RIFFLER_PT_pen,)

@@ -1,0 +1,80 @@
+"""The simulated pen carves in view: bricks and tool follow, Ctrl-Z takes a stroke back, Esc ends it as one undo step."""
+
+from pathlib import Path
+
+import bpy
+import harness
+import numpy as np
+
+import support
+
+cut = harness.load(Path(__file__).with_name("window_cut.py"))
+
+
+def sculpting():
+    return bpy.context.window_manager.riffler.sculpting
+
+
+def live():
+    return support.part("operators.pen")._live
+
+
+def begin(screen, **more):
+    with screen.override():
+        settings = {"device": "simulated", "gap": 0.0, "removal_constant": 0.001, **more}
+        return bpy.ops.riffler.pen_sculpt("INVOKE_DEFAULT", True, **settings)
+
+
+def steps(screen):
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    # the pen's panel opened, the others closed, so that one picture has it
+    panel = bpy.types.RIFFLER_PT_pen
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+    yield from cut.open_tab(screen)
+    with screen.override():
+        bpy.ops.riffler.millimetres()
+        settings = bpy.context.scene.riffler
+        settings.tool.kind, settings.tool.diameter = "ball", 8.0
+        bpy.ops.riffler.new_stock(
+            "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, 20), pitch=0.25, directions="xyz"
+        )
+        bpy.ops.ed.undo_push(message="Stock")
+    before = cut.state()
+    screen.to_view()
+    yield 2.0
+
+    assert begin(screen) == {"RUNNING_MODAL"} and sculpting()
+    yield lambda: live() is None or live().run.removed > 150
+    assert sculpting(), "the session was over before it could be looked at"
+    screen.to_view()
+    yield 0.5
+    screen.shoot("08-pen")
+    assert bpy.data.objects["Stock"].hide_get()
+
+    # a click beside the sidebar does nothing; between two strokes Ctrl-Z takes the last one back
+    screen.click(screen.region().x + 200, screen.region().y + 200)
+    yield lambda: live().run.strokes > 0 and not live().run.in_stroke
+    removed = before[0] - live().run.volume.volume
+    screen.key("Z", ctrl=True)
+    yield lambda: before[0] - live().run.volume.volume < removed
+    yield lambda: before[0] - live().run.volume.volume > 20
+    screen.shoot("09-pen")
+
+    screen.key("ESC")
+    yield lambda: not sculpting()
+    yield 2.0
+    after = cut.state()
+    assert after[0] < before[0] and not bpy.data.objects["Stock"].hide_get()
+    assert "Riffler Tool" not in bpy.data.objects and len(bpy.data.collections) == 1
+    yield from cut.undo_and_redo(screen, before, after)
+
+    # called again, it ends
+    assert begin(screen, gap=100.0) == {"RUNNING_MODAL"}
+    yield 1.0
+    begin(screen)
+    yield lambda: not sculpting()
+    assert cut.same(cut.state(), after) and np.isfinite(after[1]).all()
+    yield 1.0
+    screen.shoot("10-pen-ended")
