@@ -39,6 +39,17 @@ class Preview:
             sweep()
             raise
         ob.hide_set(True)  # deselects it, too
+        self._outlined = []  # views that drew a line around every object: around every brick, that is
+        for screen, k, space in views():
+            if space.shading.show_object_outline:
+                self._outlined.append((screen, k))
+                space.shading.show_object_outline = False
+
+    def remove(self):
+        for screen, k, space in views():
+            if (screen, k) in self._outlined:
+                space.shading.show_object_outline = True
+        sweep()
 
     def update(self, bricks, matrix):
         """Shows these bricks anew, and all of them at `matrix`, the sculpt's."""
@@ -71,11 +82,18 @@ class Preview:
         ob = bpy.data.objects.new(name, mesh)
         ob.matrix_world = self._matrix
         bpy.data.collections[self._collection].objects.link(ob)
-        for window in bpy.context.window_manager.windows:
-            for area in window.screen.areas:
-                if area.type == "VIEW_3D" and area.spaces.active.local_view:
-                    ob.local_view_set(area.spaces.active, True)
+        for _, _, space in views():
+            if space.local_view:
+                ob.local_view_set(space, True)
         return ob.name
+
+
+def views():
+    """Every 3D view: name of its screen, number of its area, space."""
+    for screen in bpy.data.screens:
+        for k, area in enumerate(screen.areas):
+            if area.type == "VIEW_3D":
+                yield screen.name, k, area.spaces.active
 
 
 def sweep():

@@ -111,7 +111,7 @@ class Live:
         if _live is self:
             _live = None
         problem = self.run.stop()
-        preview.sweep()
+        self._preview.remove()
         state = context.window_manager.riffler
         state.sculpting, state.force, state.why = False, "", ""
         if context.workspace is not None:
