@@ -52,8 +52,8 @@ POSTS = (
 RECORDING = "recording"
 # The numbers are what a .blend keeps: those of a kind stay when another kind is added.
 DEVICES = tuple(
-    (kind, what.partition(",")[0], what, "NONE", zlib.crc32(kind.encode()) >> 1)
-    for kind, what in {**riffler.pen.kinds(), RECORDING: "Recording, played at its own pace"}.items()
+    (kind, kind.replace("-", " ").capitalize(), what, "NONE", zlib.crc32(kind.encode()) >> 1)
+    for kind, what in {**riffler.pen.kinds(), RECORDING: "What a hand did before, at its pace"}.items()
 )
 STARTS = (
     ("ABOVE", "Above the stock", "The tool stands upright above the middle of the stock when the session starts"),

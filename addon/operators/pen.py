@@ -40,7 +40,7 @@ class Live:
         self._told = 0.0
         self.asked = self.done = False  # to end; it has
         self.pending = False  # the sculpt has changed, and no undo step has it yet
-        self.level, self.message = {"INFO"}, ""
+        self.level, self.message, self.timer = {"INFO"}, "", None
         content = store.content(ob.data)
         self._before = content.cuts
         volume = content.volume.copy()
@@ -121,6 +121,12 @@ class Live:
             self.pending = keep and self._commit(context, problem)
         finally:
             self._forget_journal()
+
+    def drop_timer(self, context):
+        """The operator lives by it until it has said what was done."""
+        if self.timer is not None:
+            context.window_manager.event_timer_remove(self.timer)
+            self.timer = None
 
     def _commit(self, context, problem):
         run, seconds = self.run, time.perf_counter() - self._begin
@@ -247,7 +253,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
         if not self._start(context):
             return {"CANCELLED"}
         self._session = _live
-        self._timer = context.window_manager.event_timer_add(FRAME, window=context.window)
+        _live.timer = context.window_manager.event_timer_add(FRAME, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -268,13 +274,13 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
         except (ValueError, RuntimeError, MemoryError) as error:
             self.report({"WARNING"}, f"The session was ended: {error}")
         changed = self._finish(context, live)
-        context.window_manager.event_timer_remove(self._timer)
+        live.drop_timer(context)
         return {"FINISHED"} if changed else {"CANCELLED"}
 
     def cancel(self, context):
         """Blender calls it when the window closes."""
         self._session.finish(context)
-        context.window_manager.event_timer_remove(self._timer)
+        self._session.drop_timer(context)
 
     def _start(self, context):
         global _live
@@ -388,8 +394,10 @@ def attach():
 
 
 def detach():
-    if _live is not None:
-        _live.finish(bpy.context)
+    live = _live
+    if live is not None:
+        live.finish(bpy.context)
+        live.drop_timer(bpy.context)
     for when, function in HANDLERS.items():
         if function in getattr(bpy.app.handlers, when):
             getattr(bpy.app.handlers, when).remove(function)

@@ -7,6 +7,13 @@ from ..core import diagnosis
 from ..operators import pen
 from .panels import Sidebar, lines
 
+WHAT = {kind: what for kind, _, what, *_ in properties.DEVICES}
+
+
+def wrapped(context, text):
+    """The sidebar's labels do not wrap: fitted to its width."""
+    return diagnosis.wrap(text, max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6))
+
 
 class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_pen"
@@ -24,24 +31,23 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
             op = layout.operator(pen.RIFFLER_OT_pen_sculpt.bl_idname, icon="STYLUS_PRESSURE")
             for key in properties.PenSettings.__annotations__:
                 setattr(op, key, getattr(settings, key))
-        self._settings(layout, settings, not state.sculpting)
+        self._settings(layout, context, settings, not state.sculpting)
 
     def _session(self, layout, context, state):
         layout.operator(pen.RIFFLER_OT_pen_sculpt.bl_idname, text="End Session", icon="CANCEL", depress=True)
         lines(layout, state.force, state.text)
         if state.why:
-            # The sidebar's labels do not wrap: fit them to its width.
-            width = max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6)
-            lines(layout, *diagnosis.wrap(state.why, width), icon="INFO")
+            lines(layout, *wrapped(context, state.why), icon="INFO")
         row = layout.row(align=True)
         row.operator(pen.RIFFLER_OT_pen_home.bl_idname)
         row.operator(pen.RIFFLER_OT_pen_reset.bl_idname)
 
-    def _settings(self, layout, settings, enabled):
+    def _settings(self, layout, context, settings, enabled):
         column = layout.column()
         column.enabled = enabled
         column.use_property_split = True
         column.prop(settings, "device")
+        lines(column, *wrapped(context, WHAT[settings.device]))
         if settings.device == properties.RECORDING:
             column.prop(settings, "recording")
         else:

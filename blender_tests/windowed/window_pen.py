@@ -21,8 +21,11 @@ def live():
 
 def begin(screen, **more):
     with screen.override():
-        settings = {"device": "simulated", "gap": 0.0, "removal_constant": 0.001, **more}
-        return bpy.ops.riffler.pen_sculpt("INVOKE_DEFAULT", True, **settings)
+        settings = bpy.context.scene.riffler.pen
+        for key, value in more.items():
+            setattr(settings, key, value)
+        given = {k: getattr(settings, k) for k in support.part("properties").PenSettings.__annotations__}
+        return bpy.ops.riffler.pen_sculpt("INVOKE_DEFAULT", True, **given)
 
 
 def only_open(*names):
@@ -54,7 +57,7 @@ def steps(screen):
     yield lambda: live() is None or live().run.removed > 400
     assert sculpting(), "the session was over before it could be looked at"
     screen.to_view()
-    yield lambda: live() is None or (live().run.in_stroke and live().run.state == "active")
+    yield lambda: live() is None or (live().run.in_stroke and live().run.force > 0.05)
     screen.shoot("08-pen")
     assert bpy.data.objects["Stock"].hide_get()
 
