@@ -160,7 +160,7 @@ class Live:
     def _sculpt(self):
         """The sculpt where it is what it was at the start, or None."""
         ob = bpy.data.objects.get(self._object)
-        if sculpts.is_sculpt(ob) and ob.users_scene and store.identity(ob.data) == self._identity:
+        if sculpts.is_sculpt(ob) and ob.users and store.identity(ob.data) == self._identity:
             return ob
         return None
 

@@ -149,10 +149,15 @@ def test_the_bricks_that_are_shown_are_the_mesh_of_the_volume():
     assert ob.hide_get() and bpy.context.object == ob and bpy.data.objects["Riffler Tool"]
     assert session.look(cutting), "no cut within 30 s"
     live = session.live
-    shown = sum(len(bpy.data.objects[n].data.polygons) for n in live._preview._bricks.values())
+    shown = sum(len(ob.data.polygons) for ob in live._preview.bricks.values())
     assert shown == len(live.run.volume.to_mesh().triangles)
     tip = np.array(bpy.data.objects["Riffler Tool"].matrix_world.translation)
     assert np.allclose(tip, live.run.tool[:3], atol=1e-4)
+    # somebody who removes what is shown spoils nothing
+    for shown in (bpy.data.objects["Riffler Tool"], *list(live._preview.bricks.values())[::2]):
+        bpy.data.objects.remove(shown)
+    removed = live.run.removed
+    assert session.look(lambda live: live.run.removed > removed + 1)
     live.finish(bpy.context)
     assert live.pending and "Removed" in live.message
     matches_its_volume(ob)
