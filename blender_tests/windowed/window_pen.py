@@ -19,12 +19,6 @@ def live():
     return support.part("operators.pen")._live
 
 
-def pushing():
-    """The hand is in a stroke, and the panel shows its force."""
-    run, shown = live().run, bpy.context.window_manager.riffler.force
-    return run.in_stroke and run.force > 0.05 and "active" in shown and " 0.00 N" not in shown
-
-
 def begin(screen, **more):
     with screen.override():
         settings = bpy.context.scene.riffler.pen
@@ -63,7 +57,7 @@ def steps(screen):
     yield lambda: live() is None or live().run.removed > 400
     assert sculpting(), "the session was over before it could be looked at"
     screen.to_view()
-    yield lambda: live() is None or pushing()
+    yield lambda: live() is None or live().run.in_stroke
     screen.shoot("08-pen")
     assert bpy.data.objects["Stock"].hide_get()
 
