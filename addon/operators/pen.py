@@ -60,7 +60,8 @@ class Live:
         except BaseException:
             if self._device is not None:
                 self._device.stop()
-            preview.sweep()
+            if self._preview is not None:
+                self._preview.remove()
             self._forget_journal()
             raise
         context.window_manager.riffler.sculpting = True
