@@ -29,10 +29,12 @@ def rendered(data: Data) -> Figure | None:
     left.set(xlabel="pitch  mm", ylabel="processor time of a step  µs")
     logarithmic(left.xaxis, sub=True)
     logarithmic(left.yaxis)
+    left.set_xticks(sorted({row["pitch"] for row in times if row["pitch"]}))
+    left.set_ylim(1)  # room for the legend
     left.legend(fontsize=8, loc="lower left", title="99 % (dotted: median)", title_fontsize=8)
     groups = {
         "1000 Hz, ": "1000 Hz, parts of a step",
-        "16 parts": "16 parts, with a budget",
+        "budget": "16 parts, with a budget",
         "Hz, interp": "interpolated",
     }
     for k, (part, label) in enumerate(groups.items()):
