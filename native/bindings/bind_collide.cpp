@@ -7,6 +7,7 @@
 #include "bindings/shared_volume.hpp"
 #include "collide/collider.hpp"
 #include "geom/parallel.hpp"
+#include "haptics/material.hpp"
 
 namespace riffler {
 
@@ -41,14 +42,27 @@ std::shared_ptr<const Assembly> prepared(const Tool& tool) {
   return kept.emplace_back(std::make_shared<const Assembly>(tool));
 }
 
+/// A number or a Material.
+double to_stiffness(const py::handle& object) {
+  if (py::isinstance<Material>(object)) return py::cast<const Material&>(object).stiffness;
+  try {
+    return py::cast<double>(object);
+  } catch (const py::cast_error&) {
+    throw py::type_error("fixture_stiffness must be a number or a Material, or a list of one for each fixture");
+  }
+}
+
 std::unique_ptr<Collider> make(const Mesh& part, const std::vector<SharedVolume*>& fixtures,
                                const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                               double fixture_stiffness) {
+                               const py::object& fixture_stiffness) {
   Collider::Settings settings;
   if (spacing && !(*spacing > 0)) throw py::value_error("spacing must be positive");
   if (spacing) settings.spacing = *spacing;
   settings.stiffness = stiffness, settings.holder_stiffness = holder_stiffness;
-  settings.fixture_stiffness = fixture_stiffness;
+  if (py::isinstance<py::list>(fixture_stiffness) || py::isinstance<py::tuple>(fixture_stiffness))
+    for (const py::handle one : fixture_stiffness) settings.stiffness_of_each.push_back(to_stiffness(one));
+  else
+    settings.fixture_stiffness = to_stiffness(fixture_stiffness);
   std::vector<Volume> volumes;
   for (SharedVolume* v : fixtures) {
     if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
@@ -156,7 +170,7 @@ void bind_collide(py::module_& m) {
 ``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
 that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
 are N per mm of depth and mm² of surface against the cutter and against shank and holder, and N per mm³ of a
-fixture in the tool. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
+fixture in the tool: one number or Material, or a list of one for each fixture. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
 several threads and release the GIL.)")
       .def(py::init(&make), py::arg("part"), py::kw_only(), py::arg("fixtures") = py::list(),
            py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,

@@ -20,13 +20,18 @@ namespace {
 constexpr double kBoxes = 1.5;  // sides of a fixture's pieces in spacings of points on the part
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
-void check(const Collider::Settings& s) {
+void check(const Collider::Settings& s, std::size_t fixtures) {
   const auto check_one = [](double x, const char* name) {
     if (!std::isfinite(x) || x < 0)
       throw std::invalid_argument(std::string(name) + " must not be negative or not finite");
   };
   check_one(s.spacing, "spacing"), check_one(s.coarse, "coarse"), check_one(s.stiffness, "stiffness");
   check_one(s.holder_stiffness, "holder_stiffness"), check_one(s.fixture_stiffness, "fixture_stiffness");
+  if (!s.stiffness_of_each.empty() && s.stiffness_of_each.size() != fixtures)
+    throw std::invalid_argument("fixture_stiffness must be one number, or one for each fixture: there are " +
+                                std::to_string(s.stiffness_of_each.size()) + " for " + std::to_string(fixtures));
+  for (std::size_t i = 0; i < s.stiffness_of_each.size(); ++i)
+    check_one(s.stiffness_of_each[i], ("fixture_stiffness, number " + std::to_string(i) + ",").c_str());
 }
 
 Mesh mesh_of(const Volume& volume, std::size_t index) {
@@ -44,6 +49,7 @@ struct Collider::Data {
   Surface part;
   SamplePoints points;
   std::vector<Fixture> fixtures;
+  std::vector<double> stiffness;         // of each of them
   std::vector<const Surface*> surfaces;  // the part's first
   Settings settings;
   mutable std::once_flag asked;  // for a side of the part
@@ -56,14 +62,17 @@ struct Collider::Data {
 };
 
 Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings) {
-  check(settings);
+  check(settings, fixtures.size());
   validate(part);
   if (part.empty()) throw std::invalid_argument("part: a mesh without triangles");
   data_ = std::make_unique<Data>(part, settings);
   data_->fixtures.reserve(fixtures.size());
   for (std::size_t i = 0; i < fixtures.size(); ++i)
-    if (const Mesh m = mesh_of(fixtures[i], i); !m.empty())
+    if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) {
       data_->fixtures.emplace_back(fixtures[i], m, kBoxes * data_->points.spacing());
+      data_->stiffness.push_back(settings.stiffness_of_each.empty() ? settings.fixture_stiffness
+                                                                    : settings.stiffness_of_each[i]);
+    }
   data_->surfaces.push_back(&data_->part);
   for (const Fixture& f : data_->fixtures) data_->surfaces.push_back(&f.surface());
 }
@@ -154,8 +163,9 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
   const Settings& s = data_->settings;
   Deadline deadline = until(1);
   add_force(assembly, frame, data_->points, {s.stiffness, s.holder_stiffness}, s.coarse, deadline, out, counts);
-  for (const Fixture& f : data_->fixtures)
-    if (f.near(assembly, frame, 0)) f.add_force(assembly, frame, s.fixture_stiffness, deadline, out, counts);
+  for (std::size_t i = 0; i < data_->fixtures.size(); ++i)
+    if (const Fixture& f = data_->fixtures[i]; f.near(assembly, frame, 0))
+      f.add_force(assembly, frame, data_->stiffness[i], deadline, out, counts);
 }
 
 Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const {

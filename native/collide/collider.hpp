@@ -26,10 +26,11 @@ class Collider {
     /// k_D of (4.9), N per mm³ of a fixture in the tool. Up to 10 a held tool is quiet (SculptStep); at 1000 some 0.4 N
     /// may come at once.
     double fixture_stiffness = 10;
+    std::vector<double> stiffness_of_each{};  ///< fixture, in the place of that; or empty: all are alike
   };
   /// Copies nothing of the volumes but pointers to their tiles. std::invalid_argument for an empty or invalid mesh, for
-  /// settings that are negative or not finite, and where a fixture has no mesh (marching/to_mesh.hpp), naming it. An
-  /// empty fixture is nothing, and ignored.
+  /// settings that are negative or not finite or as many as no fixtures are, and where a fixture has no mesh
+  /// (marching/to_mesh.hpp), naming it. An empty fixture is nothing, and ignored.
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings);
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures = {}) : Collider(part, std::move(fixtures), {}) {}
   ~Collider();

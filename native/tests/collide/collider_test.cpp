@@ -303,6 +303,21 @@ TEST(Collider, FixturesCountWithTheirInside) {
   EXPECT_TRUE(none.points.empty());
 }
 
+TEST(Collider, EachFixtureMayHaveAStiffnessOfItsOwn) {
+  const Mesh part = box({-500, 0, 0}, {-490, 1, 1});
+  const auto two = [] {
+    return std::vector<Volume>{block({0, 0, 0}, {20, 20, 10}, 0.5, "z"), block({100, 0, 0}, {120, 20, 10}, 0.5, "z")};
+  };
+  const Collider alike(part, two(), {.fixture_stiffness = 2});
+  const Collider apart(part, two(), {.fixture_stiffness = 1, .stiffness_of_each = {2, 6}});
+  const Assembly flat(cutters::flat(6, 30));
+  const Pose first{{10, 10, 8}, {0, 0, 1}}, second{{110, 10, 8}, {0, 0, 1}};
+  EXPECT_EQ(apart.query(flat, first).force, alike.query(flat, first).force);
+  EXPECT_NEAR(apart.query(flat, second).force.z, 3 * alike.query(flat, second).force.z, 1e-9);
+  EXPECT_THROW(Collider(part, two(), {.stiffness_of_each = {1}}), std::invalid_argument);
+  EXPECT_THROW(Collider(part, two(), {.stiffness_of_each = {1, -1}}), std::invalid_argument);
+}
+
 TEST(Collider, FixturesPushByTheirVolumeInTheTool) {
   const Collider collider(box({-500, 0, 0}, {-490, 1, 1}), {block({0, 0, 0}, {20, 20, 10}, 0.5, "z")},
                           {.fixture_stiffness = 2});

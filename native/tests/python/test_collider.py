@@ -102,6 +102,21 @@ def test_bad_input_is_a_value_error_that_names_it(part, tool, call, message):
         call(riffler.Collider(part), tool)
 
 
+def test_each_fixture_may_have_a_material(part, tool):
+    vise = riffler.Volume.block((100, 0, 0), (120, 20, 10), 0.5)
+    clamp = riffler.Volume.block((200, 0, 0), (220, 20, 10), 0.5)
+    hard, soft = riffler.Material(stiffness=6), riffler.Material(stiffness=2)
+    collider = riffler.Collider(part, fixtures=[vise, clamp], fixture_stiffness=[hard, 2.0])
+    forces = [np.linalg.norm(collider.query(tool, (x, 10, 8, 0, 0, 1)).force) for x in (110, 210)]
+    assert forces[0] == pytest.approx(3 * forces[1], rel=1e-9)
+    alike = riffler.Collider(part, fixtures=[vise, clamp], fixture_stiffness=soft)
+    assert np.linalg.norm(alike.query(tool, (110, 10, 8, 0, 0, 1)).force) == pytest.approx(forces[1], rel=1e-9)
+    with pytest.raises(ValueError, match="one for each fixture: there are 1 for 2"):
+        riffler.Collider(part, fixtures=[vise, clamp], fixture_stiffness=[1])
+    with pytest.raises(TypeError, match="a number or a Material"):
+        riffler.Collider(part, fixtures=[vise, clamp], fixture_stiffness="hard")
+
+
 def test_threads_get_the_same_answers(part, tool):
     collider = riffler.Collider(part)
     poses = [pose(x, 0.3 * x, -0.2) for x in np.linspace(-15, 15, 50)]
