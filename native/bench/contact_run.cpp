@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <iomanip>
 #include <span>
 #include <sstream>
@@ -10,6 +9,7 @@
 
 #include "bench/process.hpp"
 #include "collide/collider.hpp"
+#include "geom/thread_time.hpp"
 #include "reference/surface_distance.hpp"
 #include "reference/surface_entry.hpp"
 #include "tool/cutters.hpp"
@@ -19,13 +19,6 @@ namespace riffler::bench {
 namespace {
 
 constexpr int kBlock = 100;  // poses for which one question is asked before the next question's turn
-
-/// Processor time of this thread, s.
-double now() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Writes an object's members in their order.
 class Json {
@@ -93,8 +86,8 @@ std::vector<Timed> timed(const std::vector<Ask>& asks, const std::vector<Pose>& 
       for (std::size_t a = 0; a < asks.size(); ++a) {
         const std::size_t to = std::min({poses.size(), from + kBlock, static_cast<std::size_t>(asks[a].most)});
         for (std::size_t k = from; k < to; ++k) {
-          const double start = now(), answer = asks[a].call(poses[k]);
-          all[a][k].push_back(now() - start);
+          const double start = thread_seconds(), answer = asks[a].call(poses[k]);
+          all[a][k].push_back(thread_seconds() - start);
           if (r == 0) out[a].answers.push_back(answer);
         }
       }
@@ -115,9 +108,9 @@ std::vector<reference::Corners> corners_of(const Mesh& mesh) {
 std::string contact_times(const ContactOptions& options, const std::vector<Rival>& rivals) {
   const Scene scene(options);
   const Mesh tool_mesh = turned(scene.tool, 36);
-  const double start = now();
+  const double start = thread_seconds();
   const Collider collider(scene.part);
-  const double build_s = now() - start;
+  const double build_s = thread_seconds() - start;
   const Assembly assembly(scene.tool);
   std::vector<Ask> asks = ours(collider, assembly, build_s);
   for (const Rival& rival : rivals)
@@ -156,9 +149,9 @@ std::string contact_budgets(const ContactOptions& options, const std::vector<dou
   for (const double budget : budgets) {
     std::vector<double> seconds, missed, bounds, checked;
     for (std::size_t k = 0; k < scene.poses.size(); ++k) {
-      const double start = now();
+      const double start = thread_seconds();
       const Contact contact = collider.query(assembly, scene.poses[k], budget);
-      seconds.push_back(now() - start);
+      seconds.push_back(thread_seconds() - start);
       missed.push_back(exact[k] - contact.depth);
       bounds.push_back(contact.missed_depth_bound), checked.push_back(contact.checked);
     }

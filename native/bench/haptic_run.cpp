@@ -1,12 +1,12 @@
 #include "bench/haptic_run.hpp"
 
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 
 #include "bench/contact_scene.hpp"
+#include "geom/thread_time.hpp"
 #include "haptics/held_over.hpp"
 #include "haptics/sculpt_step.hpp"
 #include "tool/cutters.hpp"
@@ -18,12 +18,6 @@ namespace {
 constexpr double kTick = 1e-3;
 constexpr int kSquares = 316;
 const Vec3 kLeaning = glm::normalize(Vec3(0.1, 0.05, 1));
-
-double now() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 struct Scene {
   Tool tool;
@@ -115,9 +109,9 @@ HapticRun haptic_run(const HapticOptions& o) {
       const double dt = o.period * kTick;
       const Pose before = scene.grip(k * kTick - dt);
       const Stretch way = stretch(grip, before);
-      const double start = now();
+      const double start = thread_seconds();
       const SculptStep::Result r = step.step(grip, {1 / dt * way.translation, 1 / dt * way.rotation}, dt);
-      out.seconds.push_back(now() - start);
+      out.seconds.push_back(thread_seconds() - start);
       line.computed(r.on_grip);
       out.removed += r.removed, out.held += r.held, out.touching += step.contact().depth > 0;
       if (o.period == 1) out.force.push_back(r.on_grip.force);

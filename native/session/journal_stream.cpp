@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pen/driver.hpp"
+
 namespace riffler {
 
 namespace {
@@ -27,10 +29,6 @@ void check(const JournalStream::Options& options) {
       throw std::invalid_argument(std::string(name) + " must be positive, in s");
   };
   positive(options.drain, "drain"), positive(options.sync, "sync"), positive(options.retry, "retry");
-}
-
-double clock_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -239,7 +237,7 @@ void JournalStream::keep() {
   std::unique_lock lock(sleeping_);
   while (!stopping_) {
     lock.unlock();
-    const double now = clock_now();
+    const double now = steady_seconds();
     write(now);
     const bool due = sync_due(now);
     lock.lock();
@@ -273,7 +271,7 @@ bool JournalStream::stop() {
     retry_at_ = kNever;
   };
   at_once();
-  const bool written = write(clock_now());
+  const bool written = write(steady_seconds());
   at_once();
   return sync() && written;
 }

@@ -2,24 +2,17 @@
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <new>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "geom/thread_time.hpp"
 #include "haptics/coupling.hpp"
 
 namespace riffler {
 
 namespace {
-
-/// s of processor time that this thread has used.
-double thread_seconds() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// In these the device knows where it is, and its data are of now.
 bool sure(ForceState state) {

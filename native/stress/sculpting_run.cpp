@@ -8,6 +8,7 @@
 #include "marching/mesher.hpp"
 #include "pen/riffler_model.hpp"
 #include "pen/simulated_transport.hpp"
+#include "session/journal_rules.hpp"
 #include "stress/checks.hpp"
 #include "tool/cutters.hpp"
 
@@ -97,7 +98,7 @@ class Again final : public StrokeSink {
   /// Not in the thread's step.
   void catch_up() {
     for (const auto& [from, to] : moves_)
-      if (!(from.tip == to.tip && from.axis == to.axis)) carver_.move(from, to, 1e-3);
+      if (!stands(from, to)) carver_.move(from, to, 1e-3);
     moves_.clear();
   }
 

@@ -7,10 +7,13 @@
 #include "collide/tools.hpp"
 #include "marching/to_mesh.hpp"
 #include "stress/random.hpp"
+#include "support/box_mesh.hpp"
 #include "sweep/kernels.hpp"
 
 namespace riffler {
 namespace {
+
+constexpr auto box = test::box_mesh;
 
 using stress::Random;
 
@@ -27,17 +30,6 @@ Mesh wavy(int n, double size, const Vec3& offset = Vec3(0)) {
       const int a = i * (n + 1) + j, b = a + n + 1;
       m.triangles.push_back({a, b, b + 1}), m.triangles.push_back({a, b + 1, a + 1});
     }
-  return m;
-}
-
-Mesh box(const Vec3& lower, const Vec3& upper) {
-  Mesh m;
-  for (int k = 0; k < 8; ++k)
-    m.vertices.push_back({k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z});
-  for (const Vec3i& t :
-       {Vec3i(0, 2, 1), Vec3i(1, 2, 3), Vec3i(4, 5, 6), Vec3i(5, 7, 6), Vec3i(0, 1, 4), Vec3i(1, 5, 4), Vec3i(2, 6, 3),
-        Vec3i(3, 6, 7), Vec3i(0, 4, 2), Vec3i(2, 4, 6), Vec3i(1, 3, 5), Vec3i(3, 7, 5)})
-    m.triangles.push_back(t);
   return m;
 }
 

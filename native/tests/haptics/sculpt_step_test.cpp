@@ -8,11 +8,14 @@
 #include "haptics/passivity.hpp"
 #include "stress/random.hpp"
 #include "support/allocations.hpp"
+#include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
+
+constexpr auto box = test::box_mesh;
 
 constexpr double kPi = std::numbers::pi, kTick = 1e-3;
 const Vec3 kUp(0, 0, 1);
@@ -25,17 +28,6 @@ SculptSettings springs_only() {
 
 Volume block(double pitch, const char* directions = "z") {
   return Volume::block({{{0, 0, -20}, {40, 40, 0}}, pitch, directions});
-}
-
-Mesh box(const Vec3& lower, const Vec3& upper) {
-  Mesh m;
-  for (int k = 0; k < 8; ++k)
-    m.vertices.push_back({k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z});
-  for (const Vec3i& t :
-       {Vec3i(0, 2, 1), Vec3i(1, 2, 3), Vec3i(4, 5, 6), Vec3i(5, 7, 6), Vec3i(0, 1, 4), Vec3i(1, 5, 4), Vec3i(2, 6, 3),
-        Vec3i(3, 6, 7), Vec3i(0, 4, 2), Vec3i(2, 4, 6), Vec3i(1, 3, 5), Vec3i(3, 7, 5)})
-    m.triangles.push_back(t);
-  return m;
 }
 
 /// Steps along a path of the grip, and says what the hand felt.

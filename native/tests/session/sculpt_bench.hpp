@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pen/simulated_bench.hpp"
+#include "session/journal_rules.hpp"
 #include "session/sculpt_loop.hpp"
 
 namespace riffler::test {
@@ -48,7 +49,7 @@ inline Volume carved_again(const Volume& stock, const Tool& tool, const std::vec
   for (const auto& stroke : strokes)
     for (std::size_t k = 1; k < stroke.poses.size(); ++k) {
       const Pose &from = stroke.poses[k - 1], &to = stroke.poses[k];
-      if (!(from.tip == to.tip && from.axis == to.axis)) carver.move(from, to, 1e-3);
+      if (!stands(from, to)) carver.move(from, to, 1e-3);
     }
   return volume;
 }

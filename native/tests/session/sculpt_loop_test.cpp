@@ -11,6 +11,7 @@
 #include "pen/pens.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/allocations.hpp"
+#include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
@@ -169,13 +170,7 @@ TEST(SculptLoop, TheClutchLiftsTheToolOffTheHand) {
 
 /// Against a plate the hand feels the coupling's stiffness, whatever the scale.
 TEST(SculptLoop, TheHandFeelsTheSameStiffnessAtEveryScale) {
-  Mesh plate;
-  plate.vertices = {{-200, -200, -1}, {200, -200, -1}, {200, 200, -1}, {-200, 200, -1}};
-  plate.triangles = {{0, 1, 2}, {0, 2, 3}};
-  for (int k = 0; k < 4; ++k) plate.vertices.push_back(plate.vertices[k] - Vec3(0, 0, 10));
-  for (const Vec3i& t : {Vec3i(4, 6, 5), Vec3i(4, 7, 6), Vec3i(0, 4, 5), Vec3i(0, 5, 1), Vec3i(1, 5, 6), Vec3i(1, 6, 2),
-                         Vec3i(2, 6, 7), Vec3i(2, 7, 3), Vec3i(3, 7, 4), Vec3i(3, 4, 0)})
-    plate.triangles.push_back(t);
+  const Mesh plate = test::box_mesh({-200, -200, -11}, {200, 200, -1});
   const Collider obstacles(plate, {}, {.spacing = 0.3, .stiffness = 1e3});
   for (const double scale : {0.5, 1.0, 4.0}) {
     SculptLoopSettings settings;

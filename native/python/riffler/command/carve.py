@@ -15,7 +15,7 @@ from .. import Program, Tool, Volume
 from . import tools
 from .arguments import MESHES, ORIGINS, VOLUMES, add_directions, add_pitch, box, input_file, is_box, length, output_file
 from .console import Console, number, times
-from .shapes import from_mesh, rays, write_mesh, write_volume
+from .shapes import from_mesh, rays, write_left
 
 HELP = "carve stock with an NC program"
 __doc__ += "\n" + tools.FORMS
@@ -49,13 +49,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     removed = carve(volume, poses, called, by_number, tolerance, console)
     after = volume.volume
 
-    triangles = None
-    if out.suffix.lower() in VOLUMES:
-        write_volume(volume, out, console)
-    else:
-        with console.step("mesh") as progress:
-            mesh = volume.to_mesh(progress=progress)
-        triangles = write_mesh(mesh, out, console)
+    triangles = write_left(volume, out, console)
 
     data = {
         "out": str(out),

@@ -11,7 +11,7 @@ from pathlib import Path
 from .. import Journal
 from .arguments import MESHES, VOLUMES, input_file, output_file
 from .console import Console, number, times
-from .shapes import rays, write_mesh, write_volume
+from .shapes import rays, write_left
 
 HELP = "carve what a session carved"
 
@@ -29,13 +29,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         journal = Journal.read(path)
     with console.step("replay") as progress:
         volume = journal.replay(Path(arguments.folder or path.parent), progress)
-    triangles = None
-    if out.suffix.lower() in VOLUMES:
-        write_volume(volume, out, console)
-    else:
-        with console.step("mesh") as progress:
-            mesh = volume.to_mesh(progress=progress)
-        triangles = write_mesh(mesh, out, console)
+    triangles = write_left(volume, out, console)
     strokes = journal.strokes
     data = {
         "out": str(out),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from .. import Mesh, Volume
+from .arguments import VOLUMES
 from .console import Console
 
 
@@ -35,3 +36,13 @@ def write_volume(volume: Volume, path: Path, console: Console) -> None:
 
 def rays(volume: Volume) -> int:
     return int(volume.rays)
+
+
+def write_left(volume: Volume, path: Path, console: Console) -> int | None:
+    """What is left, as a volume or as its mesh, by the file's suffix; the number of triangles of a mesh."""
+    if path.suffix.lower() in VOLUMES:
+        write_volume(volume, path, console)
+        return None
+    with console.step("mesh") as progress:
+        mesh = volume.to_mesh(progress=progress)
+    return write_mesh(mesh, path, console)
