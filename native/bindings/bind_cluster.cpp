@@ -87,10 +87,10 @@ void bind_cluster(py::module_& m) {
                        const std::optional<double>& rest_tolerance, double rapid_feed,
                        const std::optional<std::string>& machine, const py::object& machine_options,
                        const py::object& progress) {
-             return std::make_unique<SharedPlan>(make_verification(
+             const VerifyArguments arguments = to_verify_arguments(
                  stock, part_mesh, fixtures, tools,
-                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options),
-                 to_progress(progress)));
+                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options));
+             return std::make_unique<SharedPlan>(make_verification_here(arguments, to_progress(progress)));
            }),
            py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,

@@ -5,6 +5,7 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
+#include "bindings/task.hpp"
 #include "collide/collider.hpp"
 #include "geom/parallel.hpp"
 #include "haptics/material.hpp"
@@ -52,8 +53,9 @@ double to_stiffness(const py::handle& object) {
   }
 }
 
-std::unique_ptr<Collider> make(const Mesh& part, const std::vector<SharedVolume*>& fixtures,
-                               const std::optional<double>& spacing, double stiffness, double holder_stiffness,
+using ColliderPtr = std::shared_ptr<Collider>;
+
+Collider::Settings settings_of(const std::optional<double>& spacing, double stiffness, double holder_stiffness,
                                const py::object& fixture_stiffness) {
   Collider::Settings settings;
   if (spacing && !(*spacing > 0)) throw py::value_error("spacing must be positive");
@@ -63,13 +65,32 @@ std::unique_ptr<Collider> make(const Mesh& part, const std::vector<SharedVolume*
     for (const py::handle one : fixture_stiffness) settings.stiffness_of_each.push_back(to_stiffness(one));
   else
     settings.fixture_stiffness = to_stiffness(fixture_stiffness);
+  return settings;
+}
+
+auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
+          const std::optional<double>& spacing, double stiffness, double holder_stiffness,
+          const py::object& fixture_stiffness, const py::object& progress) {
   std::vector<Volume> volumes;
   for (SharedVolume* v : fixtures) {
     if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
     volumes.push_back(Reading(*v).volume.snapshot());
   }
-  const NoGil release;
-  return std::make_unique<Collider>(part, std::move(volumes), settings);
+  const auto work =
+      [part, volumes = std::move(volumes),
+       settings = settings_of(spacing, stiffness, holder_stiffness, fixture_stiffness)](const Progress& listener) {
+        report(listener, 0);
+        auto collider = std::make_shared<Collider>(*part, volumes, settings);
+        report(listener, 1);
+        return collider;
+      };
+  return long_call(progress, work, AsItIs());
+}
+
+ColliderPtr make(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
+                 const std::optional<double>& spacing, double stiffness, double holder_stiffness,
+                 const py::object& fixture_stiffness) {
+  return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, py::none()).cast<ColliderPtr>();
 }
 
 /// The row of `array` whose axis is not of unit length is named.
@@ -165,16 +186,22 @@ const char* name_of(Touch touch) {
 
 void bind_collide(py::module_& m) {
   bind_contact(m);
-  py::class_<Collider>(m, "Collider", R"(A part and its fixtures, against which tools are held; immutable.
+  py::class_<Collider, std::shared_ptr<Collider>>(m, "Collider",
+                                                  R"(A part and its fixtures, against which tools are held; immutable.
 
 ``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
 that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
 are N per mm of depth and mm² of surface against the cutter and against shank and holder, and N per mm³ of a
 fixture in the tool: one number or Material, or a list of one for each fixture. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
 several threads and release the GIL.)")
-      .def(py::init(&make), py::arg("part"), py::kw_only(), py::arg("fixtures") = py::list(),
+      .def(py::init(&make), py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
            py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
            py::arg("fixture_stiffness") = 10.0)
+      .def_static("made", &made, py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
+                  py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
+                  py::arg("fixture_stiffness") = 10.0, py::arg("progress") = py::none(),
+                  R"(The same as a function, for ``riffler.tasks.collider``. ``progress`` is asked at the beginning
+and at the end only.)")
       .def("query", &query, py::arg("tool"), py::arg("pose"), py::arg("budget_us") = py::none(),
            R"(Force, torque, depth and where they are, as a Contact. After ``budget_us`` microseconds what is left is
 only bounded: see ``checked`` and ``missed_depth_bound``.)")

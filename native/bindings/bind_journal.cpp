@@ -1,6 +1,7 @@
 // riffler.Journal, riffler.JournalWriter
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
+#include "bindings/task.hpp"
 #include "session/journal.hpp"
 #include "session/journal_file.hpp"
 #include "session/replay.hpp"
@@ -61,8 +62,16 @@ JournalStroke to_rows(const Doubles& poses, const py::object& times, const py::o
 }
 
 JournalStock to_stock(const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
-                      const std::string& snapshot) {
-  return {{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions, snapshot};
+                      const std::string& snapshot, const std::string& mask) {
+  return {{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions, snapshot, mask};
+}
+
+constexpr const char* kModes[kStrokeModes] = {"remove", "add", "mask", "unmask", "soften", "beside"};
+
+StrokeMode to_stroke_mode(const std::string& name) {
+  for (std::uint32_t k = 0; k < kStrokeModes; ++k)
+    if (name == kModes[k]) return static_cast<StrokeMode>(k);
+  throw py::value_error(R"(mode must be "remove", "add", "mask", "unmask", "soften" or "beside")");
 }
 
 py::object json() {
@@ -84,6 +93,7 @@ py::object stock(const Journal& journal) {
   out["pitch"] = s.pitch;
   out["directions"] = s.directions;
   out["snapshot"] = s.snapshot;
+  out["mask"] = s.mask;
   return out;
 }
 
@@ -116,13 +126,19 @@ Program program(const Journal& journal, const std::optional<double>& feed, doubl
   return to_program(journal, tools_of(journal), {feed, spindle, {safe_height, clearance, {}}});
 }
 
-std::shared_ptr<SharedVolume> replayed(const Journal& journal, const std::optional<std::filesystem::path>& folder,
-                                       const py::object& progress) {
-  const std::map<int, Tool> tools = tools_of(journal);
-  const Progress listener = to_progress(progress);
-  const Journal copy = journal;  // another thread may go on recording
-  const py::gil_scoped_release release;
-  return std::make_shared<SharedVolume>(replay(copy, tools, folder.value_or(""), listener));
+auto replayed(const Journal& journal, const std::optional<std::filesystem::path>& folder, const py::object& progress,
+              bool with_mask) {
+  // another thread may go on recording
+  const auto work = [copy = journal, tools = tools_of(journal), folder](const Progress& listener) {
+    return replay_all(copy, tools, folder.value_or(""), listener);
+  };
+  return long_call(progress, work, [with_mask](Replayed&& found) -> py::object {
+    py::object volume = py::cast(std::make_shared<SharedVolume>(std::move(found.volume)));
+    if (!with_mask) return volume;
+    py::object mask = py::none();
+    if (found.mask) mask = py::cast(std::make_shared<SharedVolume>(std::move(*found.mask)));
+    return py::make_tuple(volume, mask);
+  });
 }
 
 /// The functions that Journal and JournalWriter share.
@@ -132,9 +148,12 @@ void add_records(Class& c) {
   c.def(
        "set_stock",
        [](T& self, const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
-          const std::string& snapshot) { self.set_stock(to_stock(lower, upper, pitch, directions, snapshot)); },
+          const std::string& snapshot,
+          const std::string& mask) { self.set_stock(to_stock(lower, upper, pitch, directions, snapshot, mask)); },
        py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z", py::arg("snapshot") = "",
-       "The frame of the stock, and the file name of its snapshot where it is not a full block. Once.")
+       py::kw_only(), py::arg("mask") = "",
+       "The frame of the stock, the file name of its snapshot where it is not a full block, and that of what is "
+       "protected where something is. Once.")
       .def(
           "add_tool", [](T& self, int number, const py::object& tool) { self.add_tool(number, tool_json(tool)); },
           py::arg("number"), py::arg("tool"),
@@ -145,16 +164,22 @@ void add_records(Class& c) {
       .def(
           "add_stroke",
           [](T& self, int tool, const Doubles& poses, const py::object& times, double tolerance,
-             const std::string& name, const py::object& forces, const py::object& removed) {
+             const std::string& name, const py::object& forces, const py::object& removed, const std::string& mode,
+             double strength) {
             JournalStroke stroke = to_rows(poses, times, forces, removed);
-            stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name;
+            stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name, stroke.mode = to_stroke_mode(mode);
+            stroke.strength = strength;
             self.add_stroke(stroke);
           },
           py::arg("tool"), py::arg("poses"), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
           py::arg("name") = "", py::kw_only(), py::arg("forces") = py::none(), py::arg("removed") = py::none(),
+          py::arg("mode") = "remove", py::arg("strength") = 0.5,
           R"(A stroke with a tool that was added: poses (n, 6), n ≥ 1; each of the others may be None. times (n,) s that
 never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
-ends at the row.)")
+ends at the row. mode says what the tool does where it sweeps: "remove" and "add" material, but not where it is protected;
+"mask" and "unmask": protect it, or no longer; "soften": a dab of ``strength`` at each row's tip, as wide as the tool;
+"beside": remove as a Session does beside what is protected. To replay to the bit what was put on, or cut by ``carve``
+beside a mask, each carve has to be a stroke.)")
       .def(
           "extend_stroke",
           [](T& self, const Doubles& poses, const py::object& times, const py::object& forces,
@@ -207,6 +232,11 @@ void bind_journal(py::module_& m) {
       .def_property_readonly(
           "tolerance", [](const StrokeView& s) { return s.get().tolerance; }, "mm")
       .def_property_readonly("name", [](const StrokeView& s) { return s.get().name; })
+      .def_property_readonly(
+          "mode", [](const StrokeView& s) { return kModes[static_cast<std::uint32_t>(s.get().mode)]; },
+          R"("remove", "add", "mask", "unmask", "soften" or "beside".)")
+      .def_property_readonly(
+          "strength", [](const StrokeView& s) { return s.get().strength; }, "0 to 1, of one that softens.")
       .def("__len__", [](const StrokeView& s) { return s.get().poses.size(); });
 
   py::class_<Journal, SharedJournal> journal(m, "Journal", R"(What a session did: stock, tools, strokes as poses, notes.
@@ -230,7 +260,7 @@ damaged record that others follow is a FormatError naming the byte.)")
             write_journal(copy, path);
           },
           py::arg("path"), "Writes the whole journal; the file is whole or not there.")
-      .def_property_readonly("stock", &stock, "dict: lower, upper, pitch, directions, snapshot; or None.")
+      .def_property_readonly("stock", &stock, "dict: lower, upper, pitch, directions, snapshot, mask; or None.")
       .def_property_readonly("tools", &tools, "dict: number to the tool's dict.")
       .def_property_readonly("strokes", &strokes, "list of JournalStroke: those that count.")
       .def_property_readonly("notes", &notes, "dict of strings; of a key given twice the later value.")
@@ -238,12 +268,14 @@ damaged record that others follow is a FormatError naming the byte.)")
       .def("program", &program, py::arg("feed") = py::none(), py::arg("spindle") = 0.0, py::kw_only(),
            py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
            R"(The strokes as a Program, each one cut as in Program.from_cl. ``feed`` in mm/min; None: from the times,
-held within 1 to 100 000 mm/min. The stock counts as occupied.)")
+held within 1 to 100 000 mm/min. The stock counts as occupied. Strokes that do not remove are left out: no machine can make
+them.)")
       .def(
-          "replay", &replayed, py::arg("folder") = py::none(), py::arg("progress") = py::none(),
+          "replay", &replayed, py::arg("folder") = py::none(), py::arg("progress") = py::none(), py::kw_only(),
+          py::arg("with_mask") = false,
           R"(The Volume that the strokes leave of the stock, to the bit as the session left it: a block, or the snapshot
 in ``folder``. A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands
-if it has two rows or more.)")
+if it has two rows or more. ``with_mask``: a tuple of it and the Volume of what is protected, or None.)")
       .def("__repr__", [](const Journal& self) {
         const std::size_t n = self.strokes().size();
         return "<riffler.Journal: " + std::to_string(n) + (n == 1 ? " stroke>" : " strokes>");

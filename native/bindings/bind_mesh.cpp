@@ -5,7 +5,7 @@
 #include <cstring>
 #include <memory>
 
-#include "bindings/bindings.hpp"
+#include "bindings/task.hpp"
 #include "mesh/audit.hpp"
 #include "mesh/closest.hpp"
 #include "mesh/decimate.hpp"
@@ -139,29 +139,24 @@ std::optional<std::size_t> to_count(const std::optional<std::int64_t>& triangles
   return static_cast<std::size_t>(*triangles);
 }
 
-MeshPtr decimated(const Mesh& mesh, std::optional<std::int64_t> triangles, std::optional<double> tolerance,
-                  const py::object& progress) {
+auto decimated(const MeshPtr& mesh, std::optional<std::int64_t> triangles, std::optional<double> tolerance,
+               const py::object& progress) {
   const DecimateLimits limits{to_count(triangles), tolerance};
-  const Progress listener = to_progress(progress);
-  const NoGil no_gil;
-  return std::make_shared<Mesh>(decimate(mesh, limits, listener));
+  const auto work = [=](const Progress& listener) { return std::make_shared<Mesh>(decimate(*mesh, limits, listener)); };
+  return long_call(progress, work, AsItIs());
 }
 
-MeshPtr smoothed(const Mesh& mesh, int iterations, std::optional<double> tolerance, double feature_angle,
-                 const py::object& progress) {
-  const Progress listener = to_progress(progress);
-  const NoGil no_gil;
-  return std::make_shared<Mesh>(smooth(mesh, iterations, tolerance, feature_angle, listener));
+auto smoothed(const MeshPtr& mesh, int iterations, std::optional<double> tolerance, double feature_angle,
+              const py::object& progress) {
+  const auto work = [=](const Progress& listener) {
+    return std::make_shared<Mesh>(smooth(*mesh, iterations, tolerance, feature_angle, listener));
+  };
+  return long_call(progress, work, AsItIs());
 }
 
-py::array_t<double> deviation_array(const Mesh& mesh, const Mesh& other, bool with_sign, const py::object& progress) {
-  std::vector<double> distances;
-  {
-    const Progress listener = to_progress(progress);
-    const NoGil no_gil;
-    distances = deviation(mesh, other, with_sign, listener);
-  }
-  return take<double>(std::move(distances));
+auto deviation_array(const MeshPtr& mesh, const MeshPtr& other, bool with_sign, const py::object& progress) {
+  const auto work = [=](const Progress& listener) { return deviation(*mesh, *other, with_sign, listener); };
+  return long_call(progress, work, [](std::vector<double>&& distances) { return take<double>(std::move(distances)); });
 }
 
 std::string repr(const Mesh& mesh) {
@@ -219,7 +214,8 @@ vertices are some of the old ones, or where that fits better new ones between th
 (mm) in all. Edges whose sides turn by more than `feature_angle` (rad) stay sharp, and corners stay where they are, as
 do vertices on borders.)");
   mesh.def(
-      "deviation", &deviation_array, "other"_a, py::kw_only(), "signed"_a = false, "progress"_a = py::none(),
+      "deviation", &deviation_array, "other"_a.none(false), py::kw_only(), "signed"_a = false,
+      "progress"_a = py::none(),
       R"((n,) float64: how far (mm) each vertex is from the surface of `other`; with signed=True negative inside.)");
   mesh.def("__repr__", &repr);
   mesh.def("__copy__", [](const MeshPtr& self) { return self; });

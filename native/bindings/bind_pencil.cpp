@@ -1,7 +1,7 @@
 // Pencil cuts.
 #include <memory>
 
-#include "bindings/bindings.hpp"
+#include "bindings/task.hpp"
 #include "plan/passes.hpp"
 #include "plan/pencil.hpp"
 #include "tool/tool.hpp"
@@ -17,13 +17,7 @@ py::dict to_dict(const PencilStats& s) {
                   "cut"_a = s.cut);
 }
 
-py::dict find(const Mesh& part, const Tool& tool, const PencilOptions& options, const py::object& callable) {
-  PencilResult result;
-  {
-    const Progress progress = to_progress(callable);
-    const py::gil_scoped_release release;
-    result = pencil(part, 0.5 * tool.diameter(), options, progress);
-  }
+py::dict to_dict(PencilResult&& result) {
   py::list paths;
   for (PencilPath& path : result.paths) paths.append(std::make_shared<PencilPath>(std::move(path)));
   py::list ends;
@@ -40,16 +34,19 @@ void bind_pencil(py::module_& m) {
   m.def("stepover_of_scallop", &stepover_of_scallop, py::arg("radius"), py::arg("height"));
   m.def(
       "pencil",
-      [](const Mesh& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,
+      [](const std::shared_ptr<Mesh>& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,
          double minimum_length, int passes, std::optional<double> stepover, double overthickness,
          const py::object& progress) {
         PencilOptions options;
         options.tolerance = tolerance, options.bitangency_angle = bitangency_angle;
         options.minimum_length = minimum_length, options.passes = passes, options.stepover = stepover;
         options.overthickness = overthickness;
-        return find(part, tool, options, progress);
+        const auto work = [part, radius = 0.5 * tool.diameter(), options](const Progress& listener) {
+          return pencil(*part, radius, options, listener);
+        };
+        return long_call(progress, work, [](PencilResult&& found) { return to_dict(std::move(found)); });
       },
-      py::arg("part"), py::arg("tool"), py::kw_only(), py::arg("tolerance"), py::arg("bitangency_angle"),
+      py::arg("part").none(false), py::arg("tool"), py::kw_only(), py::arg("tolerance"), py::arg("bitangency_angle"),
       py::arg("minimum_length"), py::arg("passes"), py::arg("stepover"), py::arg("overthickness"), py::arg("progress"),
       "For riffler.plan.pencil.");
 }

@@ -1,7 +1,8 @@
 // Planning with a tool: lift, drop, cutter locations, free orientations. For riffler.plan, which describes them.
 #include <limits>
+#include <memory>
 
-#include "bindings/bindings.hpp"
+#include "bindings/task.hpp"
 #include "collide/collider.hpp"
 #include "geom/parallel.hpp"
 #include "plan/contact_location.hpp"
@@ -16,6 +17,8 @@ namespace {
 
 using namespace py::literals;
 using NoGil = py::gil_scoped_release;
+using Path = std::shared_ptr<PencilPath>;
+using Obstacle = std::shared_ptr<Collider>;
 
 std::vector<Vec3> to_vec3s(const Doubles& array, const char* name) {
   const std::size_t n = check_rows(array, 3, name);
@@ -129,17 +132,14 @@ py::dict from_locations(const CutterLocations& found) {
                   "bound"_a = found.bound, "evaluations"_a = found.evaluations, "ok"_a = found.good());
 }
 
-py::dict locate(const PencilPath& path, const Tool& tool, const Collider& collider, double clearance, double tolerance,
-                double max_lift, int max_inserted, const py::object& callable) {
-  CutterLocations found;
-  {
-    LocationRule rule;
-    rule.clearance = clearance, rule.tolerance = tolerance, rule.max_lift = max_lift, rule.max_inserted = max_inserted;
-    const Progress progress = to_progress(callable);
-    const NoGil release;
-    found = cutter_locations(path, Assembly(tool), collider, rule, progress);
-  }
-  return from_locations(found);
+auto locate(const Path& path, const Tool& tool, const Obstacle& collider, double clearance, double tolerance,
+            double max_lift, int max_inserted, const py::object& progress) {
+  LocationRule rule;
+  rule.clearance = clearance, rule.tolerance = tolerance, rule.max_lift = max_lift, rule.max_inserted = max_inserted;
+  const auto work = [=](const Progress& listener) {
+    return cutter_locations(*path, Assembly(tool), *collider, rule, listener);
+  };
+  return long_call(progress, work, &from_locations);
 }
 
 MapRule to_rule(const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
@@ -157,35 +157,36 @@ py::dict from_map(const OrientationMap& map) {
                   "reason"_a = map.why_none());
 }
 
-py::list maps(const PencilPath& path, const std::vector<std::size_t>& points, const Tool& tool,
-              const Collider& collider, const std::vector<double>& inclinations, const std::vector<double>& tilts,
-              double clearance, double tolerance, const py::object& limit, const py::object& callable) {
-  const MapRule rule = to_rule(inclinations, tilts, clearance, tolerance, limit);
-  std::vector<OrientationMap> found;
-  {
-    const Progress progress = to_progress(callable);
-    const NoGil release;
-    found = orientation_maps(path, points, Assembly(tool), collider, rule, progress);
-  }
+py::list from_maps(const std::vector<OrientationMap>& found) {
   py::list out;
   for (const OrientationMap& map : found) out.append(from_map(map));
   return out;
 }
 
-py::dict choose(const PencilPath& path, const Tool& tool, const Collider& collider,
-                const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
-                double tolerance, const py::object& limit, double max_change, double smoothness,
-                const py::object& callable) {
-  const TiltRule rule{to_rule(inclinations, tilts, clearance, tolerance, limit), max_change, smoothness};
-  TiltAnswer found;
-  {
-    const Progress progress = to_progress(callable);
-    const NoGil release;
-    found = least_tilt(path, Assembly(tool), collider, rule, progress);
-  }
+auto maps(const Path& path, const std::vector<std::size_t>& points, const Tool& tool, const Obstacle& collider,
+          const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance, double tolerance,
+          const py::object& limit, const py::object& progress) {
+  const MapRule rule = to_rule(inclinations, tilts, clearance, tolerance, limit);
+  const auto work = [=](const Progress& listener) {
+    return orientation_maps(*path, points, Assembly(tool), *collider, rule, listener);
+  };
+  return long_call(progress, work, &from_maps);
+}
+
+py::dict from_answer(TiltAnswer&& found) {
   return py::dict("found"_a = found.found, "axes"_a = from_vec3s(found.axes),
                   "angles"_a = take<double>(std::move(found.angles)), "cost"_a = found.cost, "point"_a = found.point,
                   "reason"_a = found.reason);
+}
+
+auto choose(const Path& path, const Tool& tool, const Obstacle& collider, const std::vector<double>& inclinations,
+            const std::vector<double>& tilts, double clearance, double tolerance, const py::object& limit,
+            double max_change, double smoothness, const py::object& progress) {
+  const TiltRule rule{to_rule(inclinations, tilts, clearance, tolerance, limit), max_change, smoothness};
+  const auto work = [=](const Progress& listener) {
+    return least_tilt(*path, Assembly(tool), *collider, rule, listener);
+  };
+  return long_call(progress, work, &from_answer);
 }
 
 }  // namespace
@@ -195,12 +196,13 @@ void bind_plan(py::module_& m) {
   m.def("lift", &lift_all, "tool"_a, "poses"_a, "collider"_a, py::kw_only(), "clearance"_a, "tolerance"_a, "max_lift"_a,
         "max_evaluations"_a, "progress"_a);
   m.def("drop", &drop_all, "tool"_a, "points"_a, "part"_a, "axis"_a, "progress"_a);
-  m.def("cutter_locations", &locate, "path"_a, "tool"_a, "collider"_a, py::kw_only(), "clearance"_a, "tolerance"_a,
-        "max_lift"_a, "max_inserted"_a, "progress"_a);
-  m.def("orientation_maps", &maps, "path"_a, "points"_a, "tool"_a, "collider"_a, py::kw_only(), "inclinations"_a,
-        "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "progress"_a);
-  m.def("least_tilt", &choose, "path"_a, "tool"_a, "collider"_a, py::kw_only(), "inclinations"_a, "tilts"_a,
-        "clearance"_a, "tolerance"_a, "limit"_a, "max_change"_a, "smoothness"_a, "progress"_a);
+  m.def("cutter_locations", &locate, "path"_a.none(false), "tool"_a, "collider"_a.none(false), py::kw_only(),
+        "clearance"_a, "tolerance"_a, "max_lift"_a, "max_inserted"_a, "progress"_a);
+  m.def("orientation_maps", &maps, "path"_a.none(false), "points"_a, "tool"_a, "collider"_a.none(false), py::kw_only(),
+        "inclinations"_a, "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "progress"_a);
+  m.def("least_tilt", &choose, "path"_a.none(false), "tool"_a, "collider"_a.none(false), py::kw_only(),
+        "inclinations"_a, "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "max_change"_a, "smoothness"_a,
+        "progress"_a);
 }
 
 }  // namespace riffler

@@ -259,7 +259,8 @@ void bind_program(py::module_& m) {
         return program;
       });
 
-  py::class_<Program>(m, "Program", R"(Where the tool goes, how fast and with which tool; immutable.
+  py::class_<Program, std::shared_ptr<Program>>(m, "Program",
+                                                R"(Where the tool goes, how fast and with which tool; immutable.
 
 One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate.
 ``tools`` is a dict of the tools whose shape is known, by number; ``provenance`` a dict of strings that the header

@@ -43,7 +43,7 @@ Program load(const std::filesystem::path& path, const py::object& progress) {
 }  // namespace
 
 void bind_program_file(py::module_& m) {
-  auto program = py::reinterpret_borrow<py::class_<Program>>(m.attr("Program"));
+  auto program = py::reinterpret_borrow<py::class_<Program, std::shared_ptr<Program>>>(m.attr("Program"));
   program
       .def("save", &save, py::arg("path"), py::arg("progress") = py::none(),
            R"(Writes a .rprog file, whole or not at all: everything to the bit, which NC code cannot keep.

@@ -52,6 +52,7 @@ struct SharedSession {
   py::object collider;
   Tool tool;
   MoveCarver::Options carving;
+  std::optional<Volume> mask{};
   std::shared_ptr<JournalSink> sink;
   std::unique_ptr<Session> session;
   std::mutex mutex;
@@ -176,7 +177,8 @@ struct Options {
 };
 
 std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
-                                    std::shared_ptr<Pen> pen, const py::object& obstacles, const py::kwargs& given) {
+                                    std::shared_ptr<Pen> pen, const py::object& obstacles, SharedVolume* protect,
+                                    const py::kwargs& given) {
   if (!volume) throw py::type_error("volume: None");
   if (!pen) pen = std::make_shared<PointerPen>(PointerPen::Kind::Mouse);
   Options options;
@@ -187,9 +189,10 @@ std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume,
   const Collider* collider = obstacles.is_none() ? nullptr : py::cast<const Collider*>(obstacles);
   auto out = std::make_unique<SharedSession>(volume, pen, obstacles, tool, options.settings.loop.carving);
   const Volume state = Reading(*volume).volume.snapshot();
-  out->session =
-      std::make_unique<Session>(state, tool, std::move(pen),
-                                std::shared_ptr<const Collider>(std::shared_ptr<void>(), collider), options.settings);
+  if (protect) out->mask = Reading(*protect).volume.snapshot();
+  out->session = std::make_unique<Session>(state, tool, std::move(pen),
+                                           std::shared_ptr<const Collider>(std::shared_ptr<void>(), collider),
+                                           options.settings, out->mask ? &*out->mask : nullptr);
   return out;
 }
 
@@ -197,19 +200,26 @@ std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume,
 void record(SharedSession& self, const std::filesystem::path& path, const py::dict& notes) {
   const Using use(self);
   if (self.sink) throw std::runtime_error("the session has a journal already");
-  std::filesystem::path snapshot = path;
-  snapshot.replace_extension().concat("-stock.rvol");
-  for (const std::filesystem::path& p : {path, snapshot})
+  const auto beside = [&](const char* end) {
+    std::filesystem::path p = path;
+    return p.replace_extension().concat(end);
+  };
+  const std::filesystem::path snapshot = beside("-stock.rvol"), mask = beside("-mask.rvol");
+  for (const std::filesystem::path& p : {path, snapshot, mask})
     if (std::filesystem::exists(p))
       throw py::value_error(p.filename().string() + " is there already: take another name, or move it away");
   save(use.volume, snapshot);
+  if (self.mask) save(*self.mask, mask);
   auto writer = std::make_unique<JournalWriter>(path, JournalWriter::Keep::Rules);
   const Frame& frame = use.volume.frame();
   for (const auto& [key, value] : notes) writer->add_note(py::cast<std::string>(key), py::cast<std::string>(value));
-  writer->set_stock({frame.box, frame.pitch, frame.directions, snapshot.filename().string()});
+  writer->set_stock({frame.box, frame.pitch, frame.directions, snapshot.filename().string(),
+                     self.mask ? mask.filename().string() : ""});
   writer->add_tool(1, tool_json(py::cast(self.tool)));
   writer->sync();
-  auto sink = std::make_shared<JournalSink>(std::move(writer), 1, self.carving.tolerance);
+  JournalStream::Options options;
+  if (self.mask) options.mode = StrokeMode::Beside;
+  auto sink = std::make_shared<JournalSink>(std::move(writer), 1, self.carving.tolerance, options);
   self.session->record(sink);
   self.sink = std::move(sink);
 }
@@ -251,7 +261,8 @@ void bind_frame(py::module_& m) {
   using T = SculptTick;
   py::class_<F>(m, "SessionFrame", R"(What happened between two calls of Session.frame: one row for each step.
 
-Forces and torques act on the hand, about the grip's point, in the device's frame.)")
+Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
+tip, in the part's.)")
       .def_property_readonly(
           "tiles",
           [](const F& f) {
@@ -264,7 +275,11 @@ Forces and torques act on the hand, about the grip's point, in the device's fram
       .def_property_readonly(
           "times", [](const F& f) { return f.column([](const T& t) { return t.time; }); }, "(n,) s since the start.")
       .def_property_readonly(
-          "poses", [](const F& f) { return f.poses([](const T& t) { return t.tool; }); }, "(n, 6) of the tool.")
+          "poses", [](const F& f) { return f.poses([](const T& t) { return t.tool; }); },
+          "(n, 6) of the tool, at each step's end.")
+      .def_property_readonly(
+          "starts", [](const F& f) { return f.poses([](const T& t) { return t.from; }); },
+          "(n, 6) of the tool, at each step's begin: not where the last one left it where it was placed anew.")
       .def_property_readonly(
           "grips", [](const F& f) { return f.poses([](const T& t) { return t.grip; }); },
           "(n, 6) of the grip, in the device's frame.")
@@ -274,6 +289,9 @@ Forces and torques act on the hand, about the grip's point, in the device's fram
       .def_property_readonly(
           "applied", [](const F& f) { return f.wrenches([](const T& t) { return t.applied; }); },
           "(n, 6): what it had, where it says so; otherwise what it was told a step before.")
+      .def_property_readonly(
+          "tool_forces", [](const F& f) { return f.wrenches([](const T& t) { return t.on_tool; }); },
+          "(n, 6): force (N) and torque (N·mm) of the material on the tool, whatever the hand is given of them.")
       .def_property_readonly(
           "removed", [](const F& f) { return f.column([](const T& t) { return t.removed; }); }, "(n,) mm³.")
       .def_property_readonly(
@@ -353,14 +371,16 @@ The volume is the one that is shown: it follows with each call of ``frame``, bet
 while the session runs. The tool cuts while a button of ``dead_man_mask`` is held, and every check of the pen passes.
 
 pen: of ``riffler.pen.open``; None: a ``riffler.pen.Pointer`` of kind "mouse", see ``pen``. obstacles: a Collider to stay
-out of. Options: ``material`` (of the stock), ``at`` ((6,) where the tool stands at the start; for tablets, mice and
+out of. protect: a volume of the same lower, upper, pitch and directions, or None; what lies in it stays as it is, and is
+as air to the tool. Options: ``material`` (of the stock), ``at`` ((6,) where the tool stands at the start; for tablets, mice and
 recordings their own pose, otherwise 5 mm above the stock), ``scale`` and ``turn`` ((3, 3); from the hand's motion to the
 tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``, ``turn_damping`` (of the coupling between hand
 and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which resistance is
 learnt; None: by tool and stock), ``max_force`` (N),
 ``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp`` (s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget``
 (s for a step; None: as long as it takes), ``undo`` (strokes that can be taken back).)")
-      .def(py::init(&make), "volume"_a, "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none())
+      .def(py::init(&make), "volume"_a, "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none(),
+           "protect"_a = py::none())
       .def(
           "start",
           [](SharedSession& s) {
@@ -374,8 +394,9 @@ the journal on the disk. SessionFrame: what was not shown yet.)")
       .def("frame", &frame, R"(Brings the volume up to date, and tells what happened since the last call: SessionFrame.
 Waits for the next step, 3 ms at most.)")
       .def("journal", &record, "path"_a, "notes"_a = py::dict(), R"(Records every stroke: poses, times, forces, what was
-cut. Before ``start``; a new file, with the stock beside it (``NAME-stock.rvol``). What is in it survives a crash but for
-the last second at most, and is replayed by ``Session.replay``.)")
+cut. Before ``start``; a new file, with the stock beside it (``NAME-stock.rvol``), and what is protected
+(``NAME-mask.rvol``). What is in it survives a crash but for the last second at most, and is replayed by
+``Session.replay``.)")
       .def("undo", &go<&Session::undo>, R"(The last stroke did not happen, or the last few if they ended between two
 frames. How many that were; 0: there is none. RuntimeError in the middle of a stroke.)")
       .def("redo", &go<&Session::redo>, "And happened, unless another was begun since.")
@@ -426,6 +447,15 @@ frames. How many that were; 0: there is none. RuntimeError in the middle of a st
             return text.empty() ? py::object(py::none()) : py::object(py::str(text));
           },
           "Why strokes wait for the disk, or None.")
+      .def(
+          "journal_written",
+          [](const SharedSession& s, double seconds) {
+            const NoGil release;
+            return !s.sink || s.sink->written(seconds);
+          },
+          "seconds"_a = 2.0,
+          "Waits until all rows that were made so far are in the journal's file, which is some 50 ms behind. False: "
+          "not within so many seconds.")
       .def("__enter__",
            [](const py::object& self) {
              self.attr("start")();

@@ -2,8 +2,8 @@
 #include <memory>
 #include <mutex>
 
-#include "bindings/bindings.hpp"
 #include "bindings/shared_report.hpp"
+#include "bindings/task.hpp"
 #include "dexel/from_mesh.hpp"
 
 namespace riffler {
@@ -32,27 +32,43 @@ std::map<int, Tool> to_tools(const py::object& object) {
   return out;
 }
 
-/// Volumes as they are; meshes at the stock's pitch.
-std::vector<Volume> to_fixtures(const py::object& object, double pitch) {
-  std::vector<Volume> out;
+std::string fixture_name(std::size_t k) {
+  return "fixtures, number " + std::to_string(k);
+}
+
+using Fixture = std::variant<Volume, std::shared_ptr<const Mesh>>;
+
+std::vector<Fixture> to_fixtures(const py::object& object) {
+  std::vector<Fixture> out;
   if (object.is_none()) return out;
   if (py::isinstance<SharedVolume>(object) || py::isinstance<Mesh>(object))
     throw py::value_error("fixtures must be a list of Volume or Mesh, not one of them");
   for (const py::handle& item : py::cast<py::iterable>(object)) {
-    const std::string name = "fixtures, number " + std::to_string(out.size());
-    if (py::isinstance<SharedVolume>(item)) {
+    if (py::isinstance<SharedVolume>(item))
       out.push_back(Reading(py::cast<SharedVolume&>(item)).volume.snapshot());
-    } else if (py::isinstance<Mesh>(item)) {
-      try {
-        const Mesh& mesh = py::cast<const Mesh&>(item);
-        const NoGil release;
-        validate(mesh);
-        out.push_back(from_mesh(mesh, {bounds(mesh), pitch, "z"}));
-      } catch (const std::invalid_argument& error) {
-        throw py::value_error(name + ": " + error.what());
-      }
-    } else {
-      throw py::value_error(name + ": a Volume or a Mesh expected");
+    else if (py::isinstance<Mesh>(item))
+      out.push_back(py::cast<std::shared_ptr<Mesh>>(item));
+    else
+      throw py::value_error(fixture_name(out.size()) + ": a Volume or a Mesh expected");
+  }
+  return out;
+}
+
+/// Volumes as they are; meshes at the stock's pitch.
+std::vector<Volume> to_volumes(const std::vector<Fixture>& fixtures, double pitch, const Progress& progress) {
+  std::vector<Volume> out;
+  for (std::size_t k = 0; k < fixtures.size(); ++k) {
+    if (const Volume* volume = std::get_if<Volume>(&fixtures[k])) {
+      out.push_back(volume->snapshot());
+      continue;
+    }
+    const Mesh& mesh = *std::get<std::shared_ptr<const Mesh>>(fixtures[k]);
+    try {
+      validate(mesh);
+      const auto n = static_cast<double>(fixtures.size()), done = static_cast<double>(k);
+      out.push_back(from_mesh(mesh, {bounds(mesh), pitch, "z"}, part(progress, done / n, (done + 1) / n)));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fixture_name(k) + ": " + error.what());
     }
   }
   return out;
@@ -69,20 +85,25 @@ VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const 
   return out;
 }
 
-std::unique_ptr<Verification> make_verification(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                                                const py::object& tools, const VerifyOptions& options,
-                                                const Progress& progress) {
-  Volume volume = Reading(stock).volume.snapshot();
+VerifyArguments to_verify_arguments(SharedVolume& stock, const py::object& part, const py::object& fixtures,
+                                    const py::object& tools, const VerifyOptions& options) {
   std::shared_ptr<const Mesh> mesh;
   if (!part.is_none()) {
     if (!py::isinstance<Mesh>(part)) throw py::value_error("part_mesh must be a Mesh or None");
     mesh = py::cast<std::shared_ptr<Mesh>>(part);
   }
-  std::vector<Volume> others = to_fixtures(fixtures, volume.frame().pitch);
-  std::map<int, Tool> by_number = to_tools(tools);
+  return {Reading(stock).volume.snapshot(), std::move(mesh), to_fixtures(fixtures), to_tools(tools), options};
+}
+
+std::unique_ptr<Verification> make_verification(const VerifyArguments& a, const Progress& progress) {
+  std::vector<Volume> fixtures = to_volumes(a.fixtures, a.stock.frame().pitch, part(progress, 0, 0.5));
+  return std::make_unique<Verification>(a.stock, a.part, std::move(fixtures), a.tools, a.options,
+                                        part(progress, 0.5, 1));
+}
+
+std::unique_ptr<Verification> make_verification_here(const VerifyArguments& arguments, const Progress& progress) {
   const NoGil release;
-  return std::make_unique<Verification>(std::move(volume), std::move(mesh), std::move(others), std::move(by_number),
-                                        options, progress);
+  return make_verification(arguments, progress);
 }
 
 std::shared_ptr<SharedReport> share(VerifyReport&& report) {
@@ -104,40 +125,45 @@ VerifyReport run_stream(Verification& verification, const py::iterable& chunks, 
   return stream.finish(progress);
 }
 
-VerifyReport run_any(Verification& verification, const py::object& program, const Progress& progress) {
-  if (!py::isinstance<Program>(program)) {
-    if (!py::isinstance<py::iterable>(program))
-      throw py::value_error("program must be a Program or an iterable of Programs");
-    return run_stream(verification, py::cast<py::iterable>(program), progress);
-  }
+VerifyReport run_whole(Verification& verification, const Program& program, const Progress& progress) {
   VerifyStream stream(verification);
-  const Program& whole = py::cast<const Program&>(program);
-  const NoGil release;
-  stream.add(whole, part(progress, 0, 0.9));
+  stream.add(program, part(progress, 0, 0.9));
   return stream.finish(part(progress, 0.9, 1));
 }
 
-std::shared_ptr<SharedReport> verify(const py::object& program, SharedVolume& stock, const py::object& part_mesh,
-                                     const py::object& fixtures, const py::object& tools, double tolerance,
-                                     double gouge_tolerance, const std::optional<double>& rest_tolerance,
-                                     double rapid_feed, const std::optional<std::string>& machine,
-                                     const py::object& machine_options, const py::object& progress) {
+auto verify(const py::object& program, SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
+            const py::object& tools, double tolerance, double gouge_tolerance,
+            const std::optional<double>& rest_tolerance, double rapid_feed, const std::optional<std::string>& machine,
+            const py::object& machine_options, const py::object& progress) {
+  VerifyArguments arguments = to_verify_arguments(
+      stock, part_mesh, fixtures, tools,
+      to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options));
+  if (py::isinstance<Program>(program)) {
+    const auto work = [arguments = std::move(arguments),
+                       whole = py::cast<std::shared_ptr<Program>>(program)](const Progress& listener) {
+      const auto verification = make_verification(arguments, part(listener, 0, 0.1));
+      return run_whole(*verification, *whole, part(listener, 0.1, 1));
+    };
+    return long_call(progress, work, &share);
+  }
+  if (!py::isinstance<py::iterable>(program))
+    throw py::value_error("program must be a Program or an iterable of Programs");
+  if (wants_task(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
   const Progress listener = to_progress(progress);
-  const VerifyOptions options =
-      to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options);
-  const auto verification = make_verification(stock, part_mesh, fixtures, tools, options, part(listener, 0, 0.1));
-  return share(run_any(*verification, program, part(listener, 0.1, 1)));
+  const auto verification = make_verification_here(arguments, part(listener, 0, 0.1));
+  VerifyReport report =
+      run_stream(*verification, py::reinterpret_borrow<py::iterable>(program), part(listener, 0.1, 1));
+  return Found<std::shared_ptr<SharedReport>>(py::cast(share(std::move(report))));
 }
 
-std::shared_ptr<SharedReport> run(SharedVerification& self, const Program& program, const py::object& progress) {
-  const Progress listener = to_progress(progress);
-  const std::unique_lock held(self.mutex, std::try_to_lock);
-  if (!held) throw std::runtime_error("the verification is in use by another thread");
-  VerifyReport report = [&] {
-    const NoGil release;
-    return self.verification->run(program, listener);
-  }();
-  return share(std::move(report));
+auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<Program>& program,
+         const py::object& progress) {
+  const auto work = [self, program](const Progress& listener) {
+    const std::unique_lock held(self->mutex, std::try_to_lock);
+    if (!held) throw std::runtime_error("the verification is in use by another thread");
+    return self->verification->run(*program, listener);
+  };
+  return long_call(progress, work, &share);
 }
 
 py::object deviation(SharedReport& self) {
@@ -326,8 +352,9 @@ Rapids are cut too: a crash takes material. Shank and holder must stay clear of 
 there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
 or beside it, nobody knows what the spindle meets: a finding "unknown". ValueError naming number, row and line of a tool
 whose shape is not known. ``progress``: called with the finished share, of each chunk anew; returning False cancels.)");
-  py::class_<SharedVerification>(m, "Verification",
-                                 R"(Verifies a program again and again while it is edited.
+  py::class_<SharedVerification, std::shared_ptr<SharedVerification>>(
+      m, "Verification",
+      R"(Verifies a program again and again while it is edited.
 
 Arguments are those of ``verify``. ``run`` of a program that is like the one before does again only what differs: rows
 before the first difference come from snapshots, and parts of the stock that no differing move can touch stay as they
@@ -337,16 +364,16 @@ are. The report is that of a fresh run, bit for bit.)")
                        const std::optional<double>& rest_tolerance, double rapid_feed,
                        const std::optional<std::string>& machine, const py::object& machine_options,
                        const py::object& progress) {
-             return std::make_unique<SharedVerification>(make_verification(
+             const VerifyArguments arguments = to_verify_arguments(
                  stock, part_mesh, fixtures, tools,
-                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options),
-                 to_progress(progress)));
+                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options));
+             return std::make_shared<SharedVerification>(make_verification_here(arguments, to_progress(progress)));
            }),
            py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
            py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("machine") = py::none(),
            py::arg("machine_options") = py::none(), py::arg("progress") = py::none())
-      .def("run", &run, py::arg("program"), py::arg("progress") = py::none(),
+      .def("run", &run, py::arg("program").none(false), py::arg("progress") = py::none(),
            "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
 }
 

@@ -1,8 +1,8 @@
 // riffler.Volume
 #include <optional>
 
-#include "bindings/bindings.hpp"
-#include "bindings/shared_volume.hpp"
+#include "bindings/task.hpp"
+#include "bindings/volume_class.hpp"
 #include "dexel/boolean.hpp"
 #include "dexel/file.hpp"
 #include "dexel/from_mesh.hpp"
@@ -17,10 +17,6 @@ namespace {
 struct Snapshot {
   Volume volume;
 };
-
-std::shared_ptr<SharedVolume> share(Volume&& v) {
-  return std::make_shared<SharedVolume>(std::move(v));
-}
 
 std::shared_ptr<SharedVolume> block(const py::object& lower, const py::object& upper, double pitch,
                                     const std::string& directions) {
@@ -50,27 +46,27 @@ void fill(py::dict& d, const MeshReport& r) {
   d["doubtful_rays"] = r.doubtful_rays;
 }
 
-std::shared_ptr<SharedVolume> volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch,
-                                               const std::string& directions, const py::object& lower,
-                                               const py::object& upper, const py::object& progress,
-                                               std::optional<py::dict> report) {
+auto volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch, const std::string& directions,
+                      const py::object& lower, const py::object& upper, const py::object& progress,
+                      std::optional<py::dict> report) {
+  using Reported = std::pair<std::shared_ptr<SharedVolume>, MeshReport>;
   const Frame frame{box_around(*mesh, lower, upper), pitch, directions};
-  const Progress listener = to_progress(progress);
-  MeshReport found;
-  std::shared_ptr<SharedVolume> volume;
-  {
-    const py::gil_scoped_release release;
-    volume = share(from_mesh(*mesh, frame, listener, report ? &found : nullptr));
-  }
-  if (report) fill(*report, found);
-  return volume;
+  const auto work = [mesh, frame, reports = report.has_value()](const Progress& listener) {
+    Reported out;
+    out.first = share(from_mesh(*mesh, frame, listener, reports ? &out.second : nullptr));
+    return out;
+  };
+  return long_call(progress, work, [report](Reported&& found) mutable {
+    if (report) fill(*report, found.second);
+    return found.first;
+  });
 }
 
-std::shared_ptr<Mesh> volume_to_mesh(SharedVolume& self, const py::object& progress) {
-  const Progress listener = to_progress(progress);
-  const Volume state = Reading(self).volume.snapshot();
-  const py::gil_scoped_release release;
-  return std::make_shared<Mesh>(to_mesh(state, listener));
+auto volume_to_mesh(SharedVolume& self, const py::object& progress) {
+  const auto work = [state = Reading(self).volume.snapshot()](const Progress& listener) {
+    return std::make_shared<Mesh>(to_mesh(state, listener));
+  };
+  return long_call(progress, work, AsItIs());
 }
 
 const Grid& grid_of(const Volume& volume, const std::string& direction) {
@@ -127,11 +123,20 @@ std::vector<double> to_times(const py::object& dt, std::size_t moves) {
   return {array.data(), array.data() + moves};
 }
 
+CarveMode to_mode(const std::string& mode) {
+  if (mode == "remove") return CarveMode::Remove;
+  if (mode == "add") return CarveMode::Add;
+  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + "\"");
+}
+
 Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance, const py::object& dt,
-                double removal_constant, const py::object& progress) {
+                double removal_constant, const py::object& progress, const std::string& mode, SharedVolume* protect) {
   const std::vector<Pose> path = to_poses(poses, "poses");
-  const CarveOptions options{tolerance, to_times(dt, path.empty() ? 0 : path.size() - 1), removal_constant,
-                             to_progress(progress)};
+  CarveOptions options{tolerance,        to_times(dt, path.empty() ? 0 : path.size() - 1),
+                       removal_constant, to_progress(progress),
+                       to_mode(mode),    nullptr};
+  std::optional<Volume> kept;  // which may be `self`
+  if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);
   const py::gil_scoped_release release;
   return carve(writing.volume, tool, path, options);
@@ -149,11 +154,12 @@ auto boolean(Boolean op) {
   };
 }
 
-void save_volume(SharedVolume& self, const std::filesystem::path& path, const py::object& progress) {
-  const Progress listener = to_progress(progress);
-  const Volume state = Reading(self).volume.snapshot();
-  const py::gil_scoped_release release;
-  save(state, path, listener);
+auto save_volume(SharedVolume& self, const std::filesystem::path& path, const py::object& progress) {
+  const auto work = [state = Reading(self).volume.snapshot(), path](const Progress& listener) {
+    save(state, path, listener);
+    return path;
+  };
+  return long_call(progress, work, [](const std::filesystem::path&) { return py::none(); });
 }
 
 std::shared_ptr<SharedVolume> load_volume(const std::filesystem::path& path, const py::object& progress) {
@@ -162,14 +168,13 @@ std::shared_ptr<SharedVolume> load_volume(const std::filesystem::path& path, con
   return share(load(path, listener));
 }
 
-py::bytes volume_to_bytes(SharedVolume& self) {
-  const Volume state = Reading(self).volume.snapshot();
-  std::vector<std::uint8_t> bytes;
-  {
-    const py::gil_scoped_release release;
-    bytes = to_bytes(state);
-  }
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+auto volume_to_bytes(SharedVolume& self, const py::object& progress) {
+  const auto work = [state = Reading(self).volume.snapshot()](const Progress& listener) {
+    return to_bytes(state, listener);
+  };
+  return long_call(progress, work, [](const std::vector<std::uint8_t>& bytes) {
+    return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  });
 }
 
 std::shared_ptr<SharedVolume> volume_from_bytes(const py::buffer& data, const std::string& name) {
@@ -222,17 +227,17 @@ void bind_volume(py::module_& m) {
       .def_property_readonly("revision", [](const Snapshot& s) { return s.volume.revision(); })
       .def_property_readonly("nbytes", [](const Snapshot& s) { return s.volume.nbytes(); });
 
-  py::class_<SharedVolume, std::shared_ptr<SharedVolume>>(m, "Volume",
-                                                          R"(A dexel volume: material as spans along parallel rays.
+  VolumeClass volume(m, "Volume", R"(A dexel volume: material as spans along parallel rays.
 
 ``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
 normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
-(y, z), "y" rays (z, x). Lengths in mm.)")
+(y, z), "y" rays (z, x). Lengths in mm.)");
+  volume
       .def_static("block", &block, py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z",
                   "A box full of material. ValueError, before anything is allocated, if it does not fit in memory.")
-      .def_static("from_mesh", &volume_from_mesh, py::arg("mesh"), py::arg("pitch"), py::arg("directions") = "z",
-                  py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("progress") = py::none(),
-                  py::arg("report") = py::none(),
+      .def_static("from_mesh", &volume_from_mesh, py::arg("mesh").none(false), py::arg("pitch"),
+                  py::arg("directions") = "z", py::arg("lower") = py::none(), py::arg("upper") = py::none(),
+                  py::arg("progress") = py::none(), py::arg("report") = py::none(),
                   R"(The points whose absolute generalized winding number in ``mesh`` exceeds 1/2.
 
 Covers the mesh's box, or ``lower`` to ``upper`` (clipping what lies outside). Inside-out, overlapping, touching and open
@@ -272,12 +277,16 @@ material that end within an opening instead of on the surface.)")
            "(spans, 2, 3): unit normals at the ends of the spans of ``intervals``; tri-dexel volumes only.")
       .def("carve", &carve_poses, py::arg("tool"), py::arg("poses"), py::arg("tolerance") = 0.01,
            py::arg("dt") = py::none(), py::arg("removal_constant") = CarveOptions{}.removal_constant,
-           py::arg("progress") = py::none(),
+           py::arg("progress") = py::none(), py::arg("mode") = "remove", py::arg("protect") = py::none(),
            R"(Takes away what the cutter sweeps along ``poses`` (n, 6): tip xyz, unit axis xyz; n - 1 moves.
 
 ``tolerance``: mm, for moves that turn the axis; others are exact. ``dt``: s, a number or (n - 1,), asks for force.
 ``removal_constant``: N·s/mm³. Shank and holder never cut. ``progress``: called with the finished share; returning
-False cancels, raises Cancelled and leaves the volume as it was.)")
+False cancels, raises Cancelled and leaves the volume as it was.
+
+``mode``: "remove", or "add", which puts material on wherever the cutter sweeps within the volume's box; ``removed`` is
+then what was put on. ``protect``: a volume of the same lower, upper, pitch and directions; what lies in it stays as it
+is, material and air. ValueError if its grid is another.)")
       .def(
           "snapshot", [](SharedVolume& v) { return Snapshot{Reading(v).volume.snapshot()}; },
           "The state to come back to with restore(); costs pointers only.")
@@ -301,13 +310,14 @@ False cancels, raises Cancelled and leaves the volume as it was.)")
            "Writes a .rvol file, whole or not at all. Equal volumes are equal files.")
       .def_static("load", &load_volume, py::arg("path"), py::arg("progress") = py::none(),
                   "Reads a .rvol file; FormatError where it is damaged or not one.")
-      .def("to_bytes", &volume_to_bytes, "The bytes of the .rvol file.")
+      .def("to_bytes", &volume_to_bytes, py::arg("progress") = py::none(), "The bytes of the .rvol file.")
       .def("to_mesh", &volume_to_mesh, py::arg("progress") = py::none(),
            "The surface: closed, outward, two-manifold, and still so in a binary STL.")
-      .def(py::pickle([](SharedVolume& v) { return volume_to_bytes(v); },
+      .def(py::pickle([](SharedVolume& v) { return py::bytes(volume_to_bytes(v, py::none())); },
                       [](const py::bytes& b) { return volume_from_bytes(py::buffer(b), "pickle"); }))
       .def("stats", &stats, "Operation counters since the last call of stats().")
       .def("__repr__", &describe);
+  bind_volume_edits(volume);
 }
 
 }  // namespace riffler

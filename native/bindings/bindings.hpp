@@ -23,6 +23,7 @@ namespace py = pybind11;
 void bind_mesh(py::module_& m);
 void bind_tool(py::module_& m);
 void bind_volume(py::module_& m);
+void bind_soften(py::module_& m);
 void bind_mesher(py::module_& m);
 void bind_program(py::module_& m);
 void bind_program_file(py::module_& m);
@@ -37,6 +38,7 @@ void bind_path(py::module_& m);
 void bind_pencil(py::module_& m);
 void bind_strategies(py::module_& m);
 void bind_plan(py::module_& m);
+void bind_tasks(py::module_& m);
 void bind_bench(py::module_& m);
 
 /// A numpy array of doubles in C order; any array-like converts.

@@ -1,7 +1,6 @@
 // The extension module riffler._core. Not public: the names that riffler exports are.
 #include "bindings/bindings.hpp"
 #include "geom/error.hpp"
-#include "geom/parallel.hpp"
 
 PYBIND11_MODULE(_core, m) {
   using namespace riffler;
@@ -15,10 +14,11 @@ PYBIND11_MODULE(_core, m) {
       "A file that is not what it should be: names the file, the line or byte, and what was expected.";
   py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError).attr("__doc__") =
       "A long call that its progress callback stopped; the object is as it was before.";
-  m.def("thread_count", &thread_count, "Threads that parallel calls use: RIFFLER_THREADS or the CPU affinity.");
+  bind_tasks(m);
   bind_mesh(m);
   bind_tool(m);
   bind_volume(m);
+  bind_soften(m);
   bind_mesher(m);
   bind_program(m);
   bind_program_file(m);

@@ -1,7 +1,10 @@
 // Verifications as Python holds them, for riffler.verify and for clusters.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <variant>
+#include <vector>
 
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
@@ -20,9 +23,22 @@ VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const 
                                 double rapid_feed, const std::optional<std::string>& machine,
                                 const py::object& machine_options);
 
-/// From riffler.verify's arguments; ValueError naming the one that is wrong. Called with the GIL, computes without.
-std::unique_ptr<Verification> make_verification(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                                                const py::object& tools, const VerifyOptions& options,
-                                                const Progress& progress);
+/// What riffler.verify is given but for the program.
+struct VerifyArguments {
+  Volume stock;
+  std::shared_ptr<const Mesh> part;  ///< may be null
+  std::vector<std::variant<Volume, std::shared_ptr<const Mesh>>> fixtures;
+  std::map<int, Tool> tools;
+  VerifyOptions options;
+};
+
+/// ValueError naming the one that is wrong.
+VerifyArguments to_verify_arguments(SharedVolume& stock, const py::object& part, const py::object& fixtures,
+                                    const py::object& tools, const VerifyOptions& options);
+
+/// Without the GIL. Throws std::invalid_argument naming the argument.
+std::unique_ptr<Verification> make_verification(const VerifyArguments& arguments, const Progress& progress);
+/// Called with the GIL, which it releases.
+std::unique_ptr<Verification> make_verification_here(const VerifyArguments& arguments, const Progress& progress);
 
 }  // namespace riffler

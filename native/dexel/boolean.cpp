@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "dexel/joiner.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
@@ -19,9 +20,6 @@ namespace riffler {
 namespace {
 
 using TilePtr = std::shared_ptr<const Tile>;
-
-/// Spans and gaps thinner than this part of the pitch vanish.
-constexpr double kSliver = 1e-9;
 
 /// The opposite direction, exactly: on the octahedron's unfolded square −n is (−u, −v) folded over to the other half.
 PackedNormal opposite(const PackedNormal& n) {
@@ -72,30 +70,6 @@ class Ends {
   std::size_t next_ = 0;
 };
 
-/// Hands the result's ends on as spans: first joins over gaps, then drops slivers.
-class Joiner {
- public:
-  Joiner(TileBuilder& out, double least) : out_(out), least_(least) {}
-
-  void open(double x, const PackedNormal& normal) {
-    if (pending_ && x - span_.far < least_) return;
-    flush();
-    span_.near = x, normals_.near = normal, pending_ = true;
-  }
-  void close(double x, const PackedNormal& normal) { span_.far = x, normals_.far = normal; }
-  void flush() {
-    if (pending_ && span_.length() >= least_) out_.add(span_, normals_);
-    pending_ = false;
-  }
-
- private:
-  TileBuilder& out_;
-  double least_;
-  bool pending_ = false;
-  Span span_{};
-  SpanNormals normals_;
-};
-
 /// Where both operands have an end at one place, a's normal stays.
 void merge(Boolean op, Ends a, Ends b, Joiner out) {
   bool was = false;
@@ -115,10 +89,6 @@ void merge(Boolean op, Ends a, Ends b, Joiner out) {
   out.flush();
 }
 
-bool same_content(const Tile& a, const Tile& b) {
-  return a.offset == b.offset && a.spans == b.spans && a.normals == b.normals;
-}
-
 /// What one operation does to one grid: the results of short cuts, and merges for the rest.
 class TileOperation {
  public:
@@ -134,7 +104,7 @@ class TileOperation {
       builder.next_ray();
     }
     TilePtr merged = builder.finish();
-    return same_content(*merged, *a) ? a : merged;
+    return same_material(*merged, *a) ? a : merged;
   }
 
  private:
@@ -168,6 +138,12 @@ class TileOperation {
   const Grid& grid_;
   TilePtr empty_;
 };
+
+std::size_t rays_on_grid(const Grid& grid, int tu, int tv) {
+  const int rows = std::min(kTileSide, grid.nu() - tu * kTileSide);
+  const int columns = std::min(kTileSide, grid.nv() - tv * kTileSide);
+  return static_cast<std::size_t>(rows) * columns;
+}
 
 /// A pair of tiles that stand at one place or more, how many of their rays lie on the grid there (a border tile and an
 /// inner one may be the same tile), and what becomes of them.
@@ -203,27 +179,28 @@ struct Pairs {
         at.push_back(found->second);
       }
   }
-
-  static std::size_t rays_on_grid(const Grid& grid, int tu, int tv) {
-    const int rows = std::min(kTileSide, grid.nu() - tu * kTileSide);
-    const int columns = std::min(kTileSide, grid.nv() - tv * kTileSide);
-    return static_cast<std::size_t>(rows) * columns;
-  }
 };
-
-void check_same(const Frame& a, const Frame& b) {
-  if (a == b) return;
-  const char* what = a.directions != b.directions ? "directions"
-                     : a.pitch != b.pitch         ? "pitch"
-                     : a.box.lower != b.box.lower ? "lower"
-                                                  : "upper";
-  throw std::invalid_argument(std::string("the two volumes must have the same grid, but their ") + what + " differs");
-}
 
 }  // namespace
 
+void check_same_grid(const Frame& frame, const Frame& other, const std::string& what) {
+  if (frame == other) return;
+  const char* differs = frame.directions != other.directions ? "directions"
+                        : frame.pitch != other.pitch         ? "pitch"
+                        : frame.box.lower != other.box.lower ? "lower"
+                                                             : "upper";
+  throw std::invalid_argument(what + " must have the same grid as the volume, but its " + differs + " differs");
+}
+
+std::shared_ptr<const Tile> apply(Boolean op, const Grid& grid, std::size_t tile, const TilePtr& a, const TilePtr& b,
+                                  TileBuilder& builder) {
+  const int k = static_cast<int>(tile);
+  const std::size_t rays = rays_on_grid(grid, k / grid.tiles_v(), k % grid.tiles_v());
+  return TileOperation(op, grid).run(a, b, rays, builder);
+}
+
 void apply(Boolean op, Volume& a, const Volume& b, const Progress& progress) {
-  check_same(a.frame(), b.frame());
+  check_same_grid(a.frame(), b.frame(), "the other volume");
   std::vector<Pairs> work;
   std::vector<TileOperation> operations;
   std::vector<std::pair<std::size_t, std::size_t>> jobs;  // (grid, pair)

@@ -1,5 +1,6 @@
 #include "dexel/grid.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <unordered_set>
@@ -8,6 +9,14 @@ namespace riffler {
 
 int ray_count(double extent, double pitch) {
   return std::max(1, static_cast<int>(std::lround(extent / pitch)));
+}
+
+std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n) {
+  if (range.empty()) return {0, -1};
+  const double first = std::ceil((range.near - lower) / pitch - 0.5),
+               last = std::floor((range.far - lower) / pitch - 0.5);
+  return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(n))),
+          static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
 }
 
 Grid::Grid(Axis axis, const Box3& box, double pitch, bool with_normals)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "dexel/tile.hpp"
@@ -79,5 +80,8 @@ class Grid {
 
 /// Rays along a side of length `extent`: max(1, round(extent / pitch)).
 int ray_count(double extent, double pitch);
+
+/// First and last of n rays `pitch` apart whose coordinate lies in `range`.
+std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n);
 
 }  // namespace riffler

@@ -61,6 +61,11 @@ struct Tile {
   std::size_t nbytes() const;
 };
 
+/// The same spans and normals, whatever the revision.
+inline bool same_material(const Tile& a, const Tile& b) {
+  return a.offset == b.offset && a.spans == b.spans && a.normals == b.normals;
+}
+
 /// A fresh revision number, greater than all before it in this process.
 std::uint64_t next_revision();
 

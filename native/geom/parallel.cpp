@@ -7,17 +7,34 @@
 #include <cstdlib>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 namespace riffler {
 
+namespace {
+
+constexpr int kMostThreads = 256;
+std::atomic<int> chosen_count{0};  // 0: nobody has chosen
+
+}  // namespace
+
+void set_thread_count(std::optional<int> count) {
+  if (count && (*count < 1 || *count > kMostThreads))
+    throw std::invalid_argument("threads must be 1 to " + std::to_string(kMostThreads) + ", not " +
+                                std::to_string(*count));
+  chosen_count.store(count.value_or(0), std::memory_order_relaxed);
+}
+
 int thread_count() {
+  if (const int chosen = chosen_count.load(std::memory_order_relaxed)) return chosen;
   if (const char* text = std::getenv("RIFFLER_THREADS")) {
     char* end = nullptr;
     const long wanted = std::strtol(text, &end, 10);
-    if (end != text && *end == '\0' && wanted >= 1) return static_cast<int>(std::min(wanted, 256L));
+    if (end != text && *end == '\0' && wanted >= 1) return static_cast<int>(std::min(wanted, long{kMostThreads}));
   }
   cpu_set_t set;
   CPU_ZERO(&set);

@@ -3,13 +3,19 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 
 #include "geom/progress.hpp"
 
 namespace riffler {
 
-/// Threads a parallel call uses: RIFFLER_THREADS where it is set, else the process's CPU affinity; at least 1.
+/// Threads a parallel call uses: what set_thread_count said, else RIFFLER_THREADS where it is set, else the process's
+/// CPU affinity; at least 1.
 int thread_count();
+
+/// Of calls that begin from now on, in any thread (where writing the environment would race with those that read it).
+/// Nothing: as RIFFLER_THREADS says. Throws std::invalid_argument unless 1 ≤ count ≤ 256.
+void set_thread_count(std::optional<int> count);
 
 /// Runs body(begin, end) over disjoint chunks of [0, n) of at most `grain` indices, on thread_count() threads, the
 /// caller's among them. Chunks are the same for any number of threads; a body that writes only to places owned by its

@@ -186,7 +186,10 @@ void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result
   if (settings_.budget) cut_seconds_ = seconds_since(start);
   ++result.cuts;
   result.removed += taken.removed;
-  if (!fresh_) resistance_.learn(way, {taken.force, taken.torque}, dt, cutting_reach_);
+  if (!fresh_) {
+    result.on_tool = {taken.force, taken.torque};
+    resistance_.learn(way, result.on_tool, dt, cutting_reach_);
+  }
   fresh_ = false;
 }
 

@@ -38,6 +38,7 @@ class SculptStep {
   struct Result {
     Wrench on_grip;          ///< N, N·mm about the grip's point: the coupling's
     Pose tool;               ///< at the step's end
+    Wrench on_tool;          ///< N, N·mm about its tip: what is cut resists so; of the last part that cut
     double removed = 0;      ///< mm³
     double depth_bound = 0;  ///< mm: the tool is surely no deeper in anything it must not enter
     int cuts = 0, queries = 0;

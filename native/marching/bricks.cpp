@@ -36,7 +36,7 @@ const SignRows& Bricks::inside() {
 }
 
 Bricks::Bricks(const Lattice& lattice) {
-  for (int a = 0; a < 3; ++a) count_[a] = (lattice.points(a) + kBrickSide - 1) / kBrickSide;
+  for (int a = 0; a < 3; ++a) count_[a] = bricks_along(lattice, a);
   bricks_.resize(index(count_[0], 0, 0));
 }
 

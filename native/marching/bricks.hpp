@@ -18,6 +18,10 @@ namespace riffler::marching {
 inline constexpr int kBrickSide = 32;
 inline constexpr int kBrickColumns = kBrickSide * kBrickSide;
 
+inline int bricks_along(const Lattice& lattice, int axis) {
+  return (lattice.points(axis) + kBrickSide - 1) / kBrickSide;
+}
+
 /// Inside or outside for the lattice points of a brick: bit K of row 32 I + J.
 using SignRows = std::array<std::uint32_t, kBrickColumns>;
 /// The sign that all points of a brick have, if they have one.

@@ -20,7 +20,13 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& a, const std::v
 }  // namespace
 
 MeshState::MeshState(const Volume& now, bool room, const Progress& progress)
-    : volume(now), lattice(volume), bricks(lattice), surface(volume, lattice, bricks), reader_(lattice), room_(room) {
+    : volume(now),
+      lattice(volume),
+      bricks(lattice),
+      surface(volume, lattice, bricks),
+      facets(bricks.size()),
+      reader_(lattice),
+      room_(room) {
   follow(now);
   build(progress);
 }
@@ -127,6 +133,7 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
   std::vector<std::size_t> changed;
   if (broken_) {
     changed = active_bricks();
+    facets.assign(bricks.size(), nullptr);
     follow(now);
     build({});
     const std::vector<std::size_t> all = active_bricks();
@@ -139,6 +146,7 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
   }
   broken_ = false;
   each_once(changed);
+  for (const std::size_t n : changed) facets[n].reset();
   return changed;
 }
 

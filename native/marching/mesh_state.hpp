@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "marching/changes.hpp"
+#include "marching/pick.hpp"
 #include "marching/signs.hpp"
 #include "marching/slots.hpp"
 #include "marching/surface.hpp"
@@ -14,7 +15,8 @@ struct MeshState {
   Volume volume;  // as it was meshed: shares its tiles
   Lattice lattice;
   Bricks bricks;
-  Surface surface;  // places of bricks without a surface hold nothing of meaning
+  Surface surface;               // places of bricks without a surface hold nothing of meaning
+  FrozenSurface::Bricks facets;  // of those bricks that were asked for and did not change since
 
   /// `room`: for bricks that will grow; address space only, until it is used.
   MeshState(const Volume& volume, bool room, const Progress& progress);

@@ -1,15 +1,26 @@
 #include "marching/mesher.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-
-#include "geom/each_once.hpp"
+#include "geom/parallel.hpp"
+#include "marching/facets.hpp"
 #include "marching/mesh_state.hpp"
 #include "marching/to_mesh.hpp"
 
 namespace riffler {
 
 using namespace marching;
+
+namespace {
+
+bool lacks_facets(const MeshState& state, std::size_t brick) {
+  const ActiveBrick* const active = state.bricks.active(brick);
+  return active && active->edges() > 0 && !state.facets[brick];
+}
+
+void prepare(MeshState& state, std::size_t brick) {
+  state.facets[brick] = std::make_shared<const Facets>(state.surface, *state.bricks.active(brick));
+}
+
+}  // namespace
 
 Mesher::Mesher(const Volume& volume, const Progress& progress)
     : state_(std::make_unique<MeshState>(volume, true, progress)) {}
@@ -36,41 +47,39 @@ std::size_t Mesher::triangles() const {
   return 2 * quads;
 }
 
-MeshPatch Mesher::patch(std::size_t brick) const {
-  if (brick >= state_->bricks.size())
-    throw std::out_of_range("there is no brick " + std::to_string(brick) + ", only " +
-                            std::to_string(state_->bricks.size()));
+Vec3i Mesher::shape() const {
+  return {state_->bricks.count(0), state_->bricks.count(1), state_->bricks.count(2)};
+}
+
+MeshPatch Mesher::patch(std::span<const std::size_t> bricks) const {
   state_->check_whole();
-  MeshPatch out;
-  const ActiveBrick* const active = state_->bricks.active(brick);
-  if (!active || active->edges() == 0) return out;
-  const Mesh& mesh = state_->surface.mesh;
-  const auto first = static_cast<std::int32_t>(active->first_vertex),
-             end = first + static_cast<std::int32_t>(active->vertices());
-  const auto triangles = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(2 * active->first_edge);
-  out.own = active->vertices();
-  out.triangles.assign(triangles, triangles + static_cast<std::ptrdiff_t>(2 * active->edges()));
-  std::vector<std::int32_t> foreign;
-  for (const Vec3i& t : out.triangles)
-    for (const std::int32_t v : {t.x, t.y, t.z})
-      if (v < first || v >= end) foreign.push_back(v);
-  each_once(foreign);
-  const auto local = [&](std::int32_t v) {
-    if (v >= first && v < end) return v - first;
-    const auto place = std::lower_bound(foreign.begin(), foreign.end(), v) - foreign.begin();
-    return static_cast<std::int32_t>(out.own) + static_cast<std::int32_t>(place);
-  };
-  for (Vec3i& t : out.triangles) t = {local(t.x), local(t.y), local(t.z)};
-  const Axis axis = state_->lattice.axis();
-  out.vertices.reserve(out.own + foreign.size());
-  for (std::int32_t v = first; v < end; ++v) out.vertices.push_back(Vec3f(to_world(axis, mesh.vertices[v])));
-  for (const std::int32_t v : foreign) out.vertices.push_back(Vec3f(to_world(axis, mesh.vertices[v])));
-  return out;
+  return patch_of(*state_, bricks);
 }
 
 Mesh Mesher::mesh() const {
   state_->check_whole();
   return state_->compact();
+}
+
+std::optional<SurfaceHit> Mesher::pick(const Vec3& origin, const Vec3& direction, PickStats& stats) {
+  state_->check_whole();
+  const auto facets = [&](std::size_t n) {
+    if (lacks_facets(*state_, n)) prepare(*state_, n), ++stats.bricks_prepared;
+    return state_->facets[n].get();
+  };
+  return first_hit(state_->lattice, origin, direction, facets, stats);
+}
+
+FrozenSurface Mesher::freeze(PickStats& stats) {
+  state_->check_whole();
+  std::vector<std::size_t> missing;
+  for (std::size_t n = 0; n < state_->bricks.size(); ++n)
+    if (lacks_facets(*state_, n)) missing.push_back(n);
+  parallel_for(missing.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) prepare(*state_, missing[n]);
+  });
+  stats.bricks_prepared += missing.size();
+  return {state_->lattice, state_->facets};
 }
 
 Mesh to_mesh(const Volume& volume, const Progress& progress) {

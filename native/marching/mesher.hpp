@@ -2,10 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "dexel/volume.hpp"
 #include "geom/progress.hpp"
+#include "marching/patch.hpp"
+#include "marching/pick.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {
@@ -13,15 +17,6 @@ namespace riffler {
 namespace marching {
 struct MeshState;
 }
-
-/// The part of a mesh in one brick of 32 × 32 × 32 cells: its own vertices, then those of its neighbours that its
-/// triangles touch. World frame. What two patches share has the same coordinates in both, bit for bit, and no other
-/// vertices of a mesh have.
-struct MeshPatch {
-  BulkVector<Vec3f> vertices;
-  Triangles triangles;
-  std::size_t own = 0;  ///< vertices that are the brick's own
-};
 
 /// Holds a volume's mesh in bricks, and meshes those again that a change of the volume reached. What it has then is,
 /// bit for bit, what meshing the whole volume would have given.
@@ -41,11 +36,26 @@ class Mesher {
 
   /// Numbers of the bricks that have triangles, ascending.
   std::vector<std::size_t> patches() const;
-  /// Empty for a brick without triangles. Throws std::out_of_range for a number that no brick has.
-  MeshPatch patch(std::size_t brick) const;
+  /// Bricks along each axis of the lattice, with triangles or without: brick n stands at (n / cz / cy, n / cz % cy,
+  /// n % cz).
+  Vec3i shape() const;
+  /// One patch of all these bricks, in their order, without seams between them; empty where none has triangles. Throws
+  /// std::out_of_range for a number that no brick has, std::invalid_argument for one that is there twice.
+  MeshPatch patch(std::span<const std::size_t> bricks) const;
+  MeshPatch patch(std::size_t brick) const { return patch(std::span(&brick, 1)); }
   /// The whole mesh: the same as to_mesh of the volume.
   Mesh mesh() const;
   std::size_t triangles() const;
+
+  /// The first point of the surface along a ray from `origin` in `direction` (of any length but 0), seen from outside
+  /// or inside the material; nothing where there is none. No ray falls through between triangles, and a point that lies
+  /// on the surface is at distance 0. Bricks that changed are made ready for it as rays come to them. Throws
+  /// std::invalid_argument where one is not finite, or the direction is zero.
+  std::optional<SurfaceHit> pick(const Vec3& origin, const Vec3& direction, PickStats& stats);
+  /// The surface as it is now, to be picked while this goes on: a stroke that follows what was there when it began does
+  /// not climb into its own groove. Costs what changed since the last time, at first all; from then on 25 bytes a
+  /// triangle are kept here and shared.
+  FrozenSurface freeze(PickStats& stats);
 
  private:
   std::unique_ptr<marching::MeshState> state_;

@@ -145,7 +145,7 @@ class Decimation {
  private:
   /// One partition, until about half of the triangles are gone or there is nothing left to do.
   void run_patches(int frame) {
-    const Patches patches(surface_.half_edges.mesh, frame, kPatchVertices);
+    const Patches patches(surface_.half_edges.mesh, frame, kPatchVertices, as_it_is());
     std::vector<std::unique_ptr<Worker>> workers(patches.size());
     for_each(patches.size(), [&](std::size_t i) {
       workers[i] = std::make_unique<Worker>(surface_);
@@ -180,9 +180,11 @@ class Decimation {
   }
   template <class Body>
   void for_each(std::size_t n, const Body& body) {
-    const double now = share();
-    parallel_for(
-        n, 1, [&](std::size_t i, std::size_t) { body(i); }, [&](double) { return !progress_ || progress_(now); });
+    parallel_for(n, 1, [&](std::size_t i, std::size_t) { body(i); }, as_it_is());
+  }
+  /// For what brings the share no further.
+  Progress as_it_is() const {
+    return [this, now = share()](double) { return !progress_ || progress_(now); };
   }
 
   static constexpr int kStep = 8;  // a factor of two in cost
@@ -243,13 +245,12 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
     const double end = limits.tolerance ? done + 0.9 * (1 - done) : 1, proof = limits.tolerance ? 0.2 : 0;
     const Progress loop = part(progress, done, end - proof * (end - done));
     const Progress proving = part(progress, end - proof * (end - done), end);
-    HalfEdges half_edges(local);
+    HalfEdges half_edges(local, part(loop, 0, 0.1));
     for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
-    report(loop, 0.1);
-    EdgeCosts costs(half_edges, centre, may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity());
-    report(loop, 0.2);
+    const double grain = may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity();
+    EdgeCosts costs(half_edges, centre, grain, part(loop, 0.1, 0.18));
     std::optional<Traces> traces;
-    if (limits.tolerance) traces.emplace(half_edges);
+    if (limits.tolerance) traces.emplace(half_edges, part(loop, 0.18, 0.2));
     const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
     Decimation(surface, target, loop).run();
     std::vector<int> far;

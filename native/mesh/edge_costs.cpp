@@ -31,24 +31,30 @@ double scale_of(double weight) {
 
 }  // namespace
 
-EdgeCosts::EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain)
+EdgeCosts::EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain, const Progress& progress)
     : mesh_(half_edges.mesh),
       centre_(centre),
       noise_(grain * grain),
       kind_(mesh_.n_vertices(), Free),
       quadric_(mesh_.n_vertices()),
       cost_(mesh_.n_edges()) {
-  parallel_for(mesh_.n_vertices(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const VertexHandle v(static_cast<int>(i));
-      if (mesh_.is_boundary(v)) kind_[i] = Border;
-      if (mesh_.status(v).locked()) kind_[i] = Fixed;
-      add_faces_of(v);
-    }
-  });
-  parallel_for(mesh_.n_edges(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) refresh(EdgeHandle(static_cast<int>(i)));
-  });
+  parallel_for(
+      mesh_.n_vertices(), 1 << 13,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const VertexHandle v(static_cast<int>(i));
+          if (mesh_.is_boundary(v)) kind_[i] = Border;
+          if (mesh_.status(v).locked()) kind_[i] = Fixed;
+          add_faces_of(v);
+        }
+      },
+      part(progress, 0, 0.5));
+  parallel_for(
+      mesh_.n_edges(), 1 << 14,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) refresh(EdgeHandle(static_cast<int>(i)));
+      },
+      part(progress, 0.5, 1));
 }
 
 void EdgeCosts::add_faces_of(VertexHandle v) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "mesh/half_edge.hpp"
 #include "mesh/quadric.hpp"
 
@@ -21,7 +22,7 @@ class EdgeCosts {
  public:
   /// `centre` was subtracted from the float32 coordinates of a file; `grain` is how far at
   /// most a number is from the next of these; if infinite, vertices do not move.
-  EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain);
+  EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain, const Progress& progress = {});
 
   /// The cheapest place for the two ends of `edge`: a vertex's, or one that a file can hold.
   Placement place(OpenMesh::EdgeHandle edge) const { return place(edge, true); }

@@ -33,8 +33,10 @@ void number_fans(const Mesh& mesh, const Adjacency& adjacency, std::vector<int>&
 
 }  // namespace
 
-HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
+HalfEdges::HalfEdges(const Mesh& from, const Progress& progress) : adjacency(from) {
+  report(progress, 0.3);
   number_fans(from, adjacency, corner, source);
+  report(progress, 0.5);
   const int halves = static_cast<int>(corner.size());
   std::vector<int> copies(from.vertices.size(), 0);
   for (const int v : source) ++copies[v];
@@ -52,6 +54,7 @@ HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
       ++edges;
     }
   }
+  report(progress, 0.6);
   mesh.resize(source.size(), static_cast<std::size_t>(edges), static_cast<std::size_t>(faces));
   parallel_for(source.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -61,6 +64,7 @@ HalfEdges::HalfEdges(const Mesh& from) : adjacency(from) {
     }
   });
 
+  report(progress, 0.8);
   const auto end_corner = [&](int half) { return corner[next_half(half)]; };
   OpenMesh::FaceHandle face(-1);
   for (int half = 0; half < halves; ++half) {

@@ -4,6 +4,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/mesh.hpp"
 
@@ -37,7 +38,7 @@ struct HalfEdges {
   Adjacency adjacency;
   std::vector<int> corner;  // vertex here at which each half-edge of `adjacency` starts, -1 for triangles left out
 
-  explicit HalfEdges(const Mesh& from);
+  explicit HalfEdges(const Mesh& from, const Progress& progress = {});
   /// Triangles that are not deleted, in their old order, with the vertices that they use, in their old order: as in
   /// `from` where they are still where they were in `start`, else about `centre`.
   Mesh to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre) const;

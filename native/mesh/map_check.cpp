@@ -114,10 +114,10 @@ MapCheck::MapCheck(const Traces& traces, double tolerance)
       sheets_(mesh_.n_faces()) {}
 
 std::vector<int> MapCheck::far_vertices(const Progress& progress) {
-  map_all(progress);
+  map_all(part(progress, 0, 0.8));
   std::vector<int> result;
   check_holes(result);
-  check_faces(result);
+  check_faces(result, part(progress, 0.8, 1));
   each_once(result);
   return result;
 }
@@ -228,10 +228,12 @@ void MapCheck::check_holes(std::vector<int>& far) const {
 
 /// Faces that may not be covered, against the old surface. Where one is far off, what was near its corners stays, and
 /// what went to it.
-void MapCheck::check_faces(std::vector<int>& far) const {
+void MapCheck::check_faces(std::vector<int>& far, const Progress& progress) const {
+  report(progress, 0);
   std::vector<Doubt> doubt = doubts();
   // Large pieces along the rims first: hardly any is far off, and needs to be told from what is covered there.
   for (const double smallest : {kCoarse * tolerance_, tolerance_}) {
+    report(progress, smallest > tolerance_ ? 0.2 : 0.6);
     const std::vector<char> is_near = faces_near(doubt, smallest);
     std::size_t left = 0;
     for (std::size_t i = 0; i < doubt.size(); ++i)

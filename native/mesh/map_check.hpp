@@ -43,7 +43,7 @@ class MapCheck {
   void map_all(const Progress& progress);
   std::vector<Doubt> doubts() const;
   void check_holes(std::vector<int>& far) const;
-  void check_faces(std::vector<int>& far) const;
+  void check_faces(std::vector<int>& far, const Progress& progress) const;
   std::vector<char> faces_near(const std::vector<Doubt>& doubt, double smallest) const;
   void add_uncovered(const Doubt& doubt, const std::vector<SurfaceMap::Segment>& rim, const Corners& p, double smallest,
                      int depth, std::vector<Corners>& pieces) const;

@@ -28,13 +28,14 @@ struct Place {
 
 }  // namespace
 
-Patches::Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_one)
+Patches::Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_one, const Progress& progress)
     : patch_(mesh.n_vertices(), -1), inner_(mesh.n_vertices(), 0) {
   for (const VertexHandle v : mesh.all_vertices())
     if (!mesh.status(v).deleted() && mesh.halfedge_handle(v).is_valid()) order_.push_back(v.idx());
   int levels = 0;
   while ((order_.size() >> levels) > vertices_of_one) ++levels;
-  split(mesh, frame, levels);
+  split(mesh, frame, levels, part(progress, 0, 0.8));
+  report(progress, 0.8);
   parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
     for_each_vertex(patch, [&](VertexHandle v) { patch_[v.idx()] = static_cast<int>(patch); });
   });
@@ -53,7 +54,7 @@ Patches::Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_on
 }
 
 /// Level by level at the median along the longest side. Ties are decided by the index.
-void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels) {
+void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels, const Progress& progress) {
   const std::array<Vec3, 3> axes = axes_of(frame);
   std::vector<Place> places(order_.size());
   parallel_for(places.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
@@ -64,7 +65,8 @@ void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels) {
     }
   });
   const auto first = [&](std::size_t place, int level) { return (place * places.size()) >> level; };
-  for (int level = 0; level < levels; ++level)
+  for (int level = 0; level < levels; ++level) {
+    report(progress, static_cast<double>(level) / levels);
     parallel_for(std::size_t{1} << level, 1, [&](std::size_t place, std::size_t) {
       const auto begin = places.begin() + static_cast<std::ptrdiff_t>(first(place, level));
       const auto middle = places.begin() + static_cast<std::ptrdiff_t>(first(2 * place + 1, level + 1));
@@ -79,6 +81,7 @@ void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels) {
         return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.vertex < b.vertex;
       });
     });
+  }
   begin_.clear();
   for (std::size_t place = 0; place <= std::size_t{1} << levels; ++place) begin_.push_back(first(place, levels));
   parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "mesh/half_edge.hpp"
 
 namespace riffler {
@@ -12,7 +13,7 @@ namespace riffler {
 class Patches {
  public:
   /// `frame` turns the boxes: the seams of two frames only cross. The pieces do not depend on the number of threads.
-  Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_one);
+  Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_one, const Progress& progress = {});
 
   std::size_t size() const { return begin_.size() - 1; }
   bool inner(OpenMesh::VertexHandle v) const { return inner_[v.idx()]; }
@@ -23,7 +24,7 @@ class Patches {
   }
 
  private:
-  void split(const HalfEdgeMesh& mesh, int frame, int levels);
+  void split(const HalfEdgeMesh& mesh, int frame, int levels, const Progress& progress);
 
   std::vector<int> order_;
   std::vector<std::size_t> begin_;

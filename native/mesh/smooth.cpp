@@ -25,12 +25,14 @@ constexpr double kCorner = -0.5;
 /// What every vertex is drawn to: all its neighbours, on a feature line the two along it, nothing if it must stay.
 class Neighbours {
  public:
-  Neighbours(const Mesh& mesh, const Adjacency& adjacency, double feature_angle) : begin_(mesh.vertices.size() + 1, 0) {
+  Neighbours(const Mesh& mesh, const Adjacency& adjacency, double feature_angle, const Progress& progress)
+      : begin_(mesh.vertices.size() + 1, 0) {
     std::vector<char> fixed(mesh.vertices.size(), 0);
     const int halves = static_cast<int>(3 * mesh.triangles.size());
     for (int half = 0; half < halves; ++half)
       if (adjacency.twin(half) < 0) fixed[start_of(mesh, half)] = fixed[end_of(mesh, half)] = 1;
     const std::vector<char> sharp = sharp_edges(mesh, adjacency, feature_angle);
+    report(progress, 0.4);
     std::vector<Line> lines(mesh.vertices.size());
     for (int half = 0; half < halves; ++half)
       if (sharp[half]) lines[start_of(mesh, half)].add(end_of(mesh, half));
@@ -43,6 +45,7 @@ class Neighbours {
     for (int half = 0; half < halves; ++half)
       if (draws(half)) ++begin_[start_of(mesh, half) + 1];
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    report(progress, 0.8);
     other_.resize(begin_.back());
     std::vector<std::size_t> at(begin_.begin(), begin_.end() - 1);
     for (int half = 0; half < halves; ++half)
@@ -118,11 +121,12 @@ void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours
 
 /// Moves every vertex on along its normal, in proportion to how far it has moved, so that the mesh has the volume that
 /// it had. What was smooth, and stayed, stays.
-void restore_volume(const Mesh& mesh, Vertices& vertices, double limit) {
+void restore_volume(const Mesh& mesh, Vertices& vertices, double limit, const Progress& progress) {
   constexpr int kRounds = 3;  // the first one is exact up to the square of the shift and to what `limit` holds back
   const double wanted = volume(mesh);
   Mesh now{vertices, mesh.triangles};
   for (int round = 0; round < kRounds; ++round) {
+    report(progress, static_cast<double>(round) / kRounds);
     std::vector<Vec3> slope(vertices.size(), Vec3(0));  // of the volume, times 6
     for (const Vec3i& t : mesh.triangles) {
       const Vec3 &a = now.vertices[t.x], &b = now.vertices[t.y], &c = now.vertices[t.z];
@@ -132,6 +136,7 @@ void restore_volume(const Mesh& mesh, Vertices& vertices, double limit) {
     double sum = 0;
     for (std::size_t v = 0; v < slope.size(); ++v)
       sum += glm::length(slope[v]) / 6 * glm::length(now.vertices[v] - mesh.vertices[v]);
+    report(progress, (round + 0.5) / kRounds);
     const double missing = wanted - volume(now), share = missing / sum;
     // A correction as large as the smoothing itself would be none.
     if (missing == 0 || !(std::abs(share) < 0.5)) break;
@@ -157,10 +162,13 @@ class Repair {
     for (const Vec3i& t : mesh.triangles) old_.push_back(cross_in_float(mesh.vertices, t));
   }
 
-  void run() {
-    for (;;) {
+  void run(const Progress& progress) {
+    for (int round = 0;; ++round) {
+      const auto hear = [&](double middle) { report(progress, (round + middle) / (round + 2.0)); };
+      hear(0);
       back_.assign(vertices_.size(), 0);
       mark_triangles();
+      hear(0.5);
       mark_meeting();
       bool any = false;
       for (std::size_t v = 0; v < back_.size(); ++v)
@@ -221,21 +229,22 @@ Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, d
   if (!(feature_angle > 0 && feature_angle <= std::acos(-1.0)))
     throw std::invalid_argument("feature_angle must be above 0 and at most pi, not " + std::to_string(feature_angle));
   validate(mesh);
-  const Adjacency adjacency(mesh);
-  const Neighbours neighbours(mesh, adjacency, feature_angle);
+  const EdgeTable edges(mesh);
+  report(progress, 0.03);
+  const Adjacency adjacency(mesh, edges);
+  const Neighbours neighbours(mesh, adjacency, feature_angle, part(progress, 0.06, 0.1));
   // A hair less than asked for, so that rounding does not exceed it.
   const double limit = tolerance ? *tolerance * (1 - 1e-12) : std::numeric_limits<double>::infinity();
   Vertices vertices = mesh.vertices, scratch(vertices.size());
   for (int i = 0; i < iterations; ++i) {
-    report(progress, 0.8 * i / iterations);
+    report(progress, 0.1 + 0.7 * i / iterations);
     step(vertices, scratch, mesh, neighbours, kShrink, limit);
     step(scratch, vertices, mesh, neighbours, kInflate, limit);
   }
   report(progress, 0.8);
   if (iterations > 0) {
-    restore_volume(mesh, vertices, limit);
-    report(progress, 0.9);
-    Repair(mesh, adjacency, vertices).run();
+    restore_volume(mesh, vertices, limit, part(progress, 0.8, 0.9));
+    Repair(mesh, adjacency, vertices).run(part(progress, 0.9, 1));
   }
   return {std::move(vertices), mesh.triangles};
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "mesh/collapse.hpp"
 
 namespace riffler {
@@ -31,7 +32,7 @@ struct Traces {
   };
 
   /// `half_edges` before the first collapse; must outlive this.
-  explicit Traces(const HalfEdges& half_edges);
+  explicit Traces(const HalfEdges& half_edges, const Progress& progress = {});
 
   struct OldVertex {
     Vec3 point;

@@ -11,6 +11,7 @@ namespace riffler {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kMapped = 0.9;  // share of the work that the maps are
 
 /// The free nodes of one point's map.
 struct Layer {
@@ -30,7 +31,9 @@ struct Step {
 
 class Chain {
  public:
-  Chain(std::vector<Layer> layers, const TiltRule& rule) : layers_(std::move(layers)), rule_(rule) {}
+  /// Refers to `rule` and `progress`, which is told at every layer that the search goes on.
+  Chain(std::vector<Layer> layers, const TiltRule& rule, const Progress& progress)
+      : layers_(std::move(layers)), rule_(rule), progress_(progress) {}
 
   const Layer& layer(std::size_t k) const { return layers_[k % layers_.size()]; }
 
@@ -65,7 +68,10 @@ class Chain {
   /// Steps over layers 0 … count − 1, starting from `start`; fewer where one is not reached.
   std::vector<Step> run(Step start, std::size_t count) const {
     std::vector<Step> out{std::move(start)};
-    while (out.size() < count && out.back().reached()) out.push_back(next(out.back(), out.size()));
+    while (out.size() < count && out.back().reached()) {
+      report(progress_, kMapped);
+      out.push_back(next(out.back(), out.size()));
+    }
     return out;
   }
   static std::size_t best(const Step& step) {
@@ -81,6 +87,7 @@ class Chain {
  private:
   std::vector<Layer> layers_;
   const TiltRule& rule_;
+  const Progress& progress_;
 };
 
 /// A round that comes back to its first node: the nodes, one more than layers; empty where no start allows one.
@@ -124,7 +131,8 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
   std::iota(points.begin(), points.end(), std::size_t{0});
   MapRule states = rule.map;
   states.clearances = false;
-  const std::vector<OrientationMap> maps = orientation_maps(path, points, assembly, collider, states, progress);
+  const std::vector<OrientationMap> maps =
+      orientation_maps(path, points, assembly, collider, states, part(progress, 0, kMapped));
   std::vector<Layer> layers(n);
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = 0; i < maps[k].axes.size(); ++i)
@@ -135,7 +143,7 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
       return none(
           k, "no orientation is free: " + orientation_maps(path, {k}, assembly, collider, rule.map).front().why_none());
   }
-  const Chain chain(std::move(layers), rule);
+  const Chain chain(std::move(layers), rule, progress);
   const std::vector<Step> steps = chain.run(chain.first(0), n);
   if (!steps.back().reached())
     return none(steps.size() - 1, "none of its free orientations is within max_change of those before it");
@@ -154,6 +162,7 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
     if (k > 0) turned(out.axes[k - 1], out.axes[k]);
   }
   if (path.closed && n > 1) turned(out.axes.back(), out.axes.front());
+  report(progress, 1);
   return out;
 }
 

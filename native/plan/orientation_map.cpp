@@ -108,7 +108,10 @@ std::vector<OrientationMap> orientation_maps(const PencilPath& path, const std::
                                   " points");
   const CutterSupport cutter(assembly.tool());
   std::vector<OrientationMap> out;
-  for (const std::size_t k : points) out.push_back(blank(path, k, rule));
+  for (const std::size_t k : points) {
+    report(progress, 0);
+    out.push_back(blank(path, k, rule));
+  }
   const std::size_t wide = rule.inclinations.size() * rule.tilts.size();
   parallel_for(
       points.size() * wide, 16,

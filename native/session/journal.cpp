@@ -72,6 +72,7 @@ Program to_program(const Journal& journal, std::map<int, Tool> tools, const Jour
   const std::span<const JournalStroke> strokes = journal.strokes();
   for (std::size_t k = 0; k < strokes.size(); ++k) {
     const JournalStroke& stroke = strokes[k];
+    if (stroke.mode != StrokeMode::Remove && stroke.mode != StrokeMode::Beside) continue;
     paths.push_back(
         {stroke.poses, options.feed ? std::vector{*options.feed} : feeds(stroke, k), options.spindle, stroke.tool});
   }

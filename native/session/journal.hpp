@@ -58,9 +58,9 @@ struct JournalProgramOptions {
   Clearance clearance;         ///< the stock's box is added to what is occupied
 };
 
-/// Each stroke as one cut. Feeds from times are held within 1 to 100 000 mm/min; a row whose tip stands still has the
-/// feed of the row before. Throws std::invalid_argument where a stroke has no times, or never moves, and no feed is
-/// given.
+/// Each stroke that removes as one cut; what others put on or protect no machine can make. Feeds from times are held
+/// within 1 to 100 000 mm/min; a row whose tip stands still has the feed of the row before. Throws
+/// std::invalid_argument where a stroke has no times, or never moves, and no feed is given.
 Program to_program(const Journal& journal, std::map<int, Tool> tools, const JournalProgramOptions& options = {});
 
 }  // namespace riffler

@@ -18,7 +18,17 @@ constexpr std::string_view kMagic = "RIFFLERJ", kRecordMagic = "RREC";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderSize = 16, kRecordHeaderSize = 16, kRecordTailSize = 4;
 
-enum Kind : std::uint32_t { kStock = 1, kTool = 2, kNote = 3, kStroke = 4, kMore = 5, kTakeBack = 6, kBringBack = 7 };
+enum Kind : std::uint32_t {
+  kStock = 1,
+  kTool = 2,
+  kNote = 3,
+  kStroke = 4,
+  kMore = 5,
+  kTakeBack = 6,
+  kBringBack = 7,
+  kClayStroke = 8,  // a stroke, and its mode
+  kMaskedStock = 9  // a stock, and the name of its mask
+};
 
 bool starts_with(View bytes, std::string_view text) {
   return bytes.size() >= text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
@@ -133,6 +143,13 @@ void take_rows(ByteTaker& from, JournalStroke& out) {
   }
 }
 
+StrokeMode known_mode(std::uint32_t mode) {
+  if (mode >= kStrokeModes)
+    throw std::invalid_argument("a stroke of mode " + std::to_string(mode) +
+                                ", unknown here: a newer Riffler wrote it");
+  return static_cast<StrokeMode>(mode);
+}
+
 Bytes record(Kind kind, const Bytes& payload) {
   if (payload.size() > 0xFFFFFFFF)
     throw std::invalid_argument("a record of 4 GB or more: extend a stroke piece by piece");
@@ -169,7 +186,9 @@ Bytes stock_record(const JournalStock& stock) {
   put(out, stock.pitch);
   put_text(out, stock.directions);
   put_text(out, stock.snapshot);
-  return record(kStock, out);
+  if (stock.mask.empty()) return record(kStock, out);
+  put_text(out, stock.mask);
+  return record(kMaskedStock, out);
 }
 
 Bytes tool_record(int number, const std::string& json) {
@@ -187,12 +206,16 @@ Bytes note_record(const std::string& key, const std::string& value) {
 }
 
 Bytes stroke_record(const JournalStroke& stroke) {
+  // What only removes has the record that it always had: readers that know no modes read it.
+  const bool removes = stroke.mode == StrokeMode::Remove;
   Bytes out;
   put(out, static_cast<std::uint32_t>(stroke.tool));
   put(out, stroke.tolerance);
   put_text(out, stroke.name);
   put_rows(out, stroke.rows());
-  return record(kStroke, out);
+  if (!removes) put(out, static_cast<std::uint32_t>(stroke.mode));
+  if (stroke.mode == StrokeMode::Soften) put(out, stroke.strength);
+  return record(removes ? kStroke : kClayStroke, out);
 }
 
 Bytes more_record(const JournalRows& rows) {
@@ -243,13 +266,15 @@ bool record_follows(View bytes) {
 void apply_record(const Record& record, Journal& journal) {
   ByteTaker from(record.payload);
   switch (record.kind) {
-    case kStock: {
+    case kStock:
+    case kMaskedStock: {
       JournalStock stock;
       for (Vec3* corner : {&stock.box.lower, &stock.box.upper})
         for (int k = 0; k < 3; ++k) (*corner)[k] = from.number<double>();
       stock.pitch = from.number<double>();
       stock.directions = from.text();
       stock.snapshot = from.text();
+      if (record.kind == kMaskedStock) stock.mask = from.text();
       journal.set_stock(std::move(stock));
       break;
     }
@@ -263,12 +288,15 @@ void apply_record(const Record& record, Journal& journal) {
       journal.add_note(std::move(key), from.text());
       break;
     }
-    case kStroke: {
+    case kStroke:
+    case kClayStroke: {
       JournalStroke stroke;
       stroke.tool = static_cast<int>(from.number<std::uint32_t>());
       stroke.tolerance = from.number<double>();
       stroke.name = from.text();
       take_rows(from, stroke);
+      if (record.kind == kClayStroke) stroke.mode = known_mode(from.number<std::uint32_t>());
+      if (stroke.mode == StrokeMode::Soften) stroke.strength = from.number<double>();
       journal.add_stroke(std::move(stroke));
       break;
     }

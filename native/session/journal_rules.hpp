@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -20,7 +21,14 @@ struct JournalStock {
   double pitch = 0;
   std::string directions = "z";  ///< "z" or "xyz"
   std::string snapshot;          ///< file name beside the journal (.rvol), or empty: a block
+  std::string mask{};            ///< file name beside the journal (.rvol) of what is protected, or empty: nothing is
 };
+
+/// What a stroke does where the tool sweeps: to the stock, but for what is protected, or to what is protected. Soften:
+/// a dab at the tip of each row, as wide as the tool (dexel/soften.hpp). Beside: removes as a session does beside what
+/// is protected (session/protection.hpp); those that follow each other have one beginning, and no seams between them.
+enum class StrokeMode : std::uint32_t { Remove = 0, Add = 1, Mask = 2, Unmask = 3, Soften = 4, Beside = 5 };
+inline constexpr std::uint32_t kStrokeModes = 6;
 
 /// Rows of a stroke. A column beside the poses is as long as they are, or empty: not recorded.
 struct JournalRows {
@@ -35,7 +43,8 @@ inline bool stands(const Pose& a, const Pose& b) {
   return a.tip == b.tip && a.axis == b.axis;
 }
 
-/// One stroke: what was carved in one go with one tool (replay.hpp).
+/// One stroke: what was carved in one go with one tool (replay.hpp). Of one that removes, where nothing is protected,
+/// any division into carves leaves the same bytes; of others but those beside each carve is a stroke.
 struct JournalStroke {
   int tool = 0;
   double tolerance = 0.01;  ///< mm, as carve() was given it
@@ -44,6 +53,8 @@ struct JournalStroke {
   std::vector<double> times{};  ///< this and the following as JournalRows
   std::vector<Wrench> forces{};
   std::vector<double> removed{};
+  StrokeMode mode = StrokeMode::Remove;
+  double strength = 0.5;  ///< 0 … 1, of one that softens
 
   JournalRows rows() const { return {poses, times, forces, removed}; }
   void append(const JournalRows& rows);

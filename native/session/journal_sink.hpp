@@ -28,6 +28,7 @@ class JournalSink final : public StrokeSink {
   /// Any thread: why rows wait, or were refused; empty where all is well.
   std::string problem() const { return stream_.problem(); }
   std::size_t waiting() const noexcept { return stream_.waiting(); }
+  bool written(double seconds) const { return stream_.written(seconds); }
 
  private:
   void owe(int strokes) noexcept;

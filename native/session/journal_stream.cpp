@@ -89,6 +89,16 @@ std::size_t JournalStream::waiting() const noexcept {
   return static_cast<std::size_t>(head_.load(std::memory_order_acquire) - tail);
 }
 
+bool JournalStream::written(double seconds) const {
+  const std::uint64_t head = head_.load(std::memory_order_acquire);
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (tail_.load(std::memory_order_acquire) < head) {
+    if (std::chrono::steady_clock::now() >= give_up) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
 void JournalStream::write_all() {
   const std::uint64_t end = head_.load(std::memory_order_acquire);
   while (write_next(end)) {
@@ -142,7 +152,7 @@ void JournalStream::write_rows(std::uint64_t begin, std::uint64_t end) {
   for (std::uint64_t k = begin; k < end; ++k) add(piece_, slot(k).row);
   try {
     if (begun_) {
-      piece_.tool = begun_->tool, piece_.tolerance = begun_->tolerance;
+      piece_.tool = begun_->tool, piece_.tolerance = begun_->tolerance, piece_.mode = options_.mode;
       writer_.add_stroke(piece_);
     } else if (open_) {
       writer_.extend_stroke(piece_.rows());

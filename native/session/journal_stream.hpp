@@ -35,6 +35,7 @@ class JournalStream {
     double drain = 0.05;         ///< s from one look at the ring to the next
     double sync = 1;             ///< s from one sync to the next while rows come; and one for each end of a stroke
     double retry = 1;            ///< s from one refusal of the disk to the next attempt
+    StrokeMode mode = StrokeMode::Remove;  ///< of all strokes
   };
 
   /// `writer` must outlive this, and is the keeper's: see `use`. Takes all its memory here. std::invalid_argument for
@@ -74,6 +75,8 @@ class JournalStream {
   std::string problem() const;
   /// Rows that are not in the file yet; any thread.
   std::size_t waiting() const noexcept;
+  /// Waits, up to so many seconds, until all that was there at the call is in the file. False: it is not yet.
+  bool written(double seconds) const;
   /// Rows that no journal can hold.
   std::uint64_t refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
 

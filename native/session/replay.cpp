@@ -4,27 +4,87 @@
 #include <string>
 
 #include "dexel/file.hpp"
+#include "dexel/soften.hpp"
+#include "session/protection.hpp"
 #include "sweep/carve.hpp"
 
 namespace riffler {
 
 namespace {
 
-/// The volume as the session found it.
-Volume stock_of(const Journal& journal, const std::filesystem::path& folder, const Progress& progress) {
+/// A journal from somebody else must not reach for other files than those beside it.
+Volume snapshot_of(const std::string& file, const char* what, const Frame& frame, const std::filesystem::path& folder,
+                   const Progress& progress) {
+  const std::filesystem::path name = file;
+  if (name != name.filename() || name == "." || name == "..")
+    throw std::invalid_argument(std::string(what) + "'s snapshot must be a file's name, not \"" + file + "\"");
+  if (folder.empty()) throw std::invalid_argument(std::string(what) + " is the snapshot " + file + ": name its folder");
+  Volume volume = load(folder / name, progress);
+  if (!(volume.frame() == frame))
+    throw std::invalid_argument("the snapshot " + file + " has another frame than the journal's stock");
+  return volume;
+}
+
+/// Stock and mask as the session found them.
+Replayed begin(const Journal& journal, const std::filesystem::path& folder, const Progress& progress) {
   if (!journal.stock()) throw std::invalid_argument("the journal has no stock to replay on");
   const JournalStock& stock = *journal.stock();
   const Frame frame{stock.box, stock.pitch, stock.directions};
-  if (stock.snapshot.empty()) return Volume::block(frame);
-  // A journal from somebody else must not reach for other files than those beside it.
-  const std::filesystem::path name = stock.snapshot;
-  if (name != name.filename() || name == "." || name == "..")
-    throw std::invalid_argument("the stock's snapshot must be a file's name, not \"" + stock.snapshot + "\"");
-  if (folder.empty()) throw std::invalid_argument("the stock is the snapshot " + stock.snapshot + ": name its folder");
-  Volume volume = load(folder / name, progress);
-  if (!(volume.frame() == frame))
-    throw std::invalid_argument("the snapshot " + stock.snapshot + " has another frame than the journal's stock");
-  return volume;
+  Replayed out{
+      stock.snapshot.empty() ? Volume::block(frame) : snapshot_of(stock.snapshot, "the stock", frame, folder, progress),
+      {}};
+  if (!stock.mask.empty()) out.mask = snapshot_of(stock.mask, "the mask", frame, folder, {});
+  return out;
+}
+
+void apply_dabs(const JournalStroke& stroke, const Tool& tool, Replayed& to, const Progress& progress) {
+  std::vector<Vec3> centres;
+  for (const Pose& pose : stroke.poses) centres.push_back(pose.tip);
+  SoftenOptions options;
+  options.radius = 0.5 * tool.diameter();
+  options.strength = stroke.strength;
+  options.protect = to.mask ? &*to.mask : nullptr;
+  options.progress = progress;
+  soften(to.volume, centres, options);
+}
+
+/// Strokes beside what is protected, from the first on.
+struct Beside {
+  Protection protection;
+  Volume left;
+};
+
+void apply_beside(const JournalStroke& stroke, const Tool& tool, const Replayed& to, std::optional<Beside>& run,
+                  const Progress& progress) {
+  if (!run) {
+    const Protection protection(to.volume, *to.mask);
+    run.emplace(Beside{protection, protection.cuttable()});
+  }
+  CarveOptions options;
+  options.tolerance = stroke.tolerance;
+  options.progress = progress;
+  carve(run->left, tool, moves_of(stroke), options);
+}
+
+/// The volume is what those strokes have left.
+void end_run(Replayed& to, std::optional<Beside>& run) {
+  if (run) to.volume = run->protection.whole(run->left);
+  run.reset();
+}
+
+void apply(const JournalStroke& stroke, const Tool& tool, Replayed& to, std::optional<Beside>& run,
+           const Progress& progress) {
+  if (stroke.mode == StrokeMode::Beside && to.mask) return apply_beside(stroke, tool, to, run, progress);
+  end_run(to, run);
+  if (stroke.mode == StrokeMode::Soften) return apply_dabs(stroke, tool, to, progress);
+  CarveOptions options;
+  options.tolerance = stroke.tolerance;
+  options.progress = progress;
+  const bool masks = stroke.mode == StrokeMode::Mask || stroke.mode == StrokeMode::Unmask;
+  if (masks && !to.mask) to.mask.emplace(to.volume.frame());
+  if (stroke.mode == StrokeMode::Add || stroke.mode == StrokeMode::Mask) options.mode = CarveMode::Add;
+  if (!masks && to.mask) options.protect = &*to.mask;
+  carve(masks ? *to.mask : to.volume, tool, moves_of(stroke), options);
 }
 
 }  // namespace
@@ -37,10 +97,11 @@ std::vector<Pose> moves_of(const JournalStroke& stroke) {
   return out;
 }
 
-Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder,
-              const Progress& progress) {
+Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder,
+                    const Progress& progress) {
   constexpr double kStock = 0.05;  // share of the work, for the listener
-  Volume volume = stock_of(journal, folder, part(progress, 0, kStock));
+  Replayed out = begin(journal, folder, part(progress, 0, kStock));
+  std::optional<Beside> run;
   double rows = 0, done = 0;
   for (const JournalStroke& stroke : journal.strokes()) rows += static_cast<double>(stroke.poses.size());
   const auto share = [&] { return rows > 0 ? kStock + (1 - kStock) * done / rows : 1; };
@@ -51,18 +112,21 @@ Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const st
     if (tool == tools.end()) throw std::invalid_argument(name + ": there is no tool " + std::to_string(stroke.tool));
     const double begin = share();
     done += static_cast<double>(stroke.poses.size());
-    CarveOptions options;
-    options.tolerance = stroke.tolerance;
-    options.progress = part(progress, begin, share());
     try {
-      carve(volume, tool->second, moves_of(stroke), options);
+      apply(stroke, tool->second, out, run, part(progress, begin, share()));
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(name + ": " + e.what());
     }
     report(progress, share());
   }
+  end_run(out, run);
   report(progress, 1);
-  return volume;
+  return out;
+}
+
+Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder,
+              const Progress& progress) {
+  return replay_all(journal, tools, folder, progress).volume;
 }
 
 }  // namespace riffler

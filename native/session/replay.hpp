@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,10 +19,20 @@ namespace riffler {
 /// stands. One row cuts nothing, as one pose does in `carve`.
 std::vector<Pose> moves_of(const JournalStroke& stroke);
 
-/// The stock after the strokes that count, bit for bit as their moves left it one by one (MoveCarver). The stock is a
-/// block, or its snapshot in `folder`. Throws std::invalid_argument naming the stroke: no stock, a tool that is not in
-/// `tools`, poses that make no move; a snapshot that is no plain file name, or of another frame. FormatError as load();
-/// Cancelled.
+/// What the strokes have left.
+struct Replayed {
+  Volume volume;
+  std::optional<Volume> mask;  ///< what is protected; nothing as long as no stroke has asked for it
+};
+
+/// The stock and its mask after the strokes that count, bit for bit as their moves left them one by one (MoveCarver,
+/// carve of one stroke). The stock is a block, or its snapshot in `folder`, where the mask's is, too. Throws
+/// std::invalid_argument naming the stroke: no stock, a tool that is not in `tools`, poses that make no move; a
+/// snapshot that is no plain file name, or of another frame. FormatError as load(); Cancelled.
+Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
+                    const Progress& progress = {});
+
+/// The stock alone.
 Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
               const Progress& progress = {});
 

@@ -120,7 +120,7 @@ SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noex
 
 /// The tool's step, and what the hand shall feel of it.
 Wrench SculptLoop::sculpt(const PenSample& sample, double dt, SculptTick& tick) noexcept {
-  tick.tool = last_tool_;
+  tick.from = tick.tool = last_tool_;
   if (dt > 0 && std::isfinite(dt)) owed_ += dt;
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock) return missed(dt, nullptr, tick);
@@ -155,6 +155,7 @@ Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, bool
   try {
     const Pose target = scene.workspace.target(sample.pose, sample.buttons);
     const Twist twist = scene.workspace.to_target({sample.velocity, sample.turning});
+    tick.from = last_tool_;
     const SculptStep::Result r = scene.step.step(target, twist, owed_, cutting);
     owed_ = 0;
     if (r.cuts > 0 && !scene.carver.replaced().empty()) {
@@ -162,6 +163,7 @@ Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, bool
       if (!in_stroke_) begin_stroke(dt);
     }
     last_tool_ = tick.tool = r.tool;
+    tick.on_tool = r.on_tool;
     tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
     return held_over_.stepped(scene.workspace.to_grip(r.on_grip), dt);
   } catch (const std::bad_alloc&) {

@@ -39,8 +39,10 @@ struct SculptLoopSettings {
 struct SculptTick {
   double time = 0;     ///< s since the loop began
   Pose grip, tool;     ///< at its end; the grip in the device's frame
+  Pose from;           ///< the tool at its begin: not where the last one left it where it was placed anew
   Wrench wrench;       ///< on the hand, about the grip's point, device's frame: what the device was told
   Wrench applied;      ///< what it had, as far as it says so; otherwise what it was told a tick before
+  Wrench on_tool;      ///< of the material, about the tip, part's frame: what the tool feels; nothing where it is air
   double removed = 0;  ///< mm³
   double depth = 0;    ///< mm that the tool is at most in what it must not enter
   double energy = 0;   ///< N·mm: of the account

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -36,7 +37,7 @@ void SessionSettings::validate() const {
 }
 
 Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen,
-                 std::shared_ptr<const Collider> obstacles, const SessionSettings& settings)
+                 std::shared_ptr<const Collider> obstacles, const SessionSettings& settings, const Volume* protect)
     : settings_((settings.validate(), settings)),
       tool_(tool),
       pen_(std::move(pen)),
@@ -44,7 +45,8 @@ Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen
       shown_(stock.revision()) {
   if (!pen_) throw std::invalid_argument("a session needs a device");
   settings_.loop = for_device(settings_.loop, pen_->capability());
-  moments_.push_back({0, stock});
+  if (protect) left_ = protection_.emplace(stock, *protect).cuttable();
+  moments_.push_back({0, stock, left_});
 }
 
 Session::~Session() {
@@ -67,7 +69,7 @@ std::optional<Pose> Session::start_pose() const {
 
 void Session::start() {
   if (state_ != State::New) throw std::runtime_error("a session runs once: make another");
-  loop_ = std::make_shared<SculptLoop>(settings_.loop, moments_[0].volume, tool_, obstacles_.get(), pen_->capability(),
+  loop_ = std::make_shared<SculptLoop>(settings_.loop, moments_[0].cut(), tool_, obstacles_.get(), pen_->capability(),
                                        start_pose(), sink_.get());
   reserve_.fill(kLargestBlock, kBlocks);
   if (!pen_->set_step(loop_)) poller_ = std::thread([this] { poll(); });
@@ -110,16 +112,25 @@ SessionFrame Session::frame(Volume& shown) {
   return frame;
 }
 
+/// What the loop has cut since comes into `shown`.
+TileExchange::Mark Session::follow(Volume& shown, std::vector<TileExchange::Place>& places) {
+  if (!protection_) return loop_->show(shown, places);
+  const std::size_t before = places.size();
+  const TileExchange::Mark mark = loop_->show(*left_, places);
+  protection_->show(*left_, std::span(places).subspan(before), shown);
+  return mark;
+}
+
 void Session::look(Volume& shown, SessionFrame& frame) {
   if (shown.revision() != shown_)
     throw std::runtime_error("the volume was changed by somebody else while the session ran; stop the session first");
-  const TileExchange::Mark mark = loop_->show(shown, frame.tiles);
+  const TileExchange::Mark mark = follow(shown, frame.tiles);
   shown_ = shown.revision();
   for (SculptTick tick; loop_->take(tick);) frame.ticks.push_back(tick);
   frame.strokes = mark.strokes, frame.in_stroke = mark.in_stroke, frame.untold = loop_->untold();
   if (mark.in_stroke || mark.strokes == strokes_) return;
   moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(here_) + 1, moments_.end());  // nothing to redo
-  moments_.push_back({mark.strokes - std::exchange(strokes_, mark.strokes), shown});
+  moments_.push_back({mark.strokes - std::exchange(strokes_, mark.strokes), shown, left_});
   if (moments_.size() > settings_.undo + 1) moments_.erase(moments_.begin());
   here_ = moments_.size() - 1;
 }
@@ -143,10 +154,11 @@ std::size_t Session::go_to(Volume& shown, int step, const char* what) {
   if (step < 0 ? here_ == 0 : here_ + 1 == moments_.size()) return 0;
   const std::size_t next = step < 0 ? here_ - 1 : here_ + 1;
   const std::uint64_t strokes = moments_[std::max(here_, next)].strokes;
-  if (!loop_->replace(moments_[next].volume, step * static_cast<std::int64_t>(strokes)))
+  if (!loop_->replace(moments_[next].cut(), step * static_cast<std::int64_t>(strokes)))
     throw std::runtime_error(std::string("nothing can be ") + what + " in the middle of a stroke");
   note_differences(shown, moments_[next].volume);
   shown.restore(moments_[next].volume);
+  left_ = moments_[next].left;
   shown_ = shown.revision(), here_ = next;
   return strokes;
 }

@@ -10,6 +10,7 @@
 
 #include "geom/block_pool.hpp"
 #include "pen/device.hpp"
+#include "session/protection.hpp"
 #include "session/sculpt_loop.hpp"
 
 namespace riffler {
@@ -38,9 +39,10 @@ struct SessionFrame {
 /// Functions are for one thread, if nothing else is said.
 class Session {
  public:
-  /// Validates; std::invalid_argument as MoveCarver. A device without force is spared the checks of its motion.
+  /// Validates; std::invalid_argument as MoveCarver. A device without force is spared the checks of its motion. What
+  /// lies in `protect`, a volume of the stock's frame or null, stays as it is, and is as air to the tool.
   Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen, std::shared_ptr<const Collider> obstacles,
-          const SessionSettings& settings);
+          const SessionSettings& settings, const Volume* protect = nullptr);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   /// As stop(), but for what was not shown yet.
@@ -75,10 +77,14 @@ class Session {
   struct Moment {
     std::uint64_t strokes;  // from the moment before to this one: one, or more where frames came seldom
     Volume volume;
+    std::optional<Volume> left{};  // of what may be cut, where something is protected
+
+    const Volume& cut() const { return left ? *left : volume; }  // the loop's
   };
 
   std::optional<Pose> start_pose() const;
   void poll() noexcept;
+  TileExchange::Mark follow(Volume& shown, std::vector<TileExchange::Place>& places);
   void look(Volume& shown, SessionFrame& frame);
   std::size_t go_to(Volume& shown, int step, const char* what);
   void note_differences(const Volume& from, const Volume& to);
@@ -94,6 +100,8 @@ class Session {
   std::atomic<bool> ending_{false};
   BlockReserve reserve_;
 
+  std::optional<Protection> protection_;
+  std::optional<Volume> left_;   // of what may be cut, where something is protected: as it is shown
   std::uint64_t shown_ = 0;      // revision of the volume that is shown
   std::vector<Moment> moments_;  // between strokes; oldest first
   std::size_t here_ = 0;         // of them, the one that is shown or being changed

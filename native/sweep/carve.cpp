@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "sweep/clay.hpp"
 #include "sweep/grid_carver.hpp"
 
 namespace riffler {
@@ -58,6 +59,7 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   check_path(poses);
   check_options(options, moves);
   check_memory(moves);
+  if (options.mode == CarveMode::Add || options.protect) return carve_clay(volume, tool, poses, options);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
   Rollback rollback;

@@ -18,10 +18,6 @@ constexpr double kSerialRays = 1e5;
 
 }  // namespace
 
-Pose GridCarver::local(const Pose& p) const {
-  return {to_local(grid_.axis(), p.tip), glm::normalize(to_local(grid_.axis(), p.axis))};
-}
-
 void GridCarver::add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move) {
   const Motion& motion = motions_.emplace_back(from, to);
   for_each_step(cutter, motion, move, grid_.box(), options_.tolerance,
@@ -59,14 +55,12 @@ void GridCarver::assign() {
   pairs_.clear(), work_.clear();
   std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
   for (std::size_t k = 0; k < steps_.size(); ++k) {
-    const Footprint& footprint = steps_[k].footprint;
-    const auto [u0, u1] = ray_indices(footprint.rows(), grid_.box().lower.x, grid_.pitch(), grid_.nu());
-    const auto [v0, v1] = ray_indices(footprint.columns(), grid_.box().lower.y, grid_.pitch(), grid_.nv());
-    if (u0 > u1 || v0 > v1) continue;
-    for (int a = u0 / kTileSide; a <= u1 / kTileSide; ++a)
-      for (int b = v0 / kTileSide; b <= v1 / kTileSide; ++b) pairs_.emplace_back(grid_.tile_index(a, b), k);
-    first = std::min(first, grid_.tile_index(u0 / kTileSide, v0 / kTileSide));
-    last = std::max(last, grid_.tile_index(u1 / kTileSide, v1 / kTileSide));
+    const TileBlock under = tiles_under(grid_, steps_[k].footprint);
+    if (under.empty()) continue;
+    for (int a = under.row; a <= under.last_row; ++a)
+      for (int b = under.column; b <= under.last_column; ++b) pairs_.emplace_back(grid_.tile_index(a, b), k);
+    first = std::min(first, grid_.tile_index(under.row, under.column));
+    last = std::max(last, grid_.tile_index(under.last_row, under.last_column));
   }
   sort_pairs(first, last);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {

@@ -64,9 +64,9 @@ class GridCarver {
     std::size_t last = 0;
     for (std::size_t m = 0; m < moves; ++m) {
       const std::size_t e = end(m);
-      if (m == 0 || last != e - 1) from = local(poses[e - 1]);
+      if (m == 0 || last != e - 1) from = to_local(grid_.axis(), poses[e - 1]);
       last = e;
-      const Pose to = local(poses[e]);
+      const Pose to = to_local(grid_.axis(), poses[e]);
       add(cutter, from, to, static_cast<std::uint32_t>(m));
       if (full()) flush(), moves_done(m);
       from = to;
@@ -82,7 +82,6 @@ class GridCarver {
     TileResult done;
   };
 
-  Pose local(const Pose& p) const;
   void add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move);
   bool full() const;
   void flush();

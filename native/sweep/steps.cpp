@@ -131,6 +131,13 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
 
 }  // namespace
 
+TileBlock tiles_under(const Grid& grid, const Footprint& footprint) {
+  const auto [u0, u1] = ray_indices(footprint.rows(), grid.box().lower.x, grid.pitch(), grid.nu());
+  const auto [v0, v1] = ray_indices(footprint.columns(), grid.box().lower.y, grid.pitch(), grid.nv());
+  if (u0 > u1 || v0 > v1) return {0, -1, 0, -1};
+  return {u0 / kTileSide, u1 / kTileSide, v0 / kTileSide, v1 / kTileSide};
+}
+
 void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, std::uint32_t move, const Box3& box,
                    double tolerance, const std::function<void(Step&&)>& sink) {
   for (const ConvexGroup& whole : cutter) {

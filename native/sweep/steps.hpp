@@ -6,6 +6,7 @@
 #include <span>
 #include <variant>
 
+#include "dexel/grid.hpp"
 #include "geom/pose.hpp"
 #include "sweep/footprint.hpp"
 #include "sweep/straight_part.hpp"
@@ -30,6 +31,21 @@ struct Step {
   Footprint footprint;
   std::variant<StraightPart, TurningPart> body;
 };
+
+/// A pose in the cyclic frame of a grid whose rays run along `axis`; its own axis is made unit. Zeros lose their sign,
+/// which a mirrored pose has and no cut may depend on.
+inline Pose to_local(Axis axis, const Pose& p) {
+  return {to_local(axis, p.tip) + 0.0, glm::normalize(to_local(axis, p.axis)) + 0.0};
+}
+
+/// A block of a grid's tiles, by their rows and columns, both ends included; empty where a first is past its last.
+struct TileBlock {
+  int row, last_row, column, last_column;
+  bool empty() const { return row > last_row || column > last_column; }
+};
+
+/// The tiles whose rays pass under a footprint.
+TileBlock tiles_under(const Grid& grid, const Footprint& footprint);
 
 /// Calls `sink` for every step of the cutter on `motion` that can touch `box`, in order of t. Poses, box and steps are
 /// in the cyclic frame of one grid; `motion` must outlive the steps. Of a turning ball only the centre's path matters:

@@ -9,14 +9,6 @@
 
 namespace riffler {
 
-std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n) {
-  if (range.empty()) return {0, -1};
-  const double first = std::ceil((range.near - lower) / pitch - 0.5),
-               last = std::floor((range.far - lower) / pitch - 0.5);
-  return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(n))),
-          static_cast<int>(std::clamp(last, -1.0, n - 1.0))};
-}
-
 TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const CarveOptions& options)
     : grid_(grid),
       options_(options),

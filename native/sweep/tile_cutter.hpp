@@ -27,9 +27,6 @@ struct TileResult {
   Stats stats;
 };
 
-/// First and last of n rays `pitch` apart whose coordinate lies in `range`.
-std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n);
-
 class TileCutter {
  public:
   /// `measured`: what is taken counts towards Cut::removed.

@@ -3,7 +3,7 @@
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """
 
-from . import cluster, pen, plan
+from . import cluster, pen, plan, tasks
 from ._core import (
     Cancelled,
     Collider,
@@ -11,6 +11,7 @@ from ._core import (
     Cut,
     Finding,
     FormatError,
+    FrozenSurface,
     Journal,
     JournalStroke,
     JournalWriter,
@@ -21,12 +22,16 @@ from ._core import (
     Session,
     SessionFrame,
     Snapshot,
+    Softened,
+    Task,
     Tool,
     Verification,
     VerifyReport,
     Volume,
     __version__,
     machines,
+    set_threads,
+    threads,
     verify,
 )
 
@@ -37,6 +42,7 @@ __all__ = [
     "Cut",
     "Finding",
     "FormatError",
+    "FrozenSurface",
     "Journal",
     "JournalStroke",
     "JournalWriter",
@@ -47,6 +53,8 @@ __all__ = [
     "Session",
     "SessionFrame",
     "Snapshot",
+    "Softened",
+    "Task",
     "Tool",
     "Verification",
     "VerifyReport",
@@ -56,5 +64,8 @@ __all__ = [
     "machines",
     "pen",
     "plan",
+    "set_threads",
+    "tasks",
+    "threads",
     "verify",
 ]

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import riffler
+from riffler import tasks
 
 BALL = riffler.Tool.ball(6, 30).named("ball é")
 
@@ -204,3 +205,37 @@ def test_what_is_wrong_is_named_and_changes_nothing(journal, tmp_path, call, mes
         call(journal)
     journal.write(tmp_path / "after")
     assert (tmp_path / "before").read_bytes() == (tmp_path / "after").read_bytes()
+
+
+def test_modes_and_masks_are_kept_and_replayed(tmp_path):
+    lower, upper = (0, 0, 0), (50, 40, 30)
+    stock = riffler.Volume.block(lower, upper, 0.5, "xyz")
+    mask = riffler.Volume.empty(lower, upper, 0.5, "xyz")
+    tool = riffler.Tool.ball(6, 30)
+    lanes = {
+        m: np.array([[5.0, y, 27, 0, 0, 1], [45, y, 27, 0, 0, 1]])
+        for m, y in (("mask", 10), ("unmask", 12), ("remove", 11), ("add", 14))
+    }
+    mask.carve(tool, lanes["mask"] + [0, 20, 0, 0, 0, 0], mode="add")
+    tasks.save(stock, tmp_path / "stock.rvol").result()
+    mask.save(tmp_path / "mask.rvol")
+    file = tmp_path / "a.rjournal"
+    with riffler.JournalWriter(file, keep=False) as w:
+        w.set_stock(lower, upper, 0.5, "xyz", "stock.rvol", mask="mask.rvol")
+        w.add_tool(1, tool)
+        for mode, poses in lanes.items():
+            w.add_stroke(1, poses, mode=mode, name=mode)
+        with pytest.raises(ValueError, match='mode must be "remove"'):
+            w.add_stroke(1, poses, mode="Add")
+    mask.carve(tool, lanes["mask"], mode="add")
+    mask.carve(tool, lanes["unmask"])
+    stock.carve(tool, lanes["remove"], protect=mask)
+    stock.carve(tool, lanes["add"], protect=mask, mode="add")
+    j = riffler.Journal.read(file)
+    assert [s.mode for s in j.strokes] == list(lanes) and j.stock["mask"] == "mask.rvol"
+    for volume, kept in (j.replay(tmp_path, with_mask=True), tasks.replay(j, tmp_path, with_mask=True).result()):
+        assert volume.to_bytes() == stock.to_bytes() and kept.to_bytes() == mask.to_bytes()
+    assert j.replay(tmp_path).to_bytes() == stock.to_bytes()
+    assert riffler.Journal.read(file).replay(tmp_path, with_mask=True)[1].volume > 0
+    j.take_back(4)
+    assert j.replay(tmp_path, with_mask=True)[1].to_bytes() != mask.to_bytes()

@@ -47,6 +47,133 @@ def test_patches_are_the_mesh():
     assert np.array_equal(corners[np.lexsort(corners.T)], expected[np.lexsort(expected.T)])
 
 
+def sorted_corners(vertices, triangles):
+    corners = vertices[triangles].reshape(-1, 9).astype(np.float32)
+    return corners[np.lexsort(corners.T)]
+
+
+def test_bricks_in_one_patch_have_no_seams():
+    volume = carved()
+    stroke(volume, 8, 7)
+    mesher = riffler.Mesher(volume)
+    assert mesher.shape == (4, 4, 2)  # 122, 98 and 50 points
+    whole = volume.to_mesh()
+    vertices, triangles = mesher.patch(mesher.patches())
+    assert vertices.dtype == np.float32 and triangles.dtype == np.int32
+    assert len(vertices) == len(whole.vertices)
+    assert np.array_equal(sorted_corners(vertices, triangles), sorted_corners(whole.vertices, whole.triangles))
+    some = np.array(mesher.patches())[::2]
+    vertices, triangles = mesher.patch(some)
+    singly = [mesher.patch(n) for n in some]
+    assert np.array_equal(
+        sorted_corners(vertices, triangles), sorted_corners(np.concatenate([v[t] for v, t in singly]), slice(None))
+    )
+    assert len(np.unique(vertices, axis=0)) == len(vertices) < sum(len(v) for v, _ in singly)
+    assert [a.shape for a in mesher.patch([], edges=True)] == [(0, 3), (0, 3), (0, 2), (0, 3)]
+
+
+@pytest.mark.parametrize("bricks", [lambda all: all[0], lambda all: all[:3], lambda all: all])
+def test_edges_are_those_of_the_triangles(bricks):
+    mesher = riffler.Mesher(carved())
+    bricks = bricks(mesher.patches())
+    _, triangles, edges, corner_edge = mesher.patch(bricks, edges=True)
+    assert np.array_equal(triangles, mesher.patch(bricks)[1])
+    assert edges.dtype == corner_edge.dtype == np.int32
+    sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
+    assert np.array_equal(np.sort(edges, axis=1)[corner_edge], sides)
+    assert len(edges) == len(np.unique(np.sort(edges, axis=1), axis=0)) == len(np.unique(sides.reshape(-1, 2), axis=0))
+
+
+def test_picks_what_a_ray_meets_first():
+    volume = carved()
+    mesher = riffler.Mesher(volume)
+    distance, point, normal, brick = mesher.pick([8, 7, 20], [0, 0, -3])
+    assert distance == pytest.approx(8, abs=1e-6)
+    assert point == pytest.approx([8, 7, 12], abs=1e-6)
+    assert normal.tolist() == [0, 0, 1]
+    vertices = mesher.patch(brick)[0]
+    assert (vertices.min(axis=0) <= point + 1e-6).all() and (point <= vertices.max(axis=0) + 1e-6).all()
+    assert mesher.pick([8, 7, 20], [0, 0, 1]) is None
+    stroke(volume, 8, 7)
+    mesher.update(volume)
+    # The ball's centre runs down from z = 12.5 with slope 0.2 / 1.5: a cylinder's lowest line.
+    depth = 20 - (12.5 - 1.5 * np.hypot(1, 0.2 / 1.5))
+    assert mesher.pick([8, 7, 20], [0, 0, -1])[0] == pytest.approx(depth, abs=1e-3)
+
+
+def test_many_rays_at_once_are_what_they_are_one_by_one():
+    mesher = riffler.Mesher(carved())
+    rng = np.random.default_rng(3)
+    origins = rng.uniform(-10, 40, (500, 3))
+    directions = rng.normal(size=(500, 3))
+    distances, points, normals, bricks = mesher.pick(origins, directions)
+    assert distances.shape == bricks.shape == (500,) and points.shape == normals.shape == (500, 3)
+    hits = 0
+    for n in range(500):
+        hit = mesher.pick(origins[n], directions[n])
+        if hit is None:
+            assert distances[n] == np.inf and bricks[n] == -1
+            assert np.isnan(points[n]).all() and np.isnan(normals[n]).all()
+            continue
+        hits += 1
+        assert hit[0] == distances[n] and hit[3] == bricks[n]
+        assert np.array_equal(hit[1], points[n]) and np.array_equal(hit[2], normals[n])
+    assert 50 < hits < 450
+    assert [len(a) for a in mesher.pick(np.empty((0, 3)), np.empty((0, 3)))] == [0, 0, 0, 0]
+
+
+def test_a_frozen_surface_stays():
+    volume = carved()
+    mesher = riffler.Mesher(volume)
+    frozen = mesher.freeze()
+    assert frozen.triangles == mesher.triangles
+    assert frozen.nbytes < 40 * frozen.triangles
+    mesher.stats()
+    stroke(volume, 8, 7)
+    changed = mesher.update(volume)
+    down = [8, 7, 20], [0, 0, -1]
+    assert frozen.pick(*down)[0] == pytest.approx(8, abs=1e-6)
+    assert mesher.pick(*down)[0] > 8.9
+    again = mesher.freeze()
+    assert again.pick(*down)[0] == mesher.pick(*down)[0]
+    assert mesher.stats()["bricks_prepared"] == len(changed)
+    del mesher
+    assert frozen.pick(*down)[0] == pytest.approx(8, abs=1e-6)
+    counts = frozen.stats()
+    assert counts["rays"] == 2 and counts["bricks_prepared"] == 0
+    assert 0 < counts["triangles_tested"] < frozen.triangles / 20
+    assert set(frozen.stats().values()) == {0}
+
+
+def test_wrong_rays():
+    mesher = riffler.Mesher(carved())
+    for surface in (mesher, mesher.freeze()):
+        with pytest.raises(ValueError, match=r"^direction: zero"):
+            surface.pick([0, 0, 0], [0, 0, 0])
+        with pytest.raises(ValueError, match=r"^direction, row 1: zero"):
+            surface.pick(np.zeros((2, 3)), [[0, 0, 1], [0, 0, 0]])
+        with pytest.raises(ValueError, match=r"^origin, row 1: not finite"):
+            surface.pick([[0, 0, 0], [0, np.nan, 0]], np.ones((2, 3)))
+        with pytest.raises(ValueError, match=r"^origin must be finite"):
+            surface.pick([0, 0, np.inf], [0, 0, 1])
+        with pytest.raises(ValueError, match=r"^direction must have as many rows as origin, 2, not 3"):
+            surface.pick(np.zeros((2, 3)), np.ones((3, 3)))
+        with pytest.raises(ValueError, match=r"^direction must have the shape \(n, 3\), not \(3,\)"):
+            surface.pick(np.zeros((2, 3)), [0, 0, 1])
+        with pytest.raises(ValueError, match=r"^origin must be three numbers"):
+            surface.pick([0, 0], [0, 0, 1])
+
+
+def test_wrong_bricks():
+    mesher = riffler.Mesher(carved())
+    with pytest.raises(ValueError, match=r"^bricks: 1 is there twice"):
+        mesher.patch([1, 0, 1])
+    with pytest.raises(IndexError, match="no brick 1000000"):
+        mesher.patch([0, 1_000_000])
+    with pytest.raises(TypeError):
+        mesher.patch(-1)
+
+
 def test_wrong_calls():
     mesher = riffler.Mesher(carved())
     with pytest.raises(ValueError, match="box, pitch and directions"):

@@ -392,7 +392,8 @@ def test_a_plan_comes_back_to_the_bit(tmp_path):
     ("where", "value", "message"),
     [
         (("format",), "other", 'format: "riffler-plan" expected'),
-        (("version",), 7, "version: 1 expected, not 7"),
+        (("version",), 7, "version: 1 expected, not 7: a newer Riffler"),
+        (("version",), "1", "version: 1 expected, not '1'$"),
         (("units",), {"length": "inch"}, "units: "),
         (("tool",), {"kind": "spoon"}, "tool: kind must be"),
         (("tool",), 3, "tool: "),
@@ -430,6 +431,48 @@ def test_what_is_no_plan_is_refused(tmp_path, text):
     (tmp_path / "a.json").write_bytes(text)
     with pytest.raises(riffler.FormatError, match=r"^a\.json: "):
         plan.load(tmp_path / "a.json")
+
+
+def test_a_plan_is_the_same_as_bytes_and_as_a_file(tmp_path):
+    before = some_plan()
+    data = plan.dumps(before)
+    plan.save(tmp_path / "a.json", before)
+    assert isinstance(data, bytes) and (tmp_path / "a.json").read_bytes() == data
+    for form in (data, bytearray(data), memoryview(data)):
+        assert plan.dumps(plan.loads(form)) == data
+
+
+@pytest.mark.parametrize(("data", "message"), [(b"{", "line 1"), (b"\xff\xfe", ""), (b"[]", "an object expected")])
+def test_bytes_that_are_no_plan_are_refused_by_their_name(data, message):
+    with pytest.raises(riffler.FormatError, match=f"^the plan in Block: .*{message}"):
+        plan.loads(data, "the plan in Block")
+    with pytest.raises(riffler.FormatError, match=r"^plan: "):
+        plan.loads(data)
+
+
+def test_a_plan_has_a_line_for_each_path():
+    lines = plan.dumps(some_plan()).decode().splitlines()
+    assert [line[:13] for line in lines].count('  {"radius": ') == 2 and len(lines) == 13
+    empty = plan.Plan([], riffler.Tool.ball(6, 30))
+    assert plan.loads(plan.dumps(empty)).paths == [] and json.loads(plan.dumps(empty))["paths"] == []
+
+
+def test_of_plans_that_follow_one_another_only_other_paths_are_formatted():
+    texts, before = plan.Texts(), some_plan()
+    assert plan.dumps(before, texts) == plan.dumps(before) and texts.made == 2
+    turned = before.paths[1].oriented({0: before.paths[1].axis(0, 0.1, 0)})
+    after = plan.Plan([before.paths[0], turned], before.tool, cl=[before.cl[0], None])
+    assert plan.dumps(after, texts) == plan.dumps(after) and texts.made == 3
+    rows = np.array(before.cl[0]) + 1.0
+    moved = plan.Plan([turned, before.paths[0]], before.tool, cl=[None, rows])  # another order, other locations
+    assert plan.dumps(moved, texts) == plan.dumps(moved) and texts.made == 4
+    assert plan.dumps(before, texts) == plan.dumps(before) and texts.made == 6  # only the last is kept
+
+
+def test_a_plan_of_a_newer_version_says_so():
+    data = plan.dumps(some_plan()).replace(b'"version": 1', b'"version": 2')
+    with pytest.raises(riffler.FormatError, match=r"^plan: version: 1 expected, not 2: a newer Riffler wrote it$"):
+        plan.loads(data)
 
 
 def test_a_plan_that_cannot_be_saved_leaves_nothing(tmp_path):

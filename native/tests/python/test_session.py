@@ -243,3 +243,70 @@ def test_a_session_that_nobody_stops_ends_with_its_object():
         session.start()
         del session
         pen.stop()
+
+
+@pytest.mark.parametrize("directions", ["z", "xyz"])
+def test_what_is_protected_stays_to_the_bit_and_the_replay_too(tmp_path, directions):
+    mask = riffler.Volume.empty((-30, -30, -20), (30, 30, 0), 0.5, directions)
+    mask.carve(BALL, np.array([[-20.0, 0, -2, 0, 0, 1], [20, 1, -2, 0, 0, 1]]), mode="add")
+    volume = stock(0.5, directions)
+    before = volume.copy()
+    pen = riffler.pen.Pointer("mouse")
+    pen.set_frame(depth=1.5)
+    options = {"material": riffler.Material(removal_constant=1e-5), "stiffness": 5.0}
+    session = riffler.Session(volume, BALL, pen, protect=mask, **options)
+    session.journal(tmp_path / "a.rjournal")
+    at, states = 0.0, [before.to_bytes()]
+
+    def give(x, y, pressed):
+        nonlocal at
+        at += 0.004
+        pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=at)
+        time.sleep(0.004)
+
+    give(-5, -40, 0)
+    with session:
+        for x in (-12.0, 0.0, 12.0):  # across the mask
+            give(x, -20, 0)
+            time.sleep(0.02)
+            for y in np.arange(-20, 20, 1.0):
+                give(x + 0.05 * y, y, 1)
+            for _ in range(5):
+                give(x, 20, 0)
+            frames(session, 10, lambda frame: frame.strokes >= len(states) and not frame.in_stroke)
+            states.append(volume.to_bytes())
+        assert session.undo() == 1 and volume.to_bytes() == states[2]
+        assert session.redo() == 1 and volume.to_bytes() == states[3]
+        assert session.undo() == 1
+    assert volume.to_bytes() == states[2] and len(set(states)) == 4
+    assert same(volume, riffler.Session.replay(tmp_path / "a.rjournal"))
+    inside, was, beside = volume.copy(), before.copy(), volume.copy()
+    inside.intersect(mask), was.intersect(mask)
+    for direction in directions:
+        for a, b in zip(inside.intervals(direction), was.intervals(direction), strict=True):
+            assert np.array_equal(a, b)
+    beside.subtract(mask)
+    assert beside.volume < before.volume - was.volume - 20
+    journal = riffler.Journal.read(tmp_path / "a.rjournal")
+    assert {s.mode for s in journal.strokes} == {"beside"} and journal.stock["mask"] == "a-mask.rvol"
+
+
+def test_a_mask_on_another_grid_is_refused():
+    mask = riffler.Volume.empty((-30, -30, -20), (30, 30, 0), 0.4, "z")
+    with pytest.raises(ValueError, match="protect"):
+        riffler.Session(stock(), BALL, protect=mask)
+
+
+def test_the_force_on_the_tool_is_the_materials(tmp_path):
+    _, _, seen = carve_with_the_simulated_pen(tmp_path)
+    force, ends, starts, removed, dt = (
+        np.concatenate([getattr(frame, name) for frame in seen])
+        for name in ("tool_forces", "poses", "starts", "removed", "dt")
+    )
+    assert force.shape == ends.shape == starts.shape
+    assert np.array_equal(starts[1:], ends[:-1])  # placed once
+    assert not force[removed == 0].any()
+    cut = np.flatnonzero((removed > 1e-3) & (force[:, :3] != 0).any(axis=1))
+    assert len(cut) > 20
+    assert np.allclose(np.linalg.norm(force[cut, :3], axis=1), 0.005 * removed[cut] / dt[cut], rtol=0.5)
+    assert (np.einsum("ij,ij->i", force[cut, :3], (ends - starts)[cut, :3]) < 0).mean() > 0.95

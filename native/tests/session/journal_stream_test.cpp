@@ -149,6 +149,19 @@ TEST(JournalStream, SaysWhenThereIsNoRoomAndAlwaysTakesAnEnd) {
   expect_rows(s.read().strokes()[0], 0, 7);
 }
 
+TEST(JournalStream, SaysWhenWhatWasThereIsInTheFile) {
+  Session s("written");
+  EXPECT_TRUE(s.stream.written(0)) << "nothing was put";
+  ASSERT_TRUE(s.stream.begin(1, 0.01, row(0)));
+  for (int k = 1; k < 40; ++k) ASSERT_TRUE(s.stream.put(row(k)));
+  s.stream.end();
+  EXPECT_FALSE(s.stream.written(0.01)) << "nobody writes";
+  s.stream.start();
+  ASSERT_TRUE(s.stream.written(60));
+  expect_rows(s.read().strokes()[0], 0, 40);
+  EXPECT_TRUE(s.stream.stop());
+}
+
 TEST(JournalStream, TakesRowsWithoutAllocating) {
   Session s("allocations");
   const long before = allocations();

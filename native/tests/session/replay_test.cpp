@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dexel/file.hpp"
+#include "dexel/volumes.hpp"
 #include "geom/error.hpp"
 #include "haptics/sculpt_step.hpp"
 #include "session/journal_stream.hpp"
@@ -27,10 +28,6 @@ using test::TemporaryFile;
 const Box3 kBox{{0, 0, 0}, {40, 30, 12}};
 const std::map<int, Tool> kTools{{1, cutters::ball(6, 30)}, {2, cutters::fillet(5, 1, 30)}};
 const Vec3 kUp(0, 0, 1);
-
-bool same(const Volume& a, const Volume& b) {
-  return to_bytes(a) == to_bytes(b);
-}
 
 Journal journal(const char* directions = "xyz") {
   Journal j;
@@ -89,7 +86,7 @@ TEST(Replay, LeavesTheBytesThatMovesOneByOneLeft) {
       for (const double r : stroke.removed) recorded += r;
     EXPECT_EQ(recorded, removed);
     EXPECT_GT(removed, 1000);
-    EXPECT_TRUE(same(replay(j, kTools), session)) << directions;
+    EXPECT_TRUE(test::same_rays(replay(j, kTools), session)) << directions;
   }
 }
 
@@ -121,7 +118,7 @@ TEST(Replay, LeavesTheBytesThatAHandLeftThroughTheHapticStep) {
   j.add_stroke(stroke);
   EXPECT_GT(standing, 400);
   EXPECT_LT(session.volume(), 40 * 30 * 12 - 100);
-  EXPECT_TRUE(same(replay(parse_journal(to_bytes(j), "j"), kTools), session));
+  EXPECT_TRUE(test::same_rays(replay(parse_journal(to_bytes(j), "j"), kTools), session));
 }
 
 TEST(Replay, TakesRowsThatStandForNoMoves) {
@@ -141,10 +138,10 @@ TEST(Replay, TakesRowsThatStandForNoMoves) {
     carve(volume, kTools.at(1), poses);
     return volume;
   };
-  EXPECT_TRUE(same(left({p}), carved({p})));
-  EXPECT_TRUE(same(left({p, p}), carved({p, p})));
+  EXPECT_TRUE(test::same_rays(left({p}), carved({p})));
+  EXPECT_TRUE(test::same_rays(left({p, p}), carved({p, p})));
   EXPECT_LT(left({p, p}).volume(), left({p}).volume() - 10);
-  EXPECT_TRUE(same(left({p, p, q, q, p, p}), carved({p, q, p})));
+  EXPECT_TRUE(test::same_rays(left({p, p, q, q, p, p}), carved({p, q, p})));
 }
 
 TEST(Replay, SeesOnlyWhatCounts) {
@@ -157,10 +154,10 @@ TEST(Replay, SeesOnlyWhatCounts) {
   }
   const Volume whole = replay(all, kTools);
   all.take_back(2);
-  EXPECT_TRUE(same(replay(all, kTools), replay(fewer, kTools)));
+  EXPECT_TRUE(test::same_rays(replay(all, kTools), replay(fewer, kTools)));
   all.bring_back(2);
-  EXPECT_TRUE(same(replay(all, kTools), whole));
-  EXPECT_FALSE(same(replay(fewer, kTools), whole));
+  EXPECT_TRUE(test::same_rays(replay(all, kTools), whole));
+  EXPECT_FALSE(test::same_rays(replay(fewer, kTools), whole));
 }
 
 TEST(Replay, BeginsWithTheSnapshot) {
@@ -179,7 +176,7 @@ TEST(Replay, BeginsWithTheSnapshot) {
     return j;
   };
   const std::filesystem::path folder = file.path.parent_path(), name = file.path.filename();
-  EXPECT_TRUE(same(replay(with(name), kTools, folder), replay(first, kTools)));
+  EXPECT_TRUE(test::same_rays(replay(with(name), kTools, folder), replay(first, kTools)));
   EXPECT_EQ(error_of([&] { replay(with(name, 0.5), kTools, folder); }),
             "the snapshot " + name.string() + " has another frame than the journal's stock");
   EXPECT_EQ(error_of([&] { replay(with(name), kTools); }),

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "dexel/volumes.hpp"
 #include "reference/swept_distance.hpp"
 #include "tool/cutters.hpp"
 
@@ -194,6 +195,22 @@ TEST(Carve, GivesTheSameBytesForAnyNumberOfThreads) {
         EXPECT_EQ(volumes[0].grids()[g].tile(t).normals, volumes[k].grids()[g].tile(t).normals);
         EXPECT_EQ(volumes[0].grids()[g].tile(t).offset, volumes[k].grids()[g].tile(t).offset);
       }
+  }
+}
+
+TEST(Carve, GivesTheSameBytesWhateverTheSignOfZero) {
+  for (const Vec3& axis : {Vec3(0, 0, 1), unit(0.3, 0, 1), unit(0, -0.2, 1)}) {
+    std::vector<Volume> volumes;
+    for (const double zero : {0.0, -0.0}) {
+      Vec3 signed_axis = axis;
+      for (int i = 0; i < 3; ++i)
+        if (axis[i] == 0) signed_axis[i] = zero;
+      volumes.push_back(Volume::block({{{0, 0, 0}, {30, 30, 10}}, 0.5, "xyz"}));
+      const std::vector<Pose> poses{
+          {{5, zero, 8}, signed_axis}, {{20, 18, 7}, signed_axis}, {{zero, 9, 8.5}, signed_axis}};
+      carve(volumes.back(), cutters::flat(3, 30), poses);
+    }
+    EXPECT_TRUE(test::same_rays(volumes[0], volumes[1])) << axis.x << ' ' << axis.y;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "dexel/volumes.hpp"
 #include "support/allocations.hpp"
 #include "tool/cutters.hpp"
 
@@ -24,15 +25,6 @@ Pose on_spiral(int k, double lean) {
 
 const Box3 kBox{{0, 0, 0}, {60, 60, 20}};
 
-bool same(const Volume& a, const Volume& b) {
-  for (std::size_t g = 0; g < a.grids().size(); ++g)
-    for (std::size_t t = 0; t < a.grids()[g].tile_count(); ++t) {
-      const Tile &x = a.grids()[g].tile(t), &y = b.grids()[g].tile(t);
-      if (!(x.offset == y.offset) || x.spans != y.spans || x.normals != y.normals) return false;
-    }
-  return true;
-}
-
 TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
   for (const char* directions : {"z", "xyz"})
     for (const double lean : {0.0, 0.6})
@@ -47,7 +39,7 @@ TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
           ASSERT_EQ(taken.force, cut.force[0]);
           ASSERT_EQ(taken.torque, cut.torque[0]);
         }
-        EXPECT_TRUE(same(by_moves, by_calls)) << directions << lean << tool.kind();
+        EXPECT_TRUE(test::same_rays(by_moves, by_calls)) << directions << lean << tool.kind();
         EXPECT_LT(by_moves.volume(), kBox.size().x * kBox.size().y * kBox.size().z - 1000);
       }
 }

@@ -31,10 +31,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     data = report()
+    console.result(data, "riffler doctor", rows(data))
+    return 0
+
+
+def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
+    """A report as pairs for people: what it is, what was found."""
     devices = [(d["path"], describe(d)) for d in data["devices"]]
     memory = data["memory"]
     cpu = data["cpu"]
-    rows = [
+    return [
         ("riffler", f"{data['riffler']}, compiled with {data['compiler']}"),
         ("Python", f"{data['python']}, numpy {data['numpy']}"),
         ("system", data["system"]),
@@ -44,8 +50,6 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         ("Blender", data["bpy"] or "no bpy in this Python"),
         *(devices or [("devices", "no HID device (/dev/hidraw*)")]),
     ]
-    console.result(data, "riffler doctor", rows)
-    return 0
 
 
 def report() -> dict[str, Any]:
@@ -56,7 +60,7 @@ def report() -> dict[str, Any]:
         "numpy": np.__version__,
         "system": platform.platform(),
         "cpu": cpu(),
-        "threads": _core.thread_count(),
+        "threads": _core.threads(),
         "memory": memory(),
         "bpy": bpy_version(),
         "devices": pen.devices(),

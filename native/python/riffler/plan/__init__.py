@@ -2,7 +2,7 @@
 
 from .._core import PencilPath
 from .analysis import analyse
-from .file import Plan, load, part_of, save
+from .file import Plan, Texts, dumps, load, loads, part_of, save
 from .locations import LocationReport, contact_locations, cutter_locations, drop, lift
 from .orientations import FreeOrientations, draw_map, free_orientations, least_tilt
 from .pencils import PencilPaths, linked, pencil
@@ -16,17 +16,20 @@ __all__ = [
     "PencilPaths",
     "Plan",
     "Swarf",
+    "Texts",
     "analyse",
     "contact_locations",
     "cutter_locations",
     "draw_map",
     "drop",
+    "dumps",
     "engrave",
     "free_orientations",
     "least_tilt",
     "lift",
     "linked",
     "load",
+    "loads",
     "part_of",
     "pencil",
     "save",

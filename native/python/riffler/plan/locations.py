@@ -68,7 +68,7 @@ def cutter_locations(
         max_inserted=max_inserted,
         progress=progress,
     )
-    return found.pop("cl"), LocationReport(found)
+    return _core.then(found, lambda found: (found.pop("cl"), LocationReport(found)))
 
 
 def contact_locations(tool, contacts, normals, axes, feeds=None):

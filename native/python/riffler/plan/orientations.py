@@ -59,8 +59,12 @@ def free_orientations(
         path, points, tool, collider, inclinations=inclinations, tilts=tilts, clearance=clearance,
         tolerance=tolerance, limit=limit, progress=progress,
     )  # fmt: skip
-    maps = [FreeOrientations(i, inclinations, tilts, one) for i, one in zip(points, found, strict=True)]
-    return maps[0] if single else maps
+
+    def maps(found):
+        made = [FreeOrientations(i, inclinations, tilts, one) for i, one in zip(points, found, strict=True)]
+        return made[0] if single else made
+
+    return _core.then(found, maps)
 
 
 def least_tilt(
@@ -80,14 +84,18 @@ def least_tilt(
     if max_change is None:
         steps = [float(np.diff(angles).max()) if len(angles) > 1 else 0.0 for angles in (inclinations, tilts)]
         max_change = max(1.5 * math.hypot(*steps), 1e-3)
-    report = _core.least_tilt(
+    found = _core.least_tilt(
         path, tool, collider, inclinations=inclinations, tilts=tilts, clearance=clearance, tolerance=tolerance,
         limit=limit, max_change=max_change, smoothness=smoothness, progress=progress,
     )  # fmt: skip
-    axes = report.pop("axes")
-    if not report["found"]:
-        return None, report
-    return path.oriented(dict(enumerate(axes)), "slerp"), report
+
+    def oriented(report):
+        axes = report.pop("axes")
+        if not report["found"]:
+            return None, report
+        return path.oriented(dict(enumerate(axes)), "slerp"), report
+
+    return _core.then(found, oriented)
 
 
 def draw_map(orientations: FreeOrientations, axes=None):

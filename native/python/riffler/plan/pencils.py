@@ -77,7 +77,7 @@ def pencil(
         overthickness=overthickness,
         progress=progress,
     )
-    return PencilPaths(found)
+    return _core.then(found, PencilPaths)
 
 
 def linked(paths, start=None):

@@ -1,0 +1,89 @@
+#include "marching/patch.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "geom/each_once.hpp"
+#include "marching/mesh_state.hpp"
+
+namespace riffler::marching {
+
+namespace {
+
+/// Vertices of one brick: what their numbers in the mesh are more than in the patch.
+struct Own {
+  std::int32_t first, end, less;
+  bool has(std::int32_t v) const { return v >= first && v < end; }
+  bool operator<(const Own& o) const { return first < o.first; }
+};
+
+std::vector<const ActiveBrick*> active_of(const MeshState& state, std::span<const std::size_t> bricks) {
+  std::vector<std::size_t> sorted(bricks.begin(), bricks.end());
+  std::sort(sorted.begin(), sorted.end());
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+    throw std::invalid_argument("bricks: " + std::to_string(*twice) + " is there twice");
+  if (!sorted.empty() && sorted.back() >= state.bricks.size())
+    throw std::out_of_range("there is no brick " + std::to_string(sorted.back()) + ", only " +
+                            std::to_string(state.bricks.size()));
+  std::vector<const ActiveBrick*> out;
+  for (const std::size_t n : bricks)
+    if (const ActiveBrick* const active = state.bricks.active(n); active && active->edges() > 0) out.push_back(active);
+  return out;
+}
+
+}  // namespace
+
+MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) {
+  const std::vector<const ActiveBrick*> active = active_of(state, bricks);
+  MeshPatch out;
+  std::vector<Own> own;
+  std::size_t triangles = 0;
+  for (const ActiveBrick* const brick : active) {
+    const auto first = static_cast<std::int32_t>(brick->first_vertex);
+    own.push_back(
+        {first, first + static_cast<std::int32_t>(brick->vertices()), first - static_cast<std::int32_t>(out.own)});
+    out.own += brick->vertices(), triangles += 2 * brick->edges();
+  }
+  std::vector<Own> sorted = own;
+  std::sort(sorted.begin(), sorted.end());
+  const Mesh& mesh = state.surface.mesh;
+  out.triangles.resize(triangles);
+  // Corners at other bricks' vertices: where they stand in the patch is known when all have been seen.
+  std::vector<std::int32_t*> open;
+  std::vector<std::int32_t> foreign;
+  Vec3i* next = out.triangles.data();
+  for (std::size_t b = 0; b < active.size(); ++b) {
+    const Own here = own[b];
+    const auto number = [&](std::int32_t v, std::int32_t& to) {
+      if (here.has(v)) [[likely]] {
+        to = v - here.less;
+        return;
+      }
+      const auto after = std::upper_bound(sorted.begin(), sorted.end(), Own{v, 0, 0});
+      if (after != sorted.begin() && (after - 1)->has(v)) {
+        to = v - (after - 1)->less;
+      } else {
+        to = v;
+        open.push_back(&to), foreign.push_back(v);
+      }
+    };
+    const Vec3i* const from = mesh.triangles.data() + 2 * active[b]->first_edge;
+    for (std::size_t t = 0; t < 2 * active[b]->edges(); ++t, ++next)
+      number(from[t].x, next->x), number(from[t].y, next->y), number(from[t].z, next->z);
+  }
+  each_once(foreign);
+  for (std::int32_t* const corner : open)
+    *corner = static_cast<std::int32_t>(out.own) +
+              static_cast<std::int32_t>(std::lower_bound(foreign.begin(), foreign.end(), *corner) - foreign.begin());
+
+  out.vertices.resize(out.own + foreign.size());
+  Vec3f* vertex = out.vertices.data();
+  const auto place = [&](std::int32_t v) { *vertex++ = Vec3f(to_world(state.lattice.axis(), mesh.vertices[v])); };
+  for (const Own& o : own)
+    for (std::int32_t v = o.first; v < o.end; ++v) place(v);
+  for (const std::int32_t v : foreign) place(v);
+  return out;
+}
+
+}  // namespace riffler::marching

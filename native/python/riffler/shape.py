@@ -1,0 +1,137 @@
+"""Closed meshes from heights and outlines: what relief, emboss and masks from curves are made of. Lengths in mm."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._core import Mesh
+
+__all__ = ["extrude", "relief", "slab"]
+
+
+def slab(top, bottom, cells=None) -> Mesh:
+    """The closed mesh between two sheets of points: ``top`` and ``bottom`` (n, m, 3), point by point.
+
+    ``cells`` (n - 1, m - 1) bool: which cells there are; each piece of them is closed by walls along its rim. Seen from
+    the side that top lies on, rows and columns turn counter-clockwise: (right, up, towards the viewer) is right-handed.
+    Where the sheets cross, the mesh turns inside out; a volume of it takes both parts as solid.
+    ValueError for other shapes, fewer than two rows or columns, values that are not finite, no cell at all.
+    """
+    top, bottom = _sheet(top, "top"), _sheet(bottom, "bottom")
+    if top.shape != bottom.shape:
+        raise ValueError(f"top and bottom must have one shape, not {top.shape} and {bottom.shape}")
+    n, m = top.shape[:2]
+    cells = np.ones((n - 1, m - 1), bool) if cells is None else np.asarray(cells, bool)
+    if cells.shape != (n - 1, m - 1):
+        raise ValueError(f"cells must have the shape {(n - 1, m - 1)}, not {cells.shape}")
+    if not cells.any():
+        raise ValueError("cells: there is none")
+    used = np.zeros((n, m), bool)
+    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        used[i : n - 1 + i, j : m - 1 + j] |= cells
+    for name, sheet in (("top", top), ("bottom", bottom)):
+        if not np.isfinite(sheet[used]).all():
+            row = np.argwhere(used & ~np.isfinite(sheet).all(axis=2))[0]
+            raise ValueError(f"{name}, row {row[0]}, column {row[1]}: not finite")
+    number = np.full((n, m), -1)
+    number[used] = np.arange(used.sum())
+    count = int(used.sum())
+    a, b = number[:-1, :-1][cells], number[1:, :-1][cells]
+    c, d = number[1:, 1:][cells], number[:-1, 1:][cells]
+    faces = np.concatenate([np.c_[a, b, c], np.c_[a, c, d]])
+    walls = _walls(number, cells, count)
+    return Mesh(np.concatenate([top[used], bottom[used]]), np.concatenate([faces, faces[:, ::-1] + count, walls]))
+
+
+def relief(heights, size, depth, *, sink=0.0) -> Mesh:
+    """A closed mesh on the plane z = 0: ``heights`` (n, m), 0 to 1, times ``depth``, over ``size`` (x, y), its lower
+    left corner in the origin. Rows go along y as those of a picture do whose first row is the lowest, columns along x.
+
+    It reaches ``sink`` below the plane, so that it joins what lies there; with ``sink`` 0, as much as 1e-6 of depth.
+    ValueError for other shapes and values that are not finite.
+    """
+    heights = np.asarray(heights, float)
+    if heights.ndim != 2 or min(heights.shape) < 2:
+        raise ValueError(f"heights must have two rows and columns at least, not the shape {heights.shape}")
+    width, height = (float(v) for v in size)
+    if not (np.isfinite([width, height, depth, sink]).all() and width > 0 and height > 0 and depth > 0 and sink >= 0):
+        raise ValueError("size and depth must be positive lengths in mm, sink not negative")
+    x, y = np.linspace(0, width, heights.shape[1]), np.linspace(0, height, heights.shape[0])
+    # rows of a slab go to the right
+    plane = np.stack([*np.meshgrid(x, y, indexing="ij"), np.zeros(heights.T.shape)], axis=2)
+    up = np.array([0.0, 0.0, 1.0])
+    return slab(plane + heights.T[:, :, None] * depth * up, plane - max(sink, 1e-6 * depth) * up)
+
+
+def extrude(outlines, direction) -> Mesh:
+    """The closed mesh that closed ``outlines`` sweep along ``direction`` (mm): (n, 3) or a list of such. Of several
+    that lie inside one another the turn decides: one that turns the other way is a hole.
+
+    The caps are fans, whose triangles overlap where an outline is not convex; a volume of the mesh has the right
+    material all the same, since it goes by how often the surface winds about a point.
+    ValueError for fewer than three points, values that are not finite, a direction of length 0.
+    """
+    direction = np.asarray(direction, float)
+    if direction.shape != (3,) or not np.isfinite(direction).all() or not direction.any():
+        raise ValueError("direction must be three finite numbers, not all 0")
+    outlines = [outlines] if isinstance(outlines, np.ndarray) else list(outlines)
+    points = [_outline(outline, k) for k, outline in enumerate(outlines)]
+    if not points:
+        raise ValueError("outlines: there is none")
+    if sum(float(_area(p) @ direction) for p in points) < 0:
+        points = [p[::-1] for p in points]
+    vertices, triangles, first = [], [], 0
+    for p in points:
+        n = len(p)
+        centre = p.mean(axis=0)
+        vertices += [p, p + direction, centre[None], (centre + direction)[None]]
+        k, after = np.arange(n), (np.arange(n) + 1) % n
+        low, high = np.full(n, 2 * n), np.full(n, 2 * n + 1)
+        sides = [np.c_[k, after, after + n], np.c_[k, after + n, k + n]]
+        caps = [np.c_[low, after, k], np.c_[high, k + n, after + n]]
+        triangles += [t + first for t in (*sides, *caps)]
+        first += 2 * n + 2
+    return Mesh(np.concatenate(vertices), np.concatenate(triangles))
+
+
+def _sheet(points, name) -> np.ndarray:
+    points = np.asarray(points, float)
+    if points.ndim != 3 or points.shape[2] != 3 or min(points.shape[:2]) < 2:
+        raise ValueError(f"{name} must have the shape (n, m, 3) with n and m at least 2, not {points.shape}")
+    return points
+
+
+def _walls(number, cells, count) -> np.ndarray:
+    """Triangles along every side of a cell that no other cell has: from the top sheet down to the bottom one."""
+    padded = np.pad(cells, 1)
+    walls = []
+    # (difference to the neighbour, first and last corner of that side in the cell's own turn)
+    for (di, dj), first, last in (
+        ((-1, 0), (0, 1), (0, 0)),
+        ((1, 0), (1, 0), (1, 1)),
+        ((0, -1), (0, 0), (1, 0)),
+        ((0, 1), (1, 1), (0, 1)),
+    ):
+        i, j = np.nonzero(cells & ~padded[1 + di : 1 + di + cells.shape[0], 1 + dj : 1 + dj + cells.shape[1]])
+        a, b = number[i + first[0], j + first[1]], number[i + last[0], j + last[1]]
+        walls += [np.c_[b, a, a + count], np.c_[b, a + count, b + count]]
+    return np.concatenate(walls)
+
+
+def _outline(outline, k) -> np.ndarray:
+    p = np.asarray(outline, float)
+    if p.ndim != 2 or p.shape[1] != 3:
+        raise ValueError(f"outlines, number {k}: must have the shape (n, 3), not {p.shape}")
+    if not np.isfinite(p).all():
+        raise ValueError(f"outlines, number {k}, row {int(np.argmin(np.isfinite(p).all(axis=1)))}: not finite")
+    if len(p) > 1 and np.array_equal(p[0], p[-1]):
+        p = p[:-1]
+    if len(p) < 3:
+        raise ValueError(f"outlines, number {k}: needs three points")
+    return p
+
+
+def _area(p) -> np.ndarray:
+    """Twice the area vector of a closed polygon."""
+    q = p - p[0]
+    return np.cross(q, np.roll(q, -1, axis=0)).sum(axis=0)

@@ -1,0 +1,46 @@
+#include "session/protection.hpp"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "dexel/boolean.hpp"
+
+namespace riffler {
+
+Protection::Protection(const Volume& stock, const Volume& mask) : stock_(stock), cuttable_(stock) {
+  check_same_grid(stock.frame(), mask.frame(), "protect");
+  apply(Boolean::Subtract, cuttable_, mask);
+}
+
+void Protection::show(const Volume& left, std::span<const TileExchange::Place> places, Volume& shown) const {
+  TileBuilder builder(shown.grids().front().has_normals());
+  bool any = false;
+  for (const TileExchange::Place& p : places) {
+    Grid& grid = shown.grids()[p.grid];
+    const auto& stock = stock_.grids()[p.grid].shared_tile(p.tile);
+    const auto& before = cuttable_.grids()[p.grid].shared_tile(p.tile);
+    const auto& rest = left.grids()[p.grid].shared_tile(p.tile);
+    auto whole = rest;
+    if (before != stock) {  // something of it is protected
+      const auto gone = apply(Boolean::Subtract, grid, p.tile, before, rest, builder);
+      whole = apply(Boolean::Subtract, grid, p.tile, stock, gone, builder);
+    }
+    if (whole == grid.shared_tile(p.tile)) continue;
+    grid.set_tile(p.tile, std::move(whole));
+    any = true;
+  }
+  if (any) shown.touch();
+}
+
+Volume Protection::whole(const Volume& left) const {
+  std::vector<TileExchange::Place> changed;
+  for (std::uint32_t g = 0; g < left.grids().size(); ++g)
+    for (std::uint32_t t = 0; t < left.grids()[g].tile_count(); ++t)
+      if (left.grids()[g].shared_tile(t) != cuttable_.grids()[g].shared_tile(t)) changed.push_back({g, t});
+  Volume out = stock_;
+  show(left, changed, out);
+  return out;
+}
+
+}  // namespace riffler

@@ -1,0 +1,14 @@
+// Carving that puts material on, or that leaves protected places as they are.
+#pragma once
+
+#include <span>
+
+#include "sweep/carve.hpp"
+
+namespace riffler {
+
+/// `carve` for options with CarveMode::Add or `protect`; poses and options have been checked. To put material on is to
+/// carve the air in the box, so both modes have the same errors, forces and guarantees.
+Cut carve_clay(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options);
+
+}  // namespace riffler
