@@ -3,7 +3,8 @@
     python addon/package.py --wheel dist/riffler-….whl [--wheel …] --out dist
 
 riffler-<version>.zip           extension for Blender 4.2 and later; several wheels (Pythons, platforms) may go in
-riffler-<version>-legacy.zip    add-on for Blender 3.x, with the package of the first wheel unpacked inside
+riffler-<version>-legacy.zip    add-on for Blender 3.x, with the package of the wheel for Python 3.11 (Debian 12's)
+                                unpacked inside; not made without such a wheel
 
 The bytes depend on the sources and the wheels only: fixed times, sorted names.
 """
@@ -20,6 +21,7 @@ HERE = Path(__file__).resolve().parent
 NOT_SHIPPED = {"package.py", "ruff.toml"}
 # Folder of the legacy add-on. It is imported by this name, so it cannot be `riffler`, the native package's.
 LEGACY_NAME = "riffler_addon"
+LEGACY_PYTHON = (3, 11)
 # The pipeline's names for what a wheel's platform tag begins with.
 PLATFORMS = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm64"}
 
@@ -27,6 +29,17 @@ PLATFORMS = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm6
 def sources() -> list[Path]:
     files = (p for p in HERE.rglob("*") if p.is_file() and p.suffix != ".pyc" and p.name not in NOT_SHIPPED)
     return sorted(p.relative_to(HERE) for p in files)
+
+
+def tag(python: tuple[int, ...]) -> str:
+    """cp311-cp311 for (3, 11): what the names of our wheels have for a version of Python."""
+    return f"cp{python[0]}{python[1]}-cp{python[0]}{python[1]}"
+
+
+def legacy_wheel(wheels: list[Path]) -> Path | None:
+    """The one that the legacy add-on unpacks: it can hold one only, and no Blender chooses."""
+    fitting = [w for w in wheels if f"-{tag(LEGACY_PYTHON)}-" in w.name and platform_of(w).startswith("linux")]
+    return next(iter(fitting), None)
 
 
 def platform_of(wheel: Path) -> str:
@@ -68,6 +81,16 @@ def check_versions(wheels: list[Path]) -> None:
             raise ValueError(f"{where} has version {other}, blender_manifest.toml {expected}")
 
 
+def check_choice(wheels: list[Path]) -> None:
+    """Blender takes the wheel for its Python and its system: there may be one for each."""
+    seen: dict[tuple[str, str], Path] = {}
+    for wheel in wheels:
+        python = "-".join(wheel.stem.split("-")[2:4])
+        other = seen.setdefault((python, platform_of(wheel)), wheel)
+        if other is not wheel:
+            raise ValueError(f"{wheel.name} and {other.name} are for the same Python and system")
+
+
 def write_zip(path: Path, entries: dict[str, bytes]) -> None:
     part = path.with_suffix(".part")
     with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -103,13 +126,15 @@ def build_legacy(wheel: Path, out: Path) -> Path:
 
 
 def build(wheels: list[Path], out: Path) -> list[Path]:
-    """Both zips in `out`; ValueError naming what does not fit."""
+    """The zips in `out`; ValueError naming what does not fit."""
     for wheel in wheels:
         if not wheel.is_file():
             raise ValueError(f"{wheel} is not there")
     check_versions(wheels)
+    check_choice(wheels)
     out.mkdir(parents=True, exist_ok=True)
-    return [build_extension(wheels, out), build_legacy(wheels[0], out)]
+    wheel = legacy_wheel(wheels)
+    return [build_extension(wheels, out), *([build_legacy(wheel, out)] if wheel else [])]
 
 
 def main() -> int:

@@ -61,7 +61,7 @@ def test_figures():
     ms("- volume to mesh", content.volume.to_mesh)
     surface = content.volume.to_mesh()
     ms("- fill the mesh", lambda: support.part("bl.sculpts").show(ob.data, surface, 1.0))
-    ms("- pack into the .blend", lambda: support.part("bl.store").write(ob.data, content.volume, content.cuts))
+    ms("- pack into the .blend", lambda: support.part("bl.store").write(ob.data, content))
     support.figure("triangles", len(surface.triangles))
     support.figure("removed, mm³", round(180000 - content.volume.volume, 3))
 

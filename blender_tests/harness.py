@@ -1,8 +1,8 @@
 """Runs inside a Blender: installs the add-on as the job says, runs test functions, prints one JSON line per result.
 
 The job is a JSON file named by RIFFLER_TEST_JOB: `mode` (source, extension, legacy, none), `zip`, `files`, `paths`
-(for sys.path), `out`, `repo`, `only`. Leaves by os._exit: a bpy wheel that still has classes or handlers registered
-crashes (4.2) or hangs (4.5) when the interpreter ends.
+(for sys.path), `out`, `repo`, `only`. Leaves by os._exit, unless the job has `leave`: a bpy wheel in which a test has
+left classes or handlers registered crashes (4.2) or hangs (4.5) when the interpreter ends.
 """
 
 import importlib
@@ -36,6 +36,8 @@ def install():
     mode = job["mode"]
     if mode == "none":
         return ""
+    if mode in ("extension", "legacy"):
+        sys.meta_path.insert(0, OnlyInstalled())
     if mode == "extension":
         bpy.ops.extensions.package_install_files(
             filepath=job["zip"], repo="user_default", enable_on_install=True, overwrite=True
@@ -93,8 +95,6 @@ def main():
 
     support.JOB = job
     support.Skip = Skip
-    if job["mode"] in ("extension", "legacy"):
-        sys.meta_path.insert(0, OnlyInstalled())
     try:
         support.MODULE = install()
     except Exception:
@@ -118,4 +118,5 @@ if __name__ == "__main__":
         code = 1
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(code)
+    if code or not job.get("leave"):
+        os._exit(code)

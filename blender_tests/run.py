@@ -20,6 +20,8 @@ import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import soaking
+
 import environments
 from environments import ROOT, Environment
 
@@ -28,11 +30,17 @@ MARK = "RIFFLER_TEST "
 sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
+END = 8  # lines of a message that are said again at the end, where they are read first
+
+
+def indented(message: str, last: int = 0) -> str:
+    return "".join(f"\n      {line}" for line in message.rstrip().splitlines()[-last:])
+
 
 @dataclass
 class Tally:
     passed: int = 0
-    failed: list[str] = field(default_factory=list)
+    failed: list[tuple[str, str]] = field(default_factory=list)  # name and message
     skipped: list[str] = field(default_factory=list)
 
     def add(self, where: str, result: dict) -> None:
@@ -44,8 +52,8 @@ class Tally:
             self.skipped.append(f"{name}: {result['message']}")
             note = f"  {result['message']}"
         else:
-            self.failed.append(name)
-            note = "\n" + "\n".join("      " + line for line in result["message"].rstrip().splitlines())
+            self.failed.append((name, result["message"]))
+            note = indented(result["message"])
         print(f"  {outcome:8}{result['seconds']:7.2f} s  {result['name']}{note}", flush=True)
 
     def skip(self, what: str, reason: str) -> None:
@@ -64,9 +72,12 @@ class Bench:
     timeout: float
     tally: Tally
 
-    def run(self, environment: Environment, mode: str, files: list[Path], more: dict | None = None) -> None:
+    def run(
+        self, environment: Environment, mode: str, files: list[Path], more: dict | None = None, timeout: float = 0
+    ) -> None:
         """One process; every result it prints counts, and a test that was begun and never ended has failed."""
         where = f"{environment.name}, {mode}"
+        timeout = max(timeout, self.timeout)
         print(where, flush=True)
         with tempfile.TemporaryDirectory() as resources:
             job = {
@@ -87,10 +98,10 @@ class Bench:
                 "BLENDER_USER_SCRIPTS": str(Path(resources) / "scripts"),
             }
             (Path(resources) / "scripts" / "addons").mkdir(parents=True)
-            done = environment.run(HERE / "harness.py", variables, self.timeout)
-        self.judge(where, done)
+            done = environment.run(HERE / "harness.py", variables, timeout)
+        self.judge(where, done, timeout)
 
-    def judge(self, where: str, done: subprocess.CompletedProcess) -> None:
+    def judge(self, where: str, done: subprocess.CompletedProcess, timeout: float = 0) -> None:
         begun, fine = None, True
         for line in done.stdout.splitlines():
             # Blender may leave an unfinished line of its own before ours
@@ -100,6 +111,8 @@ class Bench:
             message = json.loads(text)
             if "start" in message:
                 begun = message["start"]
+            elif "note" in message:
+                print(f"  note              {message['note']}", flush=True)
             elif "figure" in message:
                 print(f"  figure            {message['figure']}: {message['value']}", flush=True)
                 self.figures.append({"where": where, **message})
@@ -108,7 +121,11 @@ class Bench:
                 fine &= message["outcome"] != "failed"
                 begun = None
         if begun or (done.returncode != 0 and fine):
-            why = f"time limit of {self.timeout:.0f} s" if done.returncode == 124 else f"exit code {done.returncode}"
+            why = (
+                f"time limit of {timeout or self.timeout:.0f} s"
+                if done.returncode == 124
+                else f"exit code {done.returncode}"
+            )
             tail = "\n".join(done.stdout.splitlines()[-25:])
             self.tally.add(
                 where, {"name": begun or "process", "outcome": "failed", "seconds": 0, "message": f"{why}\n{tail}"}
@@ -127,8 +144,18 @@ def native_paths(wheel: Path | None, folder: Path) -> list[str]:
 
 
 def newest_wheel() -> Path | None:
-    found = [w for place in ("build/wheel", "dist") for w in (ROOT / place).glob("riffler-*.whl")]
+    """Of this Python, which is that of the Blenders here; ./dist may hold those of others too."""
+    name = f"riffler-*-{package.tag(sys.version_info)}-*.whl"
+    found = [w for place in ("build/wheel", "dist") for w in (ROOT / place).glob(name)]
     return max(found, key=lambda w: w.stat().st_mtime, default=None)
+
+
+def made_zips(folder: Path) -> dict[str, str]:
+    """Zips that are there already, by the way of installing them."""
+    found = {"legacy" if z.stem.endswith("-legacy") else "extension": str(z.resolve()) for z in folder.glob("*.zip")}
+    if "extension" not in found:
+        raise SystemExit(f"{folder} has no extension zip: make it with `make package`")
+    return found
 
 
 def core_tests(tally: Tally, only: str) -> None:
@@ -167,10 +194,13 @@ def main() -> int:
     parser.add_argument("--only", default="", help="text in the test's name")
     parser.add_argument("--blender", default="", help="text in the Blender's name, as 4.5")
     parser.add_argument("--mode", choices=("source", "extension", "legacy"), help="one way of installing only")
-    parser.add_argument("--wheel", type=Path, help="default: the newest in build/wheel or dist")
+    parser.add_argument("--wheel", type=Path, help="default: the newest in build/wheel or dist for this Python")
+    parser.add_argument("--zips", type=Path, help="folder of zips to test; default: made from the wheel")
     parser.add_argument("--no-window", action="store_true", help="headless only")
+    parser.add_argument("--no-headless", action="store_true", help="windows only")
     parser.add_argument("--figures", action="store_true", help="also measure; writes out/blender/figures.json")
-    parser.add_argument("--timeout", type=float, default=300, help="seconds for one process")
+    parser.add_argument("--timeout", type=float, default=600, help="seconds for one process")
+    soaking.add_arguments(parser)
     arguments = parser.parse_args()
 
     tally = Tally()
@@ -178,15 +208,22 @@ def main() -> int:
     out.mkdir(parents=True, exist_ok=True)
     wheel = arguments.wheel or newest_wheel()
     with tempfile.TemporaryDirectory() as folder:
-        zips = {}
-        if wheel:
-            extension, legacy = package.build([wheel], Path(folder) / "zips")
-            zips = {"extension": str(extension), "legacy": str(legacy)}
+        zips = made_zips(arguments.zips) if arguments.zips else {}
+        if wheel and not zips:
+            package.build([wheel], Path(folder) / "zips")
+            zips = made_zips(Path(folder) / "zips")
         bench = Bench(native_paths(wheel, Path(folder) / "native"), zips, out, arguments.only, arguments.timeout, tally)
+        if arguments.soak:
+            soaking.run(bench, arguments)
+            return close(tally)
         if not arguments.blender and not arguments.mode:
             core_tests(tally, arguments.only)
+        if arguments.mode in (None, "extension") and not arguments.only:
             validate(bench)
-        headless(bench, arguments)
+        if not arguments.no_headless:
+            headless(bench, arguments)
+            if arguments.mode in (None, "source"):
+                soaking.run(bench, arguments)
         if not arguments.no_window and arguments.mode in (None, "source"):
             windowed(bench, arguments)
     if bench.figures:
@@ -230,31 +267,38 @@ def windowed(bench: Bench, arguments) -> None:
     if reason := application.missing or window.missing():
         bench.tally.skip("window", reason)
         return
-    for script in sorted((HERE / "windowed").glob("window_*.py")):
+    scripts = sorted((HERE / "windowed").glob("window_*.py"))
+    if application.extensions:
+        bench.tally.skip("tutorials", "their buttons are looked for where the sidebar of Blender 3.4 has them")
+    else:
+        scripts += sorted((HERE / "windowed").glob("tutorial_*.py"))
+    for script in scripts:
         if arguments.only in script.stem:
             window.run(bench, application, script)
 
 
 def validate(bench: Bench) -> None:
-    """Blender's own check of an extension, by the newest Blender that is here."""
-    found = sorted(
-        ROOT.glob(".envs/bpy-*/lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
-    )
-    if not found or "extension" not in bench.zips:
-        bench.tally.skip("extension zip, Blender's validator", "no bpy environment" if not found else "no wheel")
+    """Blender's own check of an extension: that of `blender` if it has extensions, or of the newest bpy wheel."""
+    scripts = "lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py"
+    command = [[sys.executable, str(path), "validate"] for path in sorted(ROOT.glob(f".envs/bpy-*/{scripts}"))]
+    application = environments.application()
+    if application.extensions:
+        command.append([application.command[0], "--command", "extension", "validate"])
+    if not command or "extension" not in bench.zips:
+        bench.tally.skip("extension zip, Blender's validator", "no wheel" if command else "no Blender with extensions")
         return
     print("extension zip", flush=True)
-    done = environments.execute([sys.executable, str(found[-1]), "validate", bench.zips["extension"]], {}, 60)
+    done = environments.execute([*command[-1], bench.zips["extension"]], {}, 60)
     outcome = "passed" if done.returncode == 0 else "failed"
     bench.tally.add("extension zip", {"name": "validate", "outcome": outcome, "seconds": 0, "message": done.stdout})
 
 
 def close(tally: Tally) -> int:
     print(f"\n{tally.passed} passed, {len(tally.failed)} failed, {len(tally.skipped)} skipped")
-    for line in tally.failed:
-        print(f"  failed   {line}")
     for line in tally.skipped:
         print(f"  skipped  {line}")
+    for name, message in tally.failed:
+        print(f"  failed   {name}{indented(message, END)}")
     return 1 if tally.failed or not tally.passed else 0
 
 

@@ -72,6 +72,19 @@ def coordinates(mesh):
     return co
 
 
+def triangles(mesh):
+    tri = np.empty(3 * len(mesh.polygons), np.int32)
+    mesh.loops.foreach_get("vertex_index", tri)
+    return tri.reshape(-1, 3)
+
+
+def select(ob):
+    """Active, and the only one selected."""
+    bpy.ops.object.select_all(action="DESELECT")
+    ob.select_set(True)
+    bpy.context.view_layer.objects.active = ob
+
+
 def mesh_volume(co, tri):
     """Divergence theorem, by hand: the reference for what the product says."""
     a, b, c = (co[tri[:, k]].astype(float) for k in range(3))

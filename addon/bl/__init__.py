@@ -1,1 +1,1 @@
-"""Adapters to Blender. Every difference between its versions is dealt with here, and nowhere else."""
+"""Adapters to Blender. Every difference between its versions is dealt with in versions.py, and nowhere else."""

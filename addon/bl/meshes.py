@@ -1,7 +1,7 @@
 """Triangles into and out of Blender meshes.
 
 One place owns every dtype and memory layout: a non-contiguous array in `foreach_set` raises and then crashes Blender at
-exit, and the fast paths differ between versions.
+exit. The arrays that go out are contiguous float32 and int32; versions.py has the ways that differ.
 """
 
 import math
@@ -9,45 +9,44 @@ import math
 import bpy
 import numpy as np
 
+from . import versions
+
 # Dexel surfaces facet curved cuts by a few degrees; edges that a tool leaves are steeper than this.
 SHARP_ANGLE = math.radians(30)
 
 
-def fill(mesh, co, tri):
-    """Replaces the mesh's geometry: `co` (V, 3) Blender units, `tri` (F, 3) vertex indices. Keeps material slots."""
+def fill(mesh, co, tri, edges=None):
+    """Replaces the mesh's geometry: `co` (V, 3) Blender units, `tri` (F, 3) vertex indices. Keeps material slots.
+
+    `edges`, where they are known: (E, 2) vertex indices, each edge once, and (F, 3), of each triangle's corners the
+    edge to the next one. Blender needs three times as long to find them."""
     co = np.ascontiguousarray(co, np.float32)
     tri = np.ascontiguousarray(tri, np.int32)
-    faces = len(tri)
+    _forget_shape_keys(mesh)
     # Always: new topology in place with equal counts leaves stale vertex-to-face maps (wrong normals, 4.2 to 5.0).
     mesh.clear_geometry()
-    if faces:
+    if len(tri):
         mesh.vertices.add(len(co))
-        mesh.loops.add(3 * faces)
-        mesh.polygons.add(faces)
-        mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * faces, 3, dtype=np.int32))
-        if bpy.app.version < (4, 0, 0):
-            mesh.polygons.foreach_set("loop_total", np.full(faces, 3, np.int32))
-        attributes = mesh.attributes
-        if "position" in attributes:
-            attributes["position"].data.foreach_set("vector", co.ravel())
-        else:
-            mesh.vertices.foreach_set("co", co.ravel())
-        if ".corner_vert" in attributes:
-            attributes[".corner_vert"].data.foreach_set("value", tri.ravel())
-        else:  # unsigned is the type Blender stores: 14 times as fast as int32 in 3.4
-            mesh.loops.foreach_set("vertex_index", tri.ravel().view(np.uint32))
-    mesh.update(calc_edges=True)
-    _shade(mesh, faces)
-
-
-def _shade(mesh, faces):
-    """Smooth, with edges steeper than SHARP_ANGLE sharp."""
-    if bpy.app.version >= (4, 1, 0):  # new polygons are smooth; auto smooth is gone
-        mesh.set_sharp_from_angle(angle=SHARP_ANGLE)
+        mesh.loops.add(tri.size)
+        mesh.polygons.add(len(tri))
+        versions.write_positions(mesh, co.ravel())
+        versions.write_triangles(mesh, tri.ravel())
+        if edges is not None:
+            ends, corners = (np.ascontiguousarray(a, np.int32) for a in edges)
+            mesh.edges.add(len(ends))
+            versions.write_edges(mesh, ends.ravel(), corners.ravel())
+    mesh.update(calc_edges=edges is None)
+    if edges is None:
+        versions.shade_by_angle(mesh, SHARP_ANGLE)
     else:
-        mesh.polygons.foreach_set("use_smooth", np.ones(faces, bool))
-        mesh.use_auto_smooth = True
-        mesh.auto_smooth_angle = SHARP_ANGLE
+        versions.shade_chunk(mesh, SHARP_ANGLE)
+
+
+def _forget_shape_keys(mesh):
+    """They have places of vertices that are there no more: what is seen would be neither. Only an object can clear
+    them."""
+    if mesh.shape_keys is not None:
+        next(ob for ob in bpy.data.objects if ob.data == mesh).shape_key_clear()
 
 
 def read(ob, depsgraph):

@@ -1,9 +1,13 @@
 """Sculpts: mesh objects whose mesh points to a volume."""
 
+import uuid
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 
-from . import meshes, store, units
+from ..core.cache import Content
+from . import masks, meshes, store, units
 
 
 def is_sculpt(ob):
@@ -16,36 +20,92 @@ def active(context):
     return ob if is_sculpt(ob) else None
 
 
+def new_mark(ob):
+    """What a sculpt that is worked at is known by, whatever it is called; undo brings it back with the object."""
+    ob.riffler.mark = uuid.uuid4().hex
+    return ob.riffler.mark
+
+
+def marked(mark, name=""):
+    """The sculpt of that mark, or None. Its name, if that is known, tells it from its copies, which have the mark."""
+    ob = bpy.data.objects.get(name)
+    if ob is not None and ob.riffler.mark == mark:
+        return ob if is_sculpt(ob) else None
+    return next((ob for ob in bpy.data.objects if ob.riffler.mark == mark and is_sculpt(ob)), None)
+
+
 def new_object(context, name, volume, matrix, cuts=()):
     """A new sculpt in the active collection at `matrix` (world), active and the only one selected."""
     mesh = bpy.data.meshes.new(name)
-    commit(mesh, volume, list(cuts), units.mm_per_unit(context.scene))
+    try:
+        commit(mesh, Content(volume, list(cuts)), units.mm_per_unit(context.scene))
+    except BaseException:
+        bpy.data.meshes.remove(mesh)
+        raise
     ob = bpy.data.objects.new(name, mesh)
-    context.collection.objects.link(ob)
+    _home(context).objects.link(ob)
     ob.matrix_world = matrix
+    select_only(context, ob)
+    return ob
+
+
+def _home(context):
+    """The active collection; the scene's own where nothing can be put into that one, or would not be seen in it."""
+    active = context.collection
+    if active.library or active.override_library or context.layer_collection.exclude:
+        return context.scene.collection
+    return active
+
+
+def select_only(context, ob):
+    """Active, and the only one selected."""
     for other in context.selected_objects:
         other.select_set(False)
     ob.select_set(True)
     context.view_layer.objects.active = ob
-    return ob
 
 
-def commit(mesh, volume, cuts, mm_per_unit):
-    """Makes `volume` the mesh's content and shows it. The volume must not be changed afterwards. Returns triangles."""
-    surface = volume.to_mesh()  # whatever can fail comes before the first change
-    store.write(mesh, volume, cuts)
-    show(mesh, surface, mm_per_unit)
-    p = mesh.riffler
-    p.lower, p.upper, p.pitch, p.directions = volume.lower, volume.upper, volume.pitch, volume.directions
-    p.material = volume.volume
-    p.nbytes = float(volume.nbytes)
-    p.cuts, p.moves = len(cuts), sum(c.moves for c in cuts)
+def take_looks(ob, other):
+    """The materials of another sculpt."""
+    for material in other.data.materials:
+        ob.data.materials.append(material)
+
+
+def commit(mesh, content, mm_per_unit, token=""):
+    """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles."""
+    surface = content.volume.to_mesh()  # whatever can fail comes before the first change
+    store.write(mesh, content, token)
+    _show_whole(mesh, content, surface, mm_per_unit)
     return len(surface.triangles)
 
 
-def show(mesh, surface, mm_per_unit):
-    """Fills the mesh from a surface in millimetres."""
+def _show_whole(mesh, content, surface, mm_per_unit):
+    show(mesh, surface, mm_per_unit, content.mask)
+    p, volume = mesh.riffler, content.volume
+    p.shown_of = store.identity(mesh)
+    p.lower, p.upper, p.pitch, p.directions = volume.lower, volume.upper, volume.pitch, volume.directions
+    for key, value in facts(content)._asdict().items():
+        setattr(p, key, value)
+
+
+class Facts(NamedTuple):
+    """What a panel says of a sculpt; mesh.riffler has the same."""
+
+    material: float  # mm³
+    nbytes: float
+    cuts: int
+    moves: int
+
+
+def facts(content):
+    volume, cuts = content.volume, content.cuts
+    return Facts(volume.volume, float(volume.nbytes), len(cuts), sum(c.moves for c in cuts))
+
+
+def show(mesh, surface, mm_per_unit, mask=None):
+    """Fills the mesh from a surface in millimetres; what lies in `mask`, a volume, is seen to be protected."""
     meshes.fill(mesh, np.asarray(surface.vertices) / mm_per_unit, surface.triangles)
+    masks.show(mesh, mask, np.asarray(surface.vertices), np.asarray(surface.triangles))
     p = mesh.riffler
     p.mm_per_unit = mm_per_unit
     p.shown, p.shown_at = _fingerprint(mesh)
@@ -53,12 +113,21 @@ def show(mesh, surface, mm_per_unit):
 
 def refill(mesh, mm_per_unit):
     """Shows the stored volume again: after the mesh was edited, or the scene's units were changed."""
-    show(mesh, store.content(mesh).volume.to_mesh(), mm_per_unit)
+    content = store.content(mesh)
+    _show_whole(mesh, content, content.volume.to_mesh(), mm_per_unit)
+
+
+def behind(mesh):
+    """True where what is packed has gone on since the mesh showed it: of a live sculpt."""
+    return mesh.riffler.shown_of not in ("", store.identity(mesh))
 
 
 def edited(mesh):
     """True where the mesh is not the surface that was last shown: other counts, or other places of a few vertices (as
-    after Apply Scale). Cheap enough for every drawing of a panel; a few pulled vertices may escape it."""
+    after Apply Scale), or shape keys. Cheap enough for every drawing of a panel; a few pulled vertices may escape it.
+    """
+    if mesh.shape_keys is not None:
+        return True
     counts, places = _fingerprint(mesh)
     return tuple(mesh.riffler.shown) != counts or tuple(mesh.riffler.shown_at) != places
 
@@ -84,8 +153,25 @@ def to_world_mm(ob, scene):
     return m
 
 
-def from_object(ob, other):
-    """(4, 4): Blender units in another object's frame → millimetres in the sculpt's frame."""
-    m = np.linalg.inv(meshes.matrix(ob.matrix_world)) @ meshes.matrix(other.matrix_world)
+def distorted(ob):
+    """Why tools are not in the world what they are in the sculpt's frame, with the remedy; or nothing."""
+    axes = meshes.matrix(ob.matrix_world)[:3, :3]
+    if np.allclose(axes.T @ axes, np.eye(3), rtol=0, atol=1e-4):
+        return ""
+    scaled = "use Object > Clear > Scale" if ob.parent is None else "clear the scale of what it hangs on"
+    return f"{ob.name} is scaled or sheared: tools are sized in its own millimetres. To have them true, {scaled}"
+
+
+def from_world(ob):
+    """(4, 4): Blender units in the world → millimetres in the sculpt's frame. ValueError where it has none."""
+    world = meshes.matrix(ob.matrix_world)
+    if np.linalg.matrix_rank(world[:3, :3]) < 3:
+        raise ValueError(f"{ob.name} is scaled to nothing along an axis: use Object > Clear > Scale")
+    m = np.linalg.inv(world)
     m[:3] *= shown_mm_per_unit(ob.data)
     return m
+
+
+def from_object(ob, other):
+    """(4, 4): Blender units in another object's frame → millimetres in the sculpt's frame."""
+    return from_world(ob) @ meshes.matrix(other.matrix_world)

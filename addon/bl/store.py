@@ -1,8 +1,7 @@
 """The sculpt's data inside the .blend: a packed image that the mesh points to.
 
-Of all datablocks that hold bytes, a packed image is the one that survives every version, undo, save and reopening
-without being doubled or cut short. The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and
-volume as one thing, and it goes when the mesh goes. A copy of a mesh shares the image until one of the two is written.
+The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and volume as one thing, and it goes when
+the mesh goes. A copy of a mesh shares the image until one of the two is written.
 """
 
 import bpy
@@ -10,8 +9,9 @@ import riffler
 
 from ..core import record
 from ..core.cache import Content, ContentCache
+from . import packed
 
-IDENTITY = "riffler_content"  # on the image: the hash of what is packed in it
+TOKEN = "riffler_token"  # on the image: the state of a live sculpt that it has (bl/live.py)
 _cache = ContentCache()
 
 
@@ -21,8 +21,7 @@ def clear_cache():
 
 def identity(mesh):
     """The content id, or "" where the mesh is no sculpt."""
-    image = mesh.riffler.store
-    return image.get(IDENTITY, "") if image else ""
+    return packed.identity(mesh.riffler.store)
 
 
 def content(mesh):
@@ -33,38 +32,49 @@ def content(mesh):
         raise ValueError(f"{mesh.name} is no sculpt")
     found = _cache.get(key)
     if found is None:
-        block, cuts = record.decode(_packed(mesh.riffler.store), key)
-        found = Content(riffler.Volume.from_bytes(block, mesh.name), cuts)
+        block, cuts, mask = record.decode(packed.read(mesh.riffler.store, "the sculpt"), key)
+        protected = riffler.Volume.from_bytes(mask, f"{mesh.name}, mask") if len(mask) else None
+        found = Content(riffler.Volume.from_bytes(block, mesh.name), cuts, protected)
         _cache.put(key, found)
     return found
 
 
-def write(mesh, volume, cuts):
-    """Makes `volume` and `cuts` the mesh's content; returns the bytes kept. The volume must not be changed after it."""
-    block = record.encode(volume.to_bytes(), cuts)
+def token(mesh):
+    """The state of a live sculpt that is packed, or ""."""
+    image = mesh.riffler.store
+    return image.get(TOKEN, "") if image else ""
+
+
+def mark_state(mesh, token):
+    """What is packed is the state `token`."""
+    mesh.riffler.store[TOKEN] = token
+
+
+def nbytes(mesh):
+    """Of what is packed."""
+    file = mesh.riffler.store.packed_file
+    return file.size if file else 0
+
+
+def blocks(content):
+    """The bytes of the volume and of the mask."""
+    return content.volume.to_bytes(), content.mask.to_bytes() if content.mask is not None else b""
+
+
+def write(mesh, content, token="", made=None):
+    """Makes `content`, a live sculpt's state `token`, the mesh's; returns the bytes kept. It must not be changed after
+    it. `made`: its blocks, where they are made already."""
+    volume, mask = made or blocks(content)
+    block = record.encode(volume, content.cuts, mask)
     key = record.content_id(block)
     image = mesh.riffler.store
     if image is None or image.library or _shared(mesh, image):
-        # A name with a dot in front is not listed among images to choose from.
-        image = bpy.data.images.new(f".riffler {mesh.name}", 1, 1)
-        mesh.riffler.store = image
-    image.pack(data=block, data_len=len(block))
-    image[IDENTITY] = key
-    _cache.put(key, Content(volume, list(cuts)))
+        image = mesh.riffler.store = packed.new(mesh.name)
+    packed.write(image, block, key)
+    image[TOKEN] = token
+    _cache.put(key, content)
     return len(block)
 
 
 def _shared(mesh, image):
     return any(m != mesh and m.riffler.store == image for m in bpy.data.meshes)
-
-
-def _packed(image):
-    if image.packed_file:
-        return bytes(image.packed_file.data)
-    # File > External Data > Unpack wrote it to a file of its own.
-    path = bpy.path.abspath(image.filepath, library=image.library)
-    try:
-        with open(path, "rb") as file:
-            return file.read()
-    except OSError as error:
-        raise ValueError(f"the sculpt's data is not in this .blend, and not at {path}: {error.strerror}") from error

@@ -14,34 +14,78 @@ from typing import Any
 
 @dataclass
 class Content:
-    """A volume that nobody changes any more, and the cuts that made it."""
+    """A volume that nobody changes any more, and the cuts that made it; what is protected, a volume on the same grid,
+    or None."""
 
     volume: Any
     cuts: list = field(default_factory=list)
+    mask: Any = None
+
+    @property
+    def nbytes(self) -> int:
+        return self.volume.nbytes + (self.mask.nbytes if self.mask is not None else 0)
 
 
 class ContentCache:
+    """Of things that have `nbytes`; those used last stay."""
+
     def __init__(self, count: int = 32, nbytes: int = 2_000_000_000):
         self._count, self._nbytes = count, nbytes
-        self._items: OrderedDict[str, Content] = OrderedDict()
+        self._items: OrderedDict[str, Any] = OrderedDict()
 
     def __len__(self) -> int:
         return len(self._items)
 
-    def get(self, identity: str) -> Content | None:
+    def get(self, identity: str):
         content = self._items.get(identity)
         if content is not None:
             self._items.move_to_end(identity)
         return content
 
-    def put(self, identity: str, content: Content) -> None:
+    def put(self, identity: str, content) -> None:
         self._items[identity] = content
         self._items.move_to_end(identity)
         # The sum counts shared tiles once per volume: too much, so the limit errs on the small side.
         while len(self._items) > 1 and (
-            len(self._items) > self._count or sum(c.volume.nbytes for c in self._items.values()) > self._nbytes
+            len(self._items) > self._count or sum(c.nbytes for c in self._items.values()) > self._nbytes
         ):
             self._items.popitem(last=False)
 
     def clear(self) -> None:
         self._items.clear()
+
+
+class Snapshots:
+    """States between two packings, which only this session of Blender knows, by the token that the object carries.
+
+    Blender's undo may ask for each state that was shown within its last steps. A state counts as old from the moment
+    when another took its place, not from when it was made: a sculpt that rested for a hundred strokes on another one
+    can still be taken back."""
+
+    def __init__(self, most: int = 34):
+        self.most = most
+        self._items: OrderedDict[str, Any] = OrderedDict()
+        self._held: set[str] = set()
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def get(self, token: str) -> Any:
+        return self._items.get(token)
+
+    def hold(self, tokens: set[str]) -> None:
+        """What is shown now, which is not dropped."""
+        self._held = set(tokens)
+
+    def put(self, token: str, state: Any, replaces: str = "") -> None:
+        if replaces in self._items:
+            self._items.move_to_end(replaces)
+        self._items[token] = state
+        self._items.move_to_end(token)
+        free = [t for t in self._items if t not in self._held and t != token]
+        for old in free[: max(0, len(self._items) - self.most)]:
+            del self._items[old]
+
+    def clear(self) -> None:
+        self._items.clear()
+        self._held.clear()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import platform
 import sys
 from dataclasses import dataclass
@@ -70,6 +71,20 @@ def report(error: BaseException, machine: Machine, folders: list[str] | None = N
     steps = mend(error, machine, found)
     text = "\n".join(["Riffler: the native core did not load", why, *facts, "How to mend it:", *steps])
     return {"why": why, "facts": facts, "steps": steps, "text": text}
+
+
+def folder(path: Path) -> str:
+    """Whether something can be written there; nothing is."""
+    there = next(p for p in (path, *path.parents) if p.is_dir())
+    if not os.access(there, os.W_OK):
+        return f"{path}, which may not be written"
+    return str(path) if there == path else f"{path}, made when it is needed"
+
+
+def table(title: str, rows: list[tuple[str, str]]) -> str:
+    """Lines with what things are in one column and what was found in another."""
+    width = max(len(name) for name, _ in rows)
+    return "\n".join([title, *(f"{name:{width}}  {text}" for name, text in rows)]) + "\n"
 
 
 def wrap(text: str, width: int = 44) -> list[str]:

@@ -4,10 +4,34 @@ from __future__ import annotations
 
 import math
 
+from . import units
+
 # What a ray with one interval takes at most; the native core's own figure (its budget is tested there).
 BYTES_PER_RAY = 24
 # Above this many rays the panel warns: a fresh volume of this size takes about 2.4 GB and seconds to show.
 MANY_RAYS = 100_000_000
+
+# More than this the mesh of a sculpt may not have. Blender's own arrays end at 178 million, and after minutes: whoever
+# asks for so many has taken metres for millimetres.
+MOST_TRIANGLES = 50_000_000
+
+
+def check_surface(name: str, size, area: float, pitch: float) -> None:
+    """ValueError where a surface of `area` (mm²) is too large to be shown at `pitch` (mm): two triangles for each cell
+    that it goes through, and one that leans goes through more."""
+    triangles = 2 * area / pitch**2
+    if triangles > MOST_TRIANGLES:
+        raise ValueError(
+            f"{name} is {units.format_size(size)}, which are {units.format_count(round(triangles))} triangles at "
+            f"{units.trim(pitch, 4)} mm: take a coarser pitch; or where a unit was to be a millimetre, use Scene in "
+            "Millimetres"
+        )
+
+
+def box_area(size) -> float:
+    """mm²."""
+    x, y, z = size
+    return 2 * (x * y + y * z + z * x)
 
 
 def ray_count(size, pitch: float, directions: str) -> int:

@@ -1,11 +1,91 @@
-"""A cut in steps: what a modal operator does on each tick, without the operator."""
+"""Long work in steps: what a modal operator does on each tick, without the operator."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+
+from . import units
+
+
+class Job(Protocol):
+    """What operators/long.py runs. Errors are raised by `step`, which leaves nothing half done then."""
+
+    in_background: bool  # the work has a thread of its own, and `step` only waits for it
+    fraction: float  # of the work that is done, 0 … 1
+    text: str  # how far it is in its own words, or ""
+
+    def step(self, budget: float) -> bool:
+        """Works, or waits, for about `budget` seconds; True when all is done."""
+
+    def cancel(self) -> None:
+        """Takes back what was done; may be called at any time."""
+
+
+def run_through(job: Job, report=None) -> None:
+    """All of it in one go, in steps, so that `report(fraction)` is heard."""
+    while not job.step(0.25):
+        if report:
+            report(job.fraction)
+
+
+class TaskJob:
+    """A native task (riffler.Task) as a job: once `step` has returned True, `result` is what the task made."""
+
+    in_background = True
+
+    def __init__(self, task, text="", clock=time.perf_counter, sleep=time.sleep):
+        self.text, self.result = text, None
+        self._task, self._clock, self._sleep = task, clock, sleep
+
+    @property
+    def fraction(self) -> float:
+        return self._task.share
+
+    def step(self, budget: float = 0.0) -> bool:
+        end = self._clock() + budget
+        while not self._task.done:
+            left = end - self._clock()
+            if left <= 0:
+                return False
+            self._sleep(min(left, 0.005))
+        self.result = self._task.result()  # raises what the task's call raised
+        return True
+
+    def cancel(self) -> None:
+        self._task.cancel()
+
+
+class ChainJob:
+    """Native tasks one after the other: `steps` are functions that start one with what the last one made; the first is
+    given None. Shares of the whole are equal."""
+
+    in_background = True
+
+    def __init__(self, *steps, text=""):
+        self.text, self.result = text, None
+        self._steps, self._done, self._job = list(steps), 0, None
+
+    @property
+    def fraction(self) -> float:
+        now = 0.0 if self._job is None else self._job.fraction
+        return min(1.0, (self._done + now) / len(self._steps))
+
+    def step(self, budget: float = 0.0) -> bool:
+        if self._job is None:
+            self._job = TaskJob(self._steps[self._done](self.result))
+        if not self._job.step(budget):
+            return False
+        self.result, self._job = self._job.result, None
+        self._done += 1
+        return self._done == len(self._steps)
+
+    def cancel(self) -> None:
+        if self._job is not None:
+            self._job.cancel()
 
 
 @dataclass
@@ -15,6 +95,7 @@ class Cut:
     tool: dict  # the form of riffler.Tool.to_dict
     poses: np.ndarray  # (n, 6) tip and axis, mm, stock's frame
     tolerance: float = 0.01  # mm, as carve is given it
+    mode: str = "remove"  # as carve is given it
 
     @property
     def moves(self) -> int:
@@ -25,7 +106,9 @@ class CutJob:
     """Carves `cuts` from `volume` in slices. `step` until it returns True; `cancel` at any time before restores the
     volume as it was; so does any error."""
 
-    def __init__(self, volume, cuts, make_tool, clock=time.perf_counter):
+    in_background = False
+
+    def __init__(self, volume, cuts, make_tool, protect=None, clock=time.perf_counter):
         if not cuts or not all(c.moves > 0 for c in cuts):
             raise ValueError("nothing to cut: a cut needs two poses")
         self.volume = volume
@@ -35,6 +118,8 @@ class CutJob:
         self.removed = 0.0
         self._tools = [make_tool(c.tool) for c in self.cuts]
         self._clock = clock
+        # a volume's carve is asked for what is special only where something is
+        self._more = {} if protect is None else {"protect": protect}
         self._snapshot = volume.snapshot()
         self._cut = self._move = 0
         self._rate = 200.0  # moves per second; measured from the first slice on
@@ -42,6 +127,10 @@ class CutJob:
     @property
     def fraction(self) -> float:
         return self.done / self.total
+
+    @property
+    def text(self) -> str:
+        return f"Move {units.format_count(self.done)} of {units.format_count(self.total)}"
 
     @property
     def finished(self) -> bool:
@@ -57,12 +146,6 @@ class CutJob:
             self._slice(max(1, int(self._rate * min(left, budget))))
         return self.finished
 
-    def run(self, report=None) -> None:
-        """All of it, in slices, so that `report(fraction)` is heard."""
-        while not self.step(0.25):
-            if report:
-                report(self.fraction)
-
     def cancel(self) -> None:
         self.volume.restore(self._snapshot)
         self.done = self._cut = self._move = 0
@@ -73,8 +156,9 @@ class CutJob:
         last = min(self._move + moves, cut.moves)
         begin = self._clock()
         try:
+            poses = cut.poses[self._move : last + 1]
             result = self.volume.carve(
-                self._tools[self._cut], cut.poses[self._move : last + 1], tolerance=cut.tolerance
+                self._tools[self._cut], poses, tolerance=cut.tolerance, mode=cut.mode, **self._more
             )
         except Exception:
             self.cancel()

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 # Names of the native package that the add-on uses: an older riffler on the path would otherwise fail in mid-work.
-NEEDED = ("Tool", "Volume", "Mesh", "Program", "Journal", "Session", "Mesher", "Material")
+NEEDED = ("Tool", "Volume", "Mesh", "Program", "Journal", "Session", "Mesher", "Material", "Task")
 
 
 def vendored() -> Path | None:

@@ -91,3 +91,15 @@ def make_poses(points: np.ndarray, axes: np.ndarray, depth: float = 0.0) -> np.n
 def transform_points(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
     """4 × 4 affine `matrix` on (n, 3) points."""
     return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def moving(poses, dt=None):
+    """The poses, (n, 6), and the times of their moves without those that stand where the one before stood: a journal
+    takes them for no moves. Where none moves, the first two are one move: the tool cuts where it stands."""
+    stands = (poses[1:] == poses[:-1]).all(axis=1)
+    if not stands.any():
+        return poses, dt
+    kept = np.r_[True, ~stands]
+    if stands.all():
+        kept[1] = True
+    return poses[kept], None if dt is None else np.asarray(dt)[kept[1:]]

@@ -1,7 +1,9 @@
-"""What a sculpt keeps in the .blend: its volume (the bytes of an .rvol file) and the cuts that made it, as one block.
+"""What a sculpt keeps in the .blend: its volume (the bytes of an .rvol file), what of it is protected, and the cuts
+that made it, as one block.
 
-Layout, little endian: magic (8 bytes), format version and header length (uint32 each), a JSON header, then the volume's
-bytes and every cut's poses (float64) in order. The content id is a hash of the whole block, so equal content has an
+Layout, little endian: magic (8 bytes), format version and header length (uint32 each), a JSON header, then the bytes of
+the volume and of the mask, and the poses (float64) of every cut, in order. Blocks without a mask and with nothing but
+cuts are of version 1, which older add-ons read. The content id is a hash of the whole block, so equal content has an
 equal id and a block that was damaged does not pass for what was written.
 """
 
@@ -16,7 +18,7 @@ import numpy as np
 from .job import Cut
 
 MAGIC = b"RIFFLERB"
-VERSION = 1
+VERSION = 2
 _HEAD = struct.Struct("<8sII")
 
 
@@ -24,38 +26,48 @@ def content_id(block: bytes) -> str:
     return hashlib.blake2b(block, digest_size=16).hexdigest()
 
 
-def encode(volume: bytes, cuts: list[Cut]) -> bytes:
+def encode(volume: bytes, cuts: list[Cut], mask: bytes = b"") -> bytes:
     rows = [{"tool": c.tool, "tolerance": c.tolerance, "rows": len(c.poses)} for c in cuts]
     header = {"volume": len(volume), "cuts": rows}
+    version = 1
+    if mask or any(c.mode != "remove" for c in cuts):
+        version = 2
+        header["mask"] = len(mask)
+        for row, cut in zip(rows, cuts, strict=True):
+            row["mode"] = cut.mode
     text = json.dumps(header, separators=(",", ":"), ensure_ascii=False).encode()
     poses = [np.ascontiguousarray(c.poses, "<f8").tobytes() for c in cuts]
-    return b"".join([_HEAD.pack(MAGIC, VERSION, len(text)), text, volume, *poses])
+    return b"".join([_HEAD.pack(MAGIC, version, len(text)), text, volume, mask, *poses])
 
 
-def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[Cut]]:
-    """A view of the volume's bytes, and the cuts. ValueError says what is wrong with a block that is not whole."""
+def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[Cut], memoryview]:
+    """A view of the volume's bytes, the cuts, a view of the mask's bytes (empty: none). ValueError says what is wrong
+    with a block that is not whole."""
     if identity is not None and content_id(block) != identity:
         raise ValueError("the sculpt's data in this .blend is damaged: its checksum is another one")
     if len(block) < _HEAD.size or block[:8] != MAGIC:
         raise ValueError("the sculpt's data in this .blend does not begin as Riffler's does")
     _, version, size = _HEAD.unpack_from(block)
-    if version != VERSION:
+    if not 1 <= version <= VERSION:
         raise ValueError(
-            f"the sculpt's data has format {version}, and this Riffler reads {VERSION}: install a newer one"
+            f"the sculpt's data has format {version}, and this Riffler reads up to {VERSION}: install a newer one"
         )
     try:
         header = json.loads(block[_HEAD.size : _HEAD.size + size])
         at = _HEAD.size + size
-        wanted = at + header["volume"] + sum(48 * c["rows"] for c in header["cuts"])
+        masked = header.get("mask", 0)
+        wanted = at + header["volume"] + masked + sum(48 * c["rows"] for c in header["cuts"])
         if wanted != len(block):
             raise ValueError(f"{wanted} bytes expected, {len(block)} found")
         volume = memoryview(block)[at : at + header["volume"]]
         at += header["volume"]
+        mask = memoryview(block)[at : at + masked]
+        at += masked
         cuts = []
         for c in header["cuts"]:
             poses = np.frombuffer(block, "<f8", 6 * c["rows"], at).reshape(-1, 6).copy()
-            cuts.append(Cut(c["tool"], poses, c["tolerance"]))
+            cuts.append(Cut(c["tool"], poses, c["tolerance"], c.get("mode", "remove")))
             at += 48 * c["rows"]
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"the sculpt's data in this .blend is not whole: {error}") from error
-    return volume, cuts
+    return volume, cuts, mask

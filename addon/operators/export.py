@@ -6,8 +6,8 @@ import riffler
 from bpy_extras.io_utils import ExportHelper
 
 from .. import properties
-from ..bl import sculpts, store
-from ..core import poses
+from ..bl import live, programs, sculpts
+from ..core import poses, problems, threemf_out
 from ..core import units as names
 from . import paths, shared
 
@@ -24,14 +24,41 @@ class Export(ExportHelper):
     def execute(self, context):
         try:
             path = bpy.path.abspath(self.filepath)
+            problems.check_target(path)
             done = self.write(context, sculpts.active(context), path)
-        except (ValueError, OSError, RuntimeError, MemoryError) as error:
+        except shared.ERRORS as error:
             return shared.fail(self, error)
         self.report({"INFO"}, f"{bpy.path.basename(path)}: {done}")
         return {"FINISHED"}
 
+    def removing(self, ob, content):
+        """programs.removing, and a word on what is left out."""
+        cuts = programs.removing(ob.name, content)
+        added = len(content.cuts) - len(cuts)
+        if added:
+            self.report({"WARNING"}, f"{added} strokes that put material on are left out: no machine can make them")
+        return cuts
 
-class RIFFLER_OT_export_stl(Export, bpy.types.Operator):
+
+class ExportSurface(Export):
+    """Mixin of the operators that write the surface, by `put`."""
+
+    world: bpy.props.BoolProperty(
+        name="As placed", default=True, description="Apply the object's transform; off: as milled, in the stock's frame"
+    )
+
+    def write(self, context, ob, path):
+        if live.of(ob) is None and sculpts.edited(ob.data):
+            self.report({"WARNING"}, "The mesh was edited: what is written is the volume, without the edits")
+        surface = live.content(ob).volume.to_mesh()
+        if self.world:
+            surface = placed(surface, sculpts.to_world_mm(ob, context.scene))
+        self.put(surface, path, ob.name)
+        lower, upper = surface.bounds if len(surface.vertices) else np.zeros((2, 3))
+        return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(upper - lower)}"
+
+
+class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator):
     """Write the active sculpt as a binary STL in millimetres, straight from its volume"""
 
     bl_idname = "riffler.export_stl"
@@ -39,19 +66,22 @@ class RIFFLER_OT_export_stl(Export, bpy.types.Operator):
 
     filename_ext = ".stl"
     filter_glob: bpy.props.StringProperty(default="*.stl", options={"HIDDEN"})
-    world: bpy.props.BoolProperty(
-        name="As placed", default=True, description="Apply the object's transform; off: as milled, in the stock's frame"
-    )
 
-    def write(self, context, ob, path):
-        if sculpts.edited(ob.data):
-            self.report({"WARNING"}, "The mesh was edited: what is written is the volume, without the edits")
-        surface = store.content(ob.data).volume.to_mesh()
-        if self.world:
-            surface = placed(surface, sculpts.to_world_mm(ob, context.scene))
+    def put(self, surface, path, name):
         surface.write(path)
-        size = np.ptp(surface.vertices, axis=0) if len(surface.vertices) else np.zeros(3)
-        return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(size)}"
+
+
+class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator):
+    """Write the active sculpt as a 3MF file in millimetres, straight from its volume"""
+
+    bl_idname = "riffler.export_3mf"
+    bl_label = "Export 3MF"
+
+    filename_ext = ".3mf"
+    filter_glob: bpy.props.StringProperty(default="*.3mf", options={"HIDDEN"})
+
+    def put(self, surface, path, name):
+        threemf_out.write(path, surface.vertices, surface.triangles, name)
 
 
 def placed(surface, matrix):
@@ -74,21 +104,10 @@ class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.ngc;*.nc;*.tap", options={"HIDDEN"})
 
     def write(self, context, ob, path):
-        content = store.content(ob.data)
-        cuts = content.cuts
-        if not cuts:
-            raise ValueError(f"{ob.name} has no cuts yet: an NC program is what was cut")
-        tools = [riffler.Tool.from_dict(c.tool) for c in cuts]
+        content = live.content(ob)
         feed, spindle = names.clean(self.feed), names.clean(self.spindle)
-        program = riffler.Program.from_cl(
-            [c.poses for c in cuts],
-            tools=tools,
-            feed=feed,
-            spindle=spindle,
-            # retracts clear the stock as it was before the first cut
-            occupied=(content.volume.lower, content.volume.upper),
-            provenance={"stock": ob.name},
-        )
+        cuts = self.removing(ob, content)
+        program = programs.of_cuts(ob.name, cuts, content.volume, feed, spindle)
         program.write(path, post=self.post)
         return f"{len(cuts)} cuts, {names.format_count(len(program.poses))} moves"
 
@@ -103,12 +122,10 @@ class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.rjournal", options={"HIDDEN"})
 
     def write(self, context, ob, path):
-        content = store.content(ob.data)
-        cuts = content.cuts
-        if not cuts:
-            raise ValueError(f"{ob.name} has no cuts yet")
+        content = live.content(ob)
+        cuts = self.removing(ob, content)
         paths.to_recording(cuts, content.volume).write(path)
         return f"{len(cuts)} strokes"
 
 
-CLASSES = (RIFFLER_OT_export_stl, RIFFLER_OT_export_nc, RIFFLER_OT_export_recording)
+CLASSES = (RIFFLER_OT_export_stl, RIFFLER_OT_export_3mf, RIFFLER_OT_export_nc, RIFFLER_OT_export_recording)

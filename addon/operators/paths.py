@@ -6,7 +6,7 @@ import riffler
 
 from ..bl import curves as bl_curves
 from ..bl import sculpts, surface
-from ..core import curves, poses
+from ..core import curves, poses, problems
 from ..core.job import Cut
 
 
@@ -43,6 +43,7 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
 
 def from_recording(path):
     """The strokes of a recording (.rjournal) as cuts, and its stock as a dictionary or None."""
+    problems.check_source(path)
     journal = riffler.Journal.read(path)
     tools = journal.tools
     cuts = [Cut(tools[s.tool], s.poses, s.tolerance) for s in journal.strokes if len(s) > 1]
@@ -53,6 +54,7 @@ def from_recording(path):
 
 def stock_of_recording(path):
     """The volume that a recording begins with: its snapshot, which lies beside it, or the full block."""
+    problems.check_source(path)
     stock = riffler.Journal.read(path).stock
     if stock is None:
         raise ValueError(f"{Path(path).name} does not say what stock it was made on")

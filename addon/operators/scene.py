@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bl import sculpts, units
+from ..bl import live, sculpts, store, units
 from ..core import presets
 from . import shared
 
@@ -14,7 +14,7 @@ class RIFFLER_OT_tool_preset(bpy.types.Operator):
     bl_label = "Tool Preset"
     bl_options = {"INTERNAL", "UNDO"}
 
-    name: bpy.props.StringProperty()
+    name: bpy.props.StringProperty(name="Name", description="Of the preset")
 
     def execute(self, context):
         try:
@@ -31,13 +31,20 @@ class RIFFLER_OT_millimetres(bpy.types.Operator):
     bl_label = "Scene in Millimetres"
     bl_options = {"REGISTER", "UNDO"}
 
+    @classmethod
+    def poll(cls, context):
+        return shared.object_mode(cls, context) and not shared.busy(cls, context)
+
     def execute(self, context):
         try:
+            live.end_all()
             meshes = {ob.data for ob in context.scene.objects if sculpts.is_sculpt(ob) and not ob.data.library}
+            for mesh in meshes:
+                store.content(mesh)  # what cannot be read comes before the first change
             units.set_millimetres(context.scene, bpy.data.screens)
             for mesh in meshes:
                 sculpts.refill(mesh, units.mm_per_unit(context.scene))
-        except ValueError as error:
+        except shared.ERRORS as error:
             return shared.fail(self, error)
         return {"FINISHED"}
 

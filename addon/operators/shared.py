@@ -5,6 +5,7 @@ import json
 import bpy
 
 from ..bl import sculpts
+from ..core.problems import said
 
 NAVIGATION = {
     "MIDDLEMOUSE",
@@ -14,7 +15,18 @@ NAVIGATION = {
     "INBETWEEN_MOUSEMOVE",
     "TRACKPADPAN",
     "TRACKPADZOOM",
+    "NDOF_MOTION",
 }
+# What is a message to the person in front of the screen; anything else is a fault of ours, and its traceback is shown.
+ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
+
+
+def tool_of_text(text):
+    """A tool's dictionary from JSON."""
+    tool = json.loads(text)
+    if not isinstance(tool, dict):
+        raise ValueError("tool must be a JSON object")
+    return tool
 
 
 class TakesTool:
@@ -25,12 +37,7 @@ class TakesTool:
     )
 
     def tool_dict(self, context):
-        if not self.tool:
-            return context.scene.riffler.tool.dictionary()
-        tool = json.loads(self.tool)
-        if not isinstance(tool, dict):
-            raise ValueError("tool must be a JSON object")
-        return tool
+        return tool_of_text(self.tool) if self.tool else context.scene.riffler.tool.dictionary()
 
 
 def sculpt_poll(cls, context):
@@ -38,21 +45,28 @@ def sculpt_poll(cls, context):
     ob = sculpts.active(context)
     if ob is None:
         return deny(cls, "Select a sculpt first, or make a new stock")
-    if ob.mode != "OBJECT":
-        return deny(cls, "Leave Edit Mode or Sculpt Mode first")
+    if not object_mode(cls, context):
+        return False
     if ob.library or ob.data.library:
         return deny(cls, "The sculpt is linked from another file: make it local first")
     return not busy(cls, context)
 
 
-def busy(cls, context):
-    """True while something runs that has the sculpt; the tooltip says what."""
+def object_mode(cls, context):
+    """True where objects can be made, removed and selected."""
+    return context.mode == "OBJECT" or deny(cls, "Leave Edit Mode or Sculpt Mode first")
+
+
+def busy(cls, context, simulation=True):
+    """True while something runs that has the sculpt; the tooltip says what. `simulation`: one that is shown counts."""
     state = context.window_manager.riffler
     if state.running:
-        deny(cls, "A cut is running: Esc cancels it")
+        deny(cls, f"{state.running}: Esc cancels")
     if state.sculpting:
         deny(cls, "A pen is sculpting: Esc ends it")
-    return state.running or state.sculpting
+    if state.simulating and simulation:
+        deny(cls, f"{state.simulating} is being simulated: Esc in the view ends it")
+    return bool(state.running or state.sculpting or (state.simulating and simulation))
 
 
 def deny(cls, message):
@@ -62,8 +76,15 @@ def deny(cls, message):
 
 def fail(operator, error):
     """One clear message instead of a traceback; the operator is cancelled."""
-    operator.report({"ERROR"}, str(error) or type(error).__name__)
+    operator.report({"ERROR"}, said(error))
     return {"CANCELLED"}
+
+
+def draw_fields(operator, keys):
+    """Some of its properties in the redo panel or the file selector, one below the other."""
+    operator.layout.use_property_split = True
+    for key in keys:
+        operator.layout.prop(operator, key)
 
 
 def redraw_sidebars(context):

@@ -6,18 +6,16 @@ import riffler
 from mathutils import Matrix
 
 from .. import properties
-from ..bl import meshes, sculpts, units
-from ..core import estimate, poses
+from ..bl import live, meshes, parts, sculpts, store, units
+from ..core import estimate
 from ..core import units as names
 from . import paths, shared
-
-SOURCE_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
 def source_object(context):
     """The object that would become material, or None."""
     ob = context.object
-    return ob if ob is not None and ob.type in SOURCE_TYPES else None
+    return ob if ob is not None and ob.type in properties.WITH_SURFACE else None
 
 
 def source_size(ob, scene):
@@ -34,9 +32,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.mode != "OBJECT":
-            return shared.deny(cls, "Leave Edit Mode or Sculpt Mode first")
-        return not shared.busy(cls, context)
+        return shared.object_mode(cls, context) and not shared.busy(cls, context)
 
     def invoke(self, context, event):
         done = self.execute(context)
@@ -51,8 +47,9 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
         make = {"BLOCK": self._block, "OBJECT": self._from_object, "RECORDING": self._from_recording}[self.source]
         context.window_manager.progress_begin(0, 100)
         try:
+            live.end_all()
             ob = make(context)
-        except (ValueError, OSError, RuntimeError, MemoryError) as error:
+        except shared.ERRORS as error:
             return shared.fail(self, error)
         finally:
             context.window_manager.progress_end()
@@ -64,30 +61,47 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
     def _block(self, context):
         size = np.array([names.clean(s) for s in self.size])
         lower = {"CORNER": 0 * size, "TOP": -size * (0.5, 0.5, 1.0), "CENTRE": -0.5 * size}[self.origin]
-        volume = riffler.Volume.block(lower, lower + size, names.clean(self.pitch), self.directions)
+        pitch = names.clean(self.pitch)
+        estimate.check_surface("The block", size, estimate.box_area(size), pitch)
+        volume = riffler.Volume.block(lower, lower + size, pitch, self.directions)
         return sculpts.new_object(context, "Stock", volume, Matrix.Translation(context.scene.cursor.location))
 
     def _from_object(self, context):
         source = source_object(context)
         if source is None:
             raise ValueError("select the object that is to be the material: a mesh, curve, text, surface or metaball")
-        co, triangles = meshes.read(source, context.evaluated_depsgraph_get())
-        if len(triangles) == 0:
-            raise ValueError(f"{source.name} has no faces")
+        if sculpts.is_sculpt(source):
+            return self._from_sculpt(context, source)
         # Scale and shear become part of the shape, so that a millimetre of the sculpt is one along every axis.
         place, turn, _ = source.matrix_world.decompose()
         frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
         to_stock = meshes.matrix(frame.inverted() @ source.matrix_world)
         to_stock[:3] *= units.mm_per_unit(context.scene)
-        vertices = poses.transform_points(to_stock, co)
-        if np.linalg.det(to_stock[:3, :3]) < 0:
-            triangles = np.ascontiguousarray(triangles[:, ::-1])
-        mesh = riffler.Mesh(vertices, triangles)
-        wm = context.window_manager
+        mesh = parts.surface(source, context.evaluated_depsgraph_get(), to_stock)
+        pitch, size = names.clean(self.pitch), mesh.bounds[1] - mesh.bounds[0]
+        if not size.all():
+            raise ValueError(f"{source.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
+        estimate.check_surface(source.name, size, mesh.area, pitch)
+        wm, found = context.window_manager, {}
         volume = riffler.Volume.from_mesh(
-            mesh, names.clean(self.pitch), self.directions, progress=lambda share: wm.progress_update(100 * share)
+            mesh, pitch, self.directions, progress=lambda share: wm.progress_update(100 * share), report=found
         )
+        if volume.volume <= 0:
+            raise ValueError(f"{source.name} has no volume at this pitch: close it, or take a finer one")
+        if found.get("open_edges"):
+            count = names.format_count(found["open_edges"])
+            self.report({"WARNING"}, f"{source.name} is not closed: {count} open edges were closed as well as could be")
         ob = sculpts.new_object(context, f"{source.name} Stock", volume, frame)
+        source.hide_set(True)
+        return ob
+
+    def _from_sculpt(self, context, source):
+        """Its volume itself: nothing is lost where the pitch stays the same."""
+        volume = store.content(source.data).volume.resampled(names.clean(self.pitch), self.directions)
+        place, turn, _ = source.matrix_world.decompose()
+        frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
+        ob = sculpts.new_object(context, f"{source.name} Copy", volume, frame)
+        sculpts.take_looks(ob, source)
         source.hide_set(True)
         return ob
 
@@ -123,6 +137,8 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
         source = source_object(context)
         if stock.source == "OBJECT" and source is None:
             return shared.fail(self, ValueError("select the object that is to be the material"))
+        if stock.source == "RECORDING":
+            return shared.fail(self, ValueError("a recording has the pitch of the stock that it was made on"))
         size = stock.size if stock.source == "BLOCK" else source_size(source, context.scene)
         try:
             stock.pitch = estimate.fitting_pitch(size)
@@ -144,8 +160,9 @@ class RIFFLER_OT_rebuild(bpy.types.Operator):
 
     def execute(self, context):
         try:
+            live.end_all()
             sculpts.refill(sculpts.active(context).data, units.mm_per_unit(context.scene))
-        except ValueError as error:
+        except shared.ERRORS as error:
             return shared.fail(self, error)
         return {"FINISHED"}
 

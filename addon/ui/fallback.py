@@ -36,21 +36,31 @@ class RIFFLER_PT_fallback(bpy.types.Panel):
     bl_category = "Riffler"
 
     def draw(self, context):
-        # The sidebar's labels do not wrap: fit them to its width.
-        width = max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6)
-        layout = self.layout
-        layout.label(text="Native core not loaded", icon="ERROR")
-        for title, texts in (
-            ("Why", [_report["why"]]),
-            ("How to mend it", _report["steps"]),
-            ("Facts", _report["facts"]),
-        ):
-            box = layout.box().column(align=True)
-            box.label(text=title)
-            for entry in texts:
-                for k, line in enumerate(diagnosis.wrap(entry, width)):
-                    box.label(text=line if k == 0 else f"   {line}")
-        layout.operator(RIFFLER_OT_copy_report.bl_idname, icon="COPYDOWN")
+        _draw(self.layout, context)
 
 
-CLASSES = (RIFFLER_OT_copy_report, RIFFLER_PT_fallback)
+class RifflerFallbackPreferences(bpy.types.AddonPreferences):
+    bl_idname = __package__.rpartition(".")[0]
+
+    def draw(self, context):
+        _draw(self.layout, context)
+
+
+def _draw(layout, context):
+    # Labels do not wrap: fit them to the region's width.
+    width = max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6)
+    layout.label(text="Native core not loaded", icon="ERROR")
+    for title, texts in (
+        ("Why", [_report["why"]]),
+        ("How to mend it", _report["steps"]),
+        ("Facts", _report["facts"]),
+    ):
+        box = layout.box().column(align=True)
+        box.label(text=title)
+        for entry in texts:
+            for k, line in enumerate(diagnosis.wrap(entry, width)):
+                box.label(text=line if k == 0 else f"   {line}")
+    layout.operator(RIFFLER_OT_copy_report.bl_idname, icon="COPYDOWN")
+
+
+CLASSES = (RIFFLER_OT_copy_report, RIFFLER_PT_fallback, RifflerFallbackPreferences)

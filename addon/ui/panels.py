@@ -3,10 +3,10 @@
 import bpy
 
 from .. import properties
-from ..bl import sculpts, ui, units
+from ..bl import live, sculpts, units, versions
 from ..core import estimate, presets
 from ..core import units as names
-from ..operators import cut, export, scene, stock
+from ..operators import clay, cut, export, scene, stock
 
 
 class Sidebar:
@@ -20,6 +20,12 @@ def lines(layout, *texts, icon="NONE"):
     column.scale_y = 0.8
     for k, text in enumerate(texts):
         column.label(text=text, icon=icon if k == 0 else ("BLANK1" if icon != "NONE" else "NONE"))
+
+
+def give(op, settings, group):
+    """A button's operator gets what the panel shows: the fields of `group`, which both have."""
+    for key in group.__annotations__:
+        setattr(op, key, getattr(settings, key))
 
 
 class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
@@ -39,18 +45,22 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         p = ob.data.riffler
         size = [u - low for low, u in zip(p.lower, p.upper, strict=True)]
         layout.label(text=ob.name, icon="MOD_SOLIDIFY")
+        run = live.of(ob)
+        facts = p if run is None else run.facts
         rays = "tri-dexel" if p.directions == "xyz" else f"rays along {p.directions}"
         lines(
             layout,
             f"Size: {names.format_size(size)}",
             f"Pitch: {names.trim(p.pitch, 4)} mm, {rays}",
-            f"Material: {names.format_volume(p.material)}",
-            f"Cuts: {p.cuts} ({names.format_count(p.moves)} moves)",
-            f"Memory: {names.format_bytes(p.nbytes)}",
+            f"Material: {names.format_volume(facts.material)}",
+            f"Cuts: {facts.cuts} ({names.format_count(facts.moves)} moves)",
+            f"Memory: {names.format_bytes(facts.nbytes)}",
         )
 
     def _warnings(self, layout, context, ob):
         mesh = ob.data
+        if live.of(ob) is not None:
+            return  # its mesh is not what is shown, and the work goes on from the volume
         stale = sculpts.shown_mm_per_unit(mesh) != units.mm_per_unit(context.scene)
         edited = sculpts.edited(mesh)
         if stale:
@@ -59,14 +69,14 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             lines(
                 layout,
                 "The mesh was edited; the next cut",
-                "starts from the volume. To keep the",
-                "edits: new stock from object.",
+                "starts from the volume.",
                 icon="ERROR",
             )
+            layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
-        if any(abs(s - 1) > 1e-5 for s in ob.scale):
-            lines(layout, "The object is scaled: tools are sized", "in its own millimetres.", icon="ERROR")
+        if sculpts.distorted(ob):
+            lines(layout, "The object is scaled or sheared: tools", "are sized in its own millimetres.", icon="ERROR")
 
 
 class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
@@ -120,8 +130,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
 
     def _button(self, layout, settings):
         op = layout.operator(stock.RIFFLER_OT_new_stock.bl_idname, icon="CUBE")
-        for key in properties.StockSettings.__annotations__:
-            setattr(op, key, getattr(settings, key))
+        give(op, settings, properties.StockSettings)
 
 
 class RIFFLER_MT_tools(bpy.types.Menu):
@@ -168,13 +177,12 @@ class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
         layout.prop(settings, "follow")
         state = context.window_manager.riffler
         if state.running:  # in the place of the two buttons, so that nothing moves
-            ui.progress(layout, state)
+            versions.progress(layout, state)
             layout.label(text=state.text)
             return
         op = layout.operator(cut.RIFFLER_OT_cut_curve.bl_idname, icon="CURVE_DATA")
         op.curve = settings.curve.name if settings.curve else ""
-        for key in properties.CutSettings.__annotations__:
-            setattr(op, key, getattr(settings, key))
+        give(op, settings, properties.CutSettings)
         layout.operator(cut.RIFFLER_OT_cut_recording.bl_idname, text="Cut Recording…", icon="REC")
 
 
@@ -184,7 +192,9 @@ class RIFFLER_PT_export(Sidebar, bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        layout.operator(export.RIFFLER_OT_export_stl.bl_idname, text="Export STL…", icon="EXPORT")
+        row = layout.row(align=True)
+        row.operator(export.RIFFLER_OT_export_stl.bl_idname, text="STL…", icon="EXPORT")
+        row.operator(export.RIFFLER_OT_export_3mf.bl_idname, text="3MF…")
         layout.separator()
         layout.use_property_split = True
         layout.use_property_decorate = False
@@ -194,8 +204,7 @@ class RIFFLER_PT_export(Sidebar, bpy.types.Panel):
         column.prop(settings, "feed")
         column.prop(settings, "spindle")
         op = layout.operator(export.RIFFLER_OT_export_nc.bl_idname, text="Write NC…", icon="TEXT")
-        for key in properties.NcSettings.__annotations__:
-            setattr(op, key, getattr(settings, key))
+        give(op, settings, properties.NcSettings)
         layout.separator()
         layout.operator(export.RIFFLER_OT_export_recording.bl_idname, text="Save Recording…", icon="REC")
 

@@ -5,7 +5,7 @@ import bpy
 from .. import properties
 from ..core import diagnosis
 from ..operators import pen
-from .panels import Sidebar, lines
+from .panels import Sidebar, give, lines
 
 WHAT = {kind: what for kind, _, what, *_ in properties.DEVICES}
 
@@ -29,12 +29,11 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
             self._session(layout, context, state)
         else:
             op = layout.operator(pen.RIFFLER_OT_pen_sculpt.bl_idname, icon="STYLUS_PRESSURE")
-            for key in properties.PenSettings.__annotations__:
-                setattr(op, key, getattr(settings, key))
+            give(op, settings, properties.PenSettings)
         self._settings(layout, context, settings, not state.sculpting)
 
     def _session(self, layout, context, state):
-        layout.operator(pen.RIFFLER_OT_pen_sculpt.bl_idname, text="End Session", icon="CANCEL", depress=True)
+        layout.operator(pen.RIFFLER_OT_pen_stop.bl_idname, icon="CANCEL", depress=True)
         lines(layout, state.force, state.text)
         if state.why:
             lines(layout, *wrapped(context, state.why), icon="INFO")
@@ -47,7 +46,7 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
         column.enabled = enabled
         column.use_property_split = True
         column.prop(settings, "device")
-        lines(column, *wrapped(context, WHAT[settings.device]))
+        lines(column, *wrapped(context, WHAT[pen.device_of(settings)]))
         if settings.device == properties.RECORDING:
             column.prop(settings, "recording")
         else:

@@ -1,9 +1,12 @@
-"""One .blend handed from the oldest Blender to the newest: each reads what the last one saved, cuts, and saves."""
+"""One .blend handed from the oldest Blender to the newest: each reads what the last one saved, cuts, sets a key
+orientation on the timeline, and saves."""
 
 from pathlib import Path
 
 import bpy
 import numpy as np
+import plans
+from keyed import close, indices, insert, pair, paths, remove, seen, state
 
 import support
 
@@ -36,4 +39,32 @@ def test_the_file_goes_on():
     ob = bpy.data.objects["Stock"]
     counts, spans = support.content(ob).volume.intervals("z")
     np.savez(path.with_suffix(".npz"), counts=counts, spans=spans, co=support.coordinates(ob.data))
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+
+
+def test_the_timeline_goes_on():
+    """Its own file: keys that one Blender wrote, and the animation that followed, are those of the next."""
+    folder = Path(support.JOB["chain"]) / "timeline"
+    folder.mkdir(exist_ok=True)
+    files = sorted(folder.glob("*.blend"))
+    if not files:
+        name = plans.on_timeline(chosen=plans.paths()[:1]).name
+    else:
+        name = "Riffler Plan"
+        bpy.ops.wm.open_mainfile(filepath=str(files[-1]))
+        ob, expected = bpy.data.objects[name], dict(np.load(files[-1].with_suffix(".npz")))
+        assert indices(ob)[0] == expected["points"].tolist() and not state(ob).problems
+        assert np.array_equal(paths(ob)[0].axes, expected["axes"])
+        tip, axis = seen(ob, 33.3)
+        assert close(tip, expected["tip"], 1e-4) and close(axis, expected["axis"])
+    ob, frame = bpy.data.objects[name], 20 + 20 * len(files)
+    insert(pair(ob)[0], frame, (0.1 * len(files), -0.2, 1))
+    assert frame - 1 in indices(ob)[0] and state(ob).changes[0].added == [frame - 1]
+    insert(pair(ob)[0], 140, (0, 0, 1))
+    remove(pair(ob)[0], 140)
+    assert indices(ob)[0] == [0, *range(19, frame, 20), 144] and state(ob).difference.small
+    tip, axis = seen(ob, 33.3)
+    path = folder / f"{len(files)}.blend"
+    points = np.array(indices(ob)[0])
+    np.savez(path.with_suffix(".npz"), axes=paths(ob)[0].axes, points=points, tip=tip, axis=axis)
     bpy.ops.wm.save_as_mainfile(filepath=str(path))

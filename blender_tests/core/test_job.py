@@ -1,11 +1,11 @@
-"""The step function of a cut, on a clock and a volume of our own."""
+"""Long work in steps: of a cut and of a native task, on a clock, a volume and a task of our own."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from addon.core.job import Cut, CutJob, RefreshClock, slice_budget
+from addon.core.job import Cut, CutJob, RefreshClock, TaskJob, run_through, slice_budget
 
 
 class Clock:
@@ -29,7 +29,7 @@ class Volume:
     def restore(self, snapshot):
         self.log = list(snapshot)
 
-    def carve(self, tool, poses, tolerance):
+    def carve(self, tool, poses, tolerance, mode):
         if self.bad is not None and any(p[0] == self.bad for p in poses):
             raise ValueError("bad row")
         self.clock.now += self.cost * (len(poses) - 1)
@@ -119,3 +119,76 @@ def test_the_picture_never_takes_more_than_its_share():
             shown += 2.0
             refresh.spent(2.0)
     assert 0.15 < shown / clock.now < 0.27
+
+
+def test_run_through_tells_how_far_it_is_and_ends_where_the_slices_end():
+    shares, volume = [], Volume(Clock(), cost=0.1)
+    j = job(volume, cut(0, 200))
+    run_through(j, shares.append)
+    assert len(volume.log) == 200 and j.text == "Move 200 of 200"
+    assert len(shares) > 3 and shares == sorted(shares) and shares[0] > 0 and shares[-1] < 1
+
+
+class Task:
+    """Looks like riffler.Task: done after `seconds` of its clock, then gives or raises `outcome`."""
+
+    def __init__(self, clock, seconds, outcome):
+        self.clock, self.seconds, self.outcome = clock, seconds, outcome
+        self.cancelled = False
+
+    @property
+    def share(self):
+        return min(1.0, self.clock.now / self.seconds)
+
+    @property
+    def done(self):
+        return self.cancelled or self.clock.now >= self.seconds
+
+    def cancel(self):
+        self.cancelled = True
+
+    def result(self):
+        if self.cancelled:
+            raise RuntimeError("cancelled")
+        if isinstance(self.outcome, Exception):
+            raise self.outcome
+        return self.outcome
+
+
+def task_job(seconds, outcome, text=""):
+    clock = Clock()
+
+    def sleep(span):
+        assert span > 0
+        clock.now += span
+
+    return clock, TaskJob(Task(clock, seconds, outcome), text, clock, sleep)
+
+
+def test_a_task_is_waited_for_no_longer_than_the_budget():
+    clock, j = task_job(1.0, "paths")
+    assert not j.step(0.0) and clock.now == 0  # a window's tick only looks
+    assert not j.step(0.25) and clock.now == pytest.approx(0.25) and j.fraction == pytest.approx(0.25)
+    assert j.result is None
+    assert j.step(10.0) and clock.now < 1.01 and j.result == "paths"
+
+
+def test_a_task_runs_through_and_is_heard():
+    shares = []
+    _, j = task_job(1.1, "paths", "Searching")
+    run_through(j, shares.append)
+    assert j.result == "paths" and shares == pytest.approx([0.25 / 1.1, 0.5 / 1.1, 0.75 / 1.1, 1.0 / 1.1])
+
+
+def test_what_a_task_raised_is_raised_by_the_step_that_sees_it():
+    _, j = task_job(0.1, ValueError("tool: none"))
+    with pytest.raises(ValueError, match="tool: none"):
+        run_through(j)
+    assert j.result is None
+
+
+def test_cancel_reaches_the_task():
+    _, j = task_job(10.0, "paths")
+    j.step(0.1)
+    j.cancel()
+    assert j._task.cancelled

@@ -44,7 +44,19 @@ def test_the_same_wheel_gives_the_same_bytes(tmp_path):
     assert first == [p.read_bytes() for p in package.build([w], tmp_path / "b")]
 
 
+def test_the_legacy_zip_takes_the_wheel_of_its_python_wherever_it_stands(tmp_path):
+    mine = wheel(tmp_path)
+    others = [wheel(tmp_path, "cp313-cp313-manylinux_2_39_x86_64"), wheel(tmp_path, "cp311-cp311-win_amd64")]
+    assert package.legacy_wheel([*others, mine]) == mine
+    made = package.build([*others, mine], tmp_path / "dist")
+    assert [p.name.endswith("-legacy.zip") for p in made] == [False, True]
+    without = package.build(others, tmp_path / "without")
+    assert [p.name.endswith("-legacy.zip") for p in without] == [False]
+
+
 def test_what_does_not_fit_is_named(tmp_path):
+    with pytest.raises(ValueError, match="same Python"):
+        package.build([wheel(tmp_path), wheel(tmp_path, "cp311-cp311-linux_x86_64")], tmp_path / "dist")
     with pytest.raises(ValueError, match=r"9\.9\.9"):
         package.build([wheel(tmp_path, version="9.9.9")], tmp_path / "dist")
     with pytest.raises(ValueError, match="not there"):

@@ -12,12 +12,21 @@ CUTS = [Cut({"kind": "ball", "name": "Größe 6"}, POSES), Cut({"kind": "flat"},
 
 def test_round_trip_to_the_bit():
     block = record.encode(b"\0volume\0", CUTS)
-    volume, cuts = record.decode(block, record.content_id(block))
-    assert volume == b"\0volume\0"
+    volume, cuts, mask = record.decode(block, record.content_id(block))
+    assert (volume, mask) == (b"\0volume\0", b"")
     assert [c.tool for c in cuts] == [c.tool for c in CUTS]
     assert [c.tolerance for c in cuts] == [0.01, 0.001]
     assert all(np.array_equal(a.poses, b.poses) for a, b in zip(cuts, CUTS, strict=True))
     assert record.decode(record.encode(b"", []))[1] == []
+
+
+def test_masks_and_what_was_put_on_come_back_and_older_blocks_stay_readable():
+    put = [*CUTS, Cut({"kind": "ball"}, POSES, 0.01, "add")]
+    volume, cuts, mask = record.decode(record.encode(b"volume", put, b"mask"))
+    assert (volume, mask) == (b"volume", b"mask")
+    assert [c.mode for c in cuts] == ["remove", "remove", "add"]
+    assert all(np.array_equal(a.poses, b.poses) for a, b in zip(cuts, put, strict=True))
+    assert (record.encode(b"volume", CUTS)[8], record.encode(b"volume", put)[8]) == (1, 2)
 
 
 def test_equal_content_has_an_equal_id():
@@ -38,7 +47,7 @@ def test_damage_is_a_value_error():
         with pytest.raises(ValueError, match="sculpt's data"):
             record.decode(block[:size])
     with pytest.raises(ValueError, match="newer"):
-        record.decode(block[:8] + b"\x02" + block[9:])
+        record.decode(block[:8] + b"\x03" + block[9:])
 
 
 def test_the_cache_forgets_the_oldest():

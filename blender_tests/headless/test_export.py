@@ -143,6 +143,24 @@ def test_a_recording_makes_the_same_sculpt_again():
     assert all(np.array_equal(a.poses, b.poses) for a, b in zip(first.cuts, second.cuts, strict=True))
 
 
+def test_a_recording_is_cut_with_another_tool():
+    """A ball's way gone by a flat end: a slot as wide as the tool, with a half disc at either end."""
+    support.scale(1)
+    support.stock(pitch=0.25)
+    c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    bpy.ops.riffler.cut_curve(curve=c.name, depth=1, tool=support.BALL)
+    path = support.out("ball.rjournal")
+    bpy.ops.riffler.export_recording(filepath=path)
+    slot = 20 * 6 + np.pi * 9
+    bpy.context.scene.riffler.tool.kind, bpy.context.scene.riffler.tool.diameter = "flat", 6.0
+    for given in ({"other": True}, {"tool": support.FLAT}):
+        again = support.stock(pitch=0.25)
+        bpy.ops.riffler.cut_recording(filepath=path, **given)
+        removed = 24000 - support.content(again).volume.volume
+        assert abs(removed / slot - 1) < 0.01, (removed, slot)
+        assert [cut.tool["kind"] for cut in support.content(again).cuts] == ["flat"]
+
+
 def test_what_is_no_recording_is_named():
     support.scale(1)
     ob = support.stock()

@@ -1,39 +1,28 @@
 """Enabled, disabled and enabled again: nothing stays behind, nothing is missing."""
 
+import sys
+
 import bpy
+import leftovers
 
 import support
 
-OPERATORS = {
-    "cut_curve",
-    "cut_recording",
-    "export_nc",
-    "export_recording",
-    "export_stl",
-    "fit_pitch",
-    "millimetres",
-    "new_stock",
-    "pen_home",
-    "pen_reset",
-    "pen_sculpt",
-    "rebuild",
-    "tool_preset",
-}
+
+def listed():
+    """Every class that the add-on's modules say they register."""
+    return [cls for module in support.part("registration").modules() for cls in module.CLASSES]
 
 
-def leftovers():
-    classes = [n for n in dir(bpy.types) if n.startswith("RIFFLER_")]
-    attributes = [
-        t.__name__ for t in (bpy.types.Scene, bpy.types.Mesh, bpy.types.WindowManager) if hasattr(t, "riffler")
-    ]
-    handlers = [
-        f"{n}: {f.__module__}"
-        for n in dir(bpy.app.handlers)
-        if isinstance(getattr(bpy.app.handlers, n), list)
-        for f in getattr(bpy.app.handlers, n)
-        if f.__module__.startswith(support.MODULE)
-    ]
-    return classes + attributes + handlers
+def operators():
+    return {cls.bl_idname.removeprefix("riffler.") for cls in listed() if issubclass(cls, bpy.types.Operator)}
+
+
+def disable():
+    bpy.ops.preferences.addon_disable(module=support.MODULE)
+
+
+def enable():
+    bpy.ops.preferences.addon_enable(module=support.MODULE)
 
 
 def test_the_native_core_is_the_one_that_was_installed():
@@ -46,25 +35,81 @@ def test_the_native_core_is_the_one_that_was_installed():
 
 
 def test_everything_is_registered():
-    assert set(dir(bpy.ops.riffler)) >= OPERATORS, dir(bpy.ops.riffler)
-    panels = [c for c in bpy.types.Panel.__subclasses__() if getattr(c, "bl_category", "") == "Riffler"]
-    assert len(panels) == 6, panels
+    assert set(leftovers.classes(support.MODULE)) == {f"class {cls.__name__}" for cls in listed()}
+    assert len(operators()) > 10 and set(dir(bpy.ops.riffler)) == operators()
+    for cls in listed():
+        assert not issubclass(cls, bpy.types.Operator) or (cls.bl_label and cls.__doc__), f"{cls}: no tooltip"
+
+
+def test_no_class_was_forgotten():
+    """A class that Blender could register, in one of the add-on's modules, is in a list of CLASSES."""
+    made = {c for c in leftovers.subclasses(bpy.types.bpy_struct) if leftovers.of(support.MODULE, c)}
+    current = {c for c in made if getattr(sys.modules.get(c.__module__), c.__name__, None) is c}
+    fallback = set(support.part("ui.fallback").CLASSES) if f"{support.MODULE}.ui.fallback" in sys.modules else set()
+    tools = {c for c in current if issubclass(c, bpy.types.WorkSpaceTool)}  # bpy.utils.register_tool has these
+    assert current - fallback - tools == set(listed())
 
 
 def test_three_cycles_leave_nothing():
     support.stock()
-    for _ in range(3):
-        bpy.ops.preferences.addon_disable(module=support.MODULE)
-        assert leftovers() == []
-        bpy.ops.preferences.addon_enable(module=support.MODULE)
-        assert leftovers()
-        assert set(dir(bpy.ops.riffler)) >= OPERATORS
+    disable()
+    with leftovers.Watch(support.MODULE) as watch:
+        assert watch.left() == []
+        enable()
+        first = watch.left()
+        assert any("handler" in line for line in first) and any("property" in line for line in first)
+        for _ in range(3):
+            disable()
+            assert watch.left() == []
+            enable()
+            assert watch.left() == first and set(dir(bpy.ops.riffler)) == operators()
+
+
+def test_whatever_is_left_behind_is_noticed():
+    """One of each kind, as a careless module of the add-on would leave it."""
+
+    def callback(*_):
+        return None
+
+    class RifflerCareless(bpy.types.PropertyGroup):
+        pass
+
+    class Tool(bpy.types.WorkSpaceTool):
+        bl_space_type, bl_context_mode, bl_idname, bl_label = "VIEW_3D", "OBJECT", "riffler.careless", "Careless"
+
+    callback.__module__ = RifflerCareless.__module__ = f"{support.MODULE}.careless"
+    with leftovers.Watch(support.MODULE) as watch:
+        before = watch.left()
+        drawn = bpy.types.SpaceView3D.draw_handler_add(callback, (), "WINDOW", "POST_VIEW")
+        bpy.app.timers.register(callback, first_interval=1e6)
+        bpy.app.handlers.save_pre.append(callback)
+        bpy.utils.register_class(RifflerCareless)
+        bpy.types.Object.riffler_careless = bpy.props.IntProperty()
+        keymap = bpy.context.window_manager.keyconfigs.addon.keymaps.new("Object Mode")
+        item = keymap.keymap_items.new("riffler.rebuild", "F13", "PRESS")
+        pictures = bpy.utils.previews.new()
+        bpy.utils.register_tool(Tool)
+        bpy.types.VIEW3D_MT_object.append(callback)
+        more = [line for line in watch.left() if line not in before]
+        bpy.types.SpaceView3D.draw_handler_remove(drawn, "WINDOW")
+        bpy.app.timers.unregister(callback)
+        bpy.app.handlers.save_pre.remove(callback)
+        bpy.utils.unregister_class(RifflerCareless)
+        del bpy.types.Object.riffler_careless
+        keymap.keymap_items.remove(item)
+        bpy.utils.previews.remove(pictures)
+        bpy.utils.unregister_tool(Tool)
+        bpy.types.VIEW3D_MT_object.remove(callback)
+        assert watch.left() == before
+    kinds = ("class", "draw handler", "handler", "key", "menu", "preview collection", "property", "timer", "tool")
+    for kind in kinds:
+        assert any(line.startswith(kind) for line in more), (kind, more)
 
 
 def test_a_sculpt_outlives_a_disabled_addon():
     ob = support.stock()
     name, before = ob.name, support.shape(support.content(ob).volume)
-    bpy.ops.preferences.addon_disable(module=support.MODULE)
-    bpy.ops.preferences.addon_enable(module=support.MODULE)
+    disable()
+    enable()
     ob = bpy.data.objects[name]
     assert support.same(before, support.shape(support.content(ob).volume))

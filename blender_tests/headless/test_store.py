@@ -16,7 +16,7 @@ def cut_stock(depth=2.0):
 
 
 def images():
-    return [i for i in bpy.data.images if support.part("bl.store").IDENTITY in i]
+    return [i for i in bpy.data.images if support.part("bl.packed").IDENTITY in i]
 
 
 def test_save_and_reopen():

@@ -11,19 +11,28 @@ import traceback
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 import bpy
 import harness
+import pictures
 
 import support
 
+VERSION = "{}.{}".format(*bpy.app.version)
 PATIENCE = 120  # s for one condition; a software renderer on a busy machine is slow
+# xdotool's names for what Blender calls otherwise.
+KEYS = {"ESC": "Escape", "RET": "Return", "SPACE": "space", "TAB": "Tab", "DEL": "Delete", "LEFT_ARROW": "Left",
+        "RIGHT_ARROW": "Right", "UP_ARROW": "Up", "DOWN_ARROW": "Down"}  # fmt: skip
+BUTTONS = {"LEFTMOUSE": 1, "MIDDLEMOUSE": 2, "RIGHTMOUSE": 3}
 
 
 class Screen:
     """The window, its 3D view, and what a person would do with them."""
 
-    def __init__(self, out):
-        self.out = Path(out)
+    def __init__(self, out, script):
+        self.out, self.script = Path(out), script
+        self.at = (0, 0)  # where the mouse was sent
+        self.unlike = []  # what pictures differ in; the steps go on, so that all of them are taken
 
     @property
     def window(self):
@@ -39,15 +48,59 @@ class Screen:
     def override(self):
         return bpy.context.temp_override(window=self.window, area=self.area, region=self.region())
 
-    def shoot(self, name):
-        """A picture of the whole display."""
-        self.out.mkdir(parents=True, exist_ok=True)
-        path = self.out / f"{name}.png"
+    def areas(self):
+        """Kind and box of every area, and of the sidebar in the 3D view, as pictures.judge takes them."""
+        w, h = self.window.width, self.window.height
+        parts = [(a.type, a) for a in self.window.screen.areas]
+        parts += [("SIDEBAR", self.region("UI"))] if self.area.spaces.active.show_region_ui else []
+        return [(kind, (p.x / w, 1 - (p.y + p.height) / h, (p.x + p.width) / w, 1 - p.y / h)) for kind, p in parts]
+
+    def picture(self, name, vary=()):
+        """A picture of the whole display, compared with its reference if there is one: steps to `yield from`. Panels
+        that glide to where they belong, and a renderer on a busy machine, get time to become like it.
+        vary: kinds of areas, and boxes, that may look different each time."""
+        for pause in (0.5, 1.0, 2.0, 4.0, 0):
+            complaint = self._shoot(name, vary)
+            if not complaint:
+                break
+            yield pause
+        if complaint is None:
+            harness.say(note=f"{self.script}/{name}.png has no reference for Blender {VERSION}")
+        elif complaint:
+            accept = f"windowed/pictures.py <its folder's>/pictures-{VERSION}.json {self.script}/{name}"
+            self.unlike.append(
+                f"{self.script}/{name}.png is not like its reference: {complaint}. If it is right: {accept}"
+            )
+
+    def _shoot(self, name, vary):
+        """What pictures.check says. From outside: Blender's own operator gives a black one from 4.3 on."""
+        path = self.out / self.script / f"{name}.png"
+        path.parent.mkdir(parents=True, exist_ok=True)
         subprocess.run(["import", "-window", "root", str(path)], check=True)
         assert path.stat().st_size > 20_000, f"{path} is all but empty"
+        return pictures.check(self.out, f"{self.script}/{name}", VERSION, self.areas(), vary)
+
+    # A Blender that takes simulated events takes no others: a script says REAL_EVENTS = True to be without them, and
+    # all below then comes from outside, by xdotool, as a mouse and a keyboard send it.
+
+    def xdotool(self, *words):
+        assert not bpy.app.use_event_simulate, "without REAL_EVENTS = True, Blender is deaf to xdotool"
+        subprocess.run(["xdotool", *map(str, words)], check=True)
 
     def move(self, x, y):
-        self.window.event_simulate("MOUSEMOVE", "NOTHING", x=x, y=y)
+        """The mouse to window pixels, y up."""
+        if bpy.app.use_event_simulate:
+            self.window.event_simulate("MOUSEMOVE", "NOTHING", x=int(x), y=int(y))
+        else:
+            self.xdotool("mousemove", int(x), int(self.window.height - 1 - y))
+        self.at = int(x), int(y)
+
+    def button(self, value, name="LEFTMOUSE"):
+        """PRESS or RELEASE where the mouse is."""
+        if bpy.app.use_event_simulate:
+            self.window.event_simulate(name, value, x=self.at[0], y=self.at[1])
+        else:
+            self.xdotool("mousedown" if value == "PRESS" else "mouseup", BUTTONS[name])
 
     def to_view(self):
         """The mouse into the middle of the 3D view."""
@@ -56,19 +109,37 @@ class Screen:
 
     def click(self, x, y):
         self.move(x, y)
-        self.window.event_simulate("LEFTMOUSE", "PRESS", x=x, y=y)
-        self.window.event_simulate("LEFTMOUSE", "RELEASE", x=x, y=y)
+        self.button("PRESS")
+        self.button("RELEASE")
+
+    def drag(self, points, pause=0.05):
+        """A drag through window pixels, with a pause (s) after each event: steps to `yield from`."""
+        self.move(*points[0])
+        yield pause
+        self.button("PRESS")
+        yield pause
+        for p in points[1:]:
+            self.move(*p)
+            yield pause
+        self.button("RELEASE")
+        yield pause
 
     def key(self, name, **modifiers):
+        """By Blender's name for it, with the mouse over the 3D view; modifiers: ctrl, shift, alt = True."""
+        if not bpy.app.use_event_simulate:
+            self.to_view()
+            return self.xdotool(
+                "key", "+".join([*(m for m in modifiers if modifiers[m]), KEYS.get(name, name.lower())])
+            )
         r = self.region()
         x, y = r.x + r.width // 3, r.y + r.height // 2
         self.window.event_simulate(name, "PRESS", x=x, y=y, **modifiers)
-        self.window.event_simulate(name, "RELEASE", x=x, y=y, **modifiers)
+        return self.window.event_simulate(name, "RELEASE", x=x, y=y, **modifiers)
 
 
 class Play:
-    def __init__(self, name, generator):
-        self.name, self.generator = name, generator
+    def __init__(self, name, steps, screen):
+        self.name, self.generator, self.screen = name, steps(screen), screen
         self.begin = self.since = time.perf_counter()
         self.condition = None
 
@@ -83,7 +154,7 @@ class Play:
                     return 0.05
             wanted = next(self.generator)
         except StopIteration:
-            self.end("passed", "")
+            self.end("failed" if self.screen.unlike else "passed", "\n".join(self.screen.unlike))
         except BaseException:
             self.end("failed", traceback.format_exc())
         self.since = time.perf_counter()
@@ -102,12 +173,13 @@ class Play:
 def main():
     support.JOB = harness.job
     bpy.context.preferences.view.show_splash = False
-    module = harness.load(harness.job["files"][0])
-    if getattr(module, "INSTALL", True):
+    script = Path(harness.job["files"][0])
+    if "\nINSTALL = False\n" not in script.read_text():  # before the script, which may import riffler
         support.MODULE = harness.install()
+    module = harness.load(script)
     harness.say(start=module.__name__)
-    play = Play(module.__name__, module.steps(Screen(harness.job["out"])))
-    bpy.app.timers.register(play, first_interval=2.0)
+    play = Play(module.__name__, module.steps, Screen(harness.job["out"], module.__name__))
+    bpy.app.timers.register(play, first_interval=2.0, persistent=True)  # a script may open files
 
 
 try:

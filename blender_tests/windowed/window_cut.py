@@ -50,7 +50,7 @@ def steps(screen):
     yield from open_tab(screen)
     screen.to_view()
     yield 1.0
-    screen.shoot("01-sidebar")
+    yield from screen.picture("01-sidebar")
 
     with screen.override():
         bpy.ops.riffler.millimetres()
@@ -60,7 +60,7 @@ def steps(screen):
     assert bpy.data.objects["Stock"].dimensions[:] == (100, 60, 30)
     screen.to_view()
     yield 3.0
-    screen.shoot("02-new-stock")
+    yield from screen.picture("02-new-stock")
 
     with screen.override():
         settings.cut.curve = bpy.data.objects[spiral(6, 50_000, "Spiral")]
@@ -72,14 +72,14 @@ def steps(screen):
     assert running()
     yield lambda: bpy.context.window_manager.riffler.percent > 20 or not running()
     assert running(), "the cut was over before it could be looked at"
-    screen.shoot("03-cutting")
+    yield from screen.picture("03-cutting", vary=["VIEW_3D"])
     yield lambda: not running()
     yield 3.0
     after = state()
     assert after[0] < before[0] and len(after[1]) != len(before[1])
     bpy.data.objects["Spiral"].hide_set(True)
     yield 1.0
-    screen.shoot("04-cut")
+    yield from screen.picture("04-cut")
     bpy.data.objects["Spiral"].hide_set(False)
 
     yield from undo_and_redo(screen, before, after)
@@ -105,7 +105,7 @@ def undo(screen, before):
 def undo_and_redo(screen, before, after):
     yield from undo(screen, before)
     yield 2.0
-    screen.shoot("05-undone")
+    yield from screen.picture("05-undone")
     screen.key("Z", ctrl=True, shift=True)
     yield 1.5
     assert same(state(), after), "Ctrl-Shift-Z did not restore mesh and volume"
@@ -127,4 +127,4 @@ def cancel(screen, after):
     yield lambda: not running()
     assert same(state(), after), "Esc did not restore mesh and volume"
     yield 3.0
-    screen.shoot("06-cancelled")
+    yield from screen.picture("06-cancelled")

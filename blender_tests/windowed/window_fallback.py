@@ -24,7 +24,7 @@ def steps(screen):
     yield from cut.open_tab(screen, "RIFFLER_PT_fallback")
     screen.to_view()
     yield 1.0
-    screen.shoot("07-fallback")
+    yield from screen.picture("07-fallback")
     with screen.override():
         assert bpy.ops.riffler.copy_report() == {"FINISHED"}
     assert "GLIBC_2.38" in bpy.context.window_manager.clipboard

@@ -1,5 +1,8 @@
-"""The simulated pen carves in view: bricks and tool follow, Ctrl-Z takes a stroke back, Esc ends it: one undo step."""
+"""The simulated pen carves in view: chunks, tool and arrows follow, Blender makes its autosave meanwhile, Ctrl-Z takes
+a stroke back and Ctrl-Shift-Z brings it again, Esc or another tool ends it."""
 
+import shutil
+import time
 from pathlib import Path
 
 import bpy
@@ -9,14 +12,19 @@ import numpy as np
 import support
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
+NAME = "Stock"
 
 
 def sculpting():
     return bpy.context.window_manager.riffler.sculpting
 
 
-def live():
-    return support.part("operators.pen")._live
+def session():
+    return support.part("bl.pen_session").running
+
+
+def volume():
+    return support.part("bl.live").content(bpy.data.objects[NAME]).volume
 
 
 def begin(screen, **more):
@@ -30,14 +38,27 @@ def begin(screen, **more):
 
 def only_open(*names):
     """The sidebar with these panels open, so that one picture has them."""
-    for cls in support.part("ui.panels").CLASSES + support.part("ui.pen_panel").CLASSES:
+    classes = [cls for module in support.part("registration").modules() for cls in module.CLASSES]
+    for cls in classes:
         if issubclass(cls, bpy.types.Panel):
             bpy.utils.unregister_class(cls)
             cls.bl_options = set() if cls.__name__ in names else {"DEFAULT_CLOSED"}
             bpy.utils.register_class(cls)
 
 
-def steps(screen):
+def autosaves():
+    """The folder that Blender's autosave goes into, within a minute from now."""
+    folder = Path(support.out("pen-autosave"))
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    paths = bpy.context.preferences.filepaths
+    paths.temporary_directory, paths.auto_save_time = str(folder), 1
+    paths.use_auto_save_temporary_files = False
+    paths.use_auto_save_temporary_files = True
+    return folder
+
+
+def prepare(screen):
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_pen")
     yield from cut.open_tab(screen)
@@ -45,49 +66,100 @@ def steps(screen):
         bpy.ops.riffler.millimetres()
         settings = bpy.context.scene.riffler
         settings.tool.kind, settings.tool.diameter = "ball", 8.0
+        settings.sculpt.limit = 0.2
         bpy.ops.riffler.new_stock(
             "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, 20), pitch=0.25, directions="xyz"
         )
         bpy.ops.ed.undo_push(message="Stock")
-    before = cut.state()
     screen.to_view()
     yield 2.0
 
-    assert begin(screen) == {"RUNNING_MODAL"} and sculpting()
-    yield lambda: live() is None or live().run.removed > 400
-    assert sculpting(), "the session was over before it could be looked at"
-    screen.to_view()
-    yield lambda: live() is None or live().run.in_stroke
-    screen.shoot("08-pen")
-    assert bpy.data.objects["Stock"].hide_get()
 
-    # a click beside the sidebar does nothing; once the hand has let go, Ctrl-Z takes the last stroke back
-    screen.click(screen.region().x + 200, screen.region().y + 200)
-    device = live().run.device
+def counted(looks):
+    """The running session tells when it looks."""
+    look = session().look
+
+    def counting():
+        begin = time.perf_counter()
+        try:
+            return look()
+        finally:
+            looks.append((begin, time.perf_counter()))
+
+    session().look = counting
+
+
+def steps(screen):
+    yield from prepare(screen)
+    before, whole = cut.state(), volume().volume
+    folder = autosaves()
+    assert begin(screen, removal_constant=0.005) == {"FINISHED"} and sculpting()
+    tool = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
+    assert tool.idname == "riffler.carve" and bpy.data.objects[NAME].hide_get()
+    looks = []
+    counted(looks)
+    force = support.part("drawing.force")
+    yield lambda: session() is None or (session().run.in_stroke and force._shown.size > 0)
+    assert sculpting(), "the session was over before it could be looked at"
+    look, session().look = session().look, lambda: True  # nobody looks for a moment, and a picture has the arrows
+    yield 2.0
+    yield from screen.picture("10-pen-force", vary=["VIEW_3D", "SIDEBAR"])
+    session().look = look
+    yield lambda: session() is None or session().removed > 400
+    yield from screen.picture("08-pen", vary=["VIEW_3D"])
+    times = np.array(looks)
+    support.figure(
+        "a session's looks in the window",
+        {
+            "a second": round(float((len(times) - 1) / (times[-1, 0] - times[0, 0])), 1),
+            "ms, median": round(1e3 * float(np.median(times[:, 1] - times[:, 0])), 2),
+        },
+    )
+
+    # once the hand has let go, Ctrl-Z takes the last stroke back
+    device = session().run.device
     device.aim(device.geometry.forward([device.geometry.home])[0])
-    yield lambda: not device.state().buttons and not live().run.in_stroke
+    yield lambda: not device.state().buttons and not session().run.in_stroke
     yield 1.0
-    removed = before[0] - live().run.volume.volume
+    made, mine = volume().volume, session()
     screen.key("Z", ctrl=True)
-    yield lambda: before[0] - live().run.volume.volume < removed
-    less = before[0] - live().run.volume.volume
+    yield lambda: volume().volume > made
     screen.key("Z", ctrl=True, shift=True)
-    yield lambda: before[0] - live().run.volume.volume > less
-    assert before[0] - live().run.volume.volume == removed
+    yield lambda: volume().volume == made
+    assert session() is mine
     device.wander()
+
+    # nothing modal: Blender makes its autosave, and a stroke of the hand is in it
+    yield lambda: list(folder.glob("*.blend"))
+    assert session() is mine and sculpting()
+    shutil.copy(next(folder.glob("*.blend")), support.out("pen-autosaved.blend"))
 
     screen.key("ESC")
     yield lambda: not sculpting()
     yield 2.0
-    screen.shoot("09-pen-ended")
+    assert not bpy.data.objects["Riffler Tool"].visible_get() and force._shown is None
+    yield from screen.picture("09-pen-ended", vary=["VIEW_3D"])
+    last = volume().to_bytes()
+    with screen.override():
+        bpy.ops.wm.tool_set_by_id(name="builtin.select_box")
+    yield lambda: support.part("bl.live").of(bpy.data.objects[NAME]) is None
+    assert volume().to_bytes() == last and volume().volume < whole
     after = cut.state()
-    assert after[0] < before[0] and not bpy.data.objects["Stock"].hide_get()
+    assert after[0] < before[0] and not bpy.data.objects[NAME].hide_get()
     assert "Riffler Tool" not in bpy.data.objects and len(bpy.data.collections) == 1
-    yield from cut.undo_and_redo(screen, before, after)
 
-    # called again, it ends
-    assert begin(screen, gap=100.0) == {"RUNNING_MODAL"}
+    # called again, it ends; so it does with another tool, and with the object's end
+    assert begin(screen, gap=100.0) == {"FINISHED"}
     yield 1.0
     begin(screen)
     yield lambda: not sculpting()
-    assert cut.same(cut.state(), after) and np.isfinite(after[1]).all()
+    assert begin(screen) == {"FINISHED"}
+    yield 1.0
+    with screen.override():
+        bpy.ops.wm.tool_set_by_id(name="builtin.move")
+    yield lambda: not sculpting()
+    assert volume().to_bytes() == last
+    with screen.override():
+        bpy.ops.wm.open_mainfile(filepath=support.out("pen-autosaved.blend"))
+    yield 1.0
+    assert volume().volume < whole - 100

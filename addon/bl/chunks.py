@@ -1,0 +1,255 @@
+"""What is seen of a sculpt while somebody works at it: a hundred mesh objects, each with the triangles of some bricks.
+
+Filling one mesh of half a million triangles takes a tenth of a second; a chunk takes what its own triangles take. They
+are Blender's own objects, so that materials, matcaps and overlays are the artist's, and few, since Blender's undo costs
+by the object (docs/decisions.md). The sculpt itself is hidden meanwhile.
+
+Everything is in one collection that says which sculpt it stands for: what is left of one, in an undo step or in the
+file of a Blender that crashed, is known and swept away.
+"""
+
+import itertools
+import uuid
+
+import bpy
+from mathutils import Matrix, Vector
+
+from ..core.blocks import Blocks
+from . import masks, meshes, sculpts, versions
+
+MARK = "riffler_live"  # on the collection: the sculpt's mark (sculpts.new_mark); on meshes and the material, too
+NUMBER = "riffler_chunk"  # on a chunk's object
+FILLING = "riffler_filling"  # on its mesh: which of our fillings it shows
+TOOL = "Riffler Tool"
+SHOWN = "riffler_shown"  # on its object: which time it was shown
+
+_fillings = itertools.count(1)
+
+
+class Chunks:
+    """Of the sculpt `ob`, whose mesh has bricks in a lattice of `shape`. Keeps names and no references: those die with
+    the next undo."""
+
+    def __init__(self, context, ob, shape, mm_per_unit):
+        if ob.name not in context.view_layer.objects:
+            raise ValueError(f"{ob.name} is in no collection of this view layer: enable its collection in the Outliner")
+        self._take(ob, shape, mm_per_unit)
+        collection = _new_collection(context, ob)
+        try:
+            first = None  # the others hang on it: one line in the outliner, and one object to be moved
+            for block in range(len(self._blocks)):
+                chunk = self._add(collection, ob, "Riffler Chunk")
+                chunk[NUMBER] = block
+                self._names[block] = chunk.name
+                if first is None:
+                    first = chunk
+                else:
+                    chunk.parent, chunk.matrix_basis = first, Matrix()
+        except Exception:
+            sweep(ob.riffler.mark)
+            raise
+        hide(ob)
+
+    @classmethod
+    def found(cls, ob, shape, mm_per_unit):
+        """Those that an undo has brought back."""
+        self = cls.__new__(cls)
+        self._take(ob, shape, mm_per_unit)
+        return self
+
+    def _take(self, ob, shape, mm_per_unit):
+        self._mm, self._mark, self._blocks = mm_per_unit, ob.riffler.mark, Blocks(shape)
+        self._names: dict[int, str] = {}  # of objects, by block
+        self._shown = ""
+        self.fillings: dict[int, int] = {}  # which one each block shows
+        self._materials = [m.name for m in ob.data.materials if m and m.name != masks.NAME]
+        self._tool = ""  # name of its object
+
+    # ------------------------------------------------------------------ what is shown
+    def update(self, mesher, bricks, mask=None, stages=None):
+        """Fills the blocks of these bricks anew; what lies in `mask`, a volume, is seen to be protected."""
+        solid = set(mesher.patches()) if len(bricks) else ()
+        for block in sorted({self._blocks.of(int(b)) for b in bricks}):
+            self._fill(block, mesher, [b for b in self._blocks.bricks(block) if b in solid], mask, stages)
+
+    def _fill(self, block, mesher, bricks, mask, stages):
+        ob = bpy.data.objects.get(self._names.get(block, ""))
+        if ob is None:  # somebody has removed it: it is not wanted
+            return
+        vertices, triangles, *edges = mesher.patch(bricks, edges=True)
+        meshes.fill(ob.data, vertices / self._mm, triangles, edges)
+        masks.show(ob.data, mask, vertices, triangles)
+        self.fillings[block] = next(_fillings)
+        ob.data[FILLING] = self.fillings[block]
+        if stages:
+            size = sum(a.nbytes for a in (vertices, triangles, *edges))
+            stages.count(bricks=len(bricks), chunks=1, triangles=len(triangles), bytes=size)
+
+    def place(self, matrix):
+        """All of them at `matrix`, the sculpt's."""
+        for name in self._names.values():
+            ob = bpy.data.objects.get(name)
+            if ob is not None and ob.parent is None and ob.matrix_world != matrix:
+                ob.matrix_world = matrix
+
+    def adopt(self, fillings):
+        """After an undo: the objects that came back, and the bricks of those that do not show what `fillings` says."""
+        if fillings is None:  # nobody knows: all of them
+            fillings = dict.fromkeys(range(len(self._blocks)), -1)
+        found = {ob[NUMBER]: ob for ob in collection_of(self._mark).objects if NUMBER in ob}
+        self._names = {block: ob.name for block, ob in found.items()}
+        self.fillings = {block: ob.data.get(FILLING, 0) for block, ob in found.items()}
+        stale = [block for block, filling in fillings.items() if self.fillings.get(block) != filling]
+        return [brick for block in stale for brick in self._blocks.bricks(block)]
+
+    @property
+    def there(self):
+        """Whether the collection is there: an undo may have gone back to before it."""
+        return collection_of(self._mark) is not None
+
+    # ------------------------------------------------------------------ the tool
+    def show_tool(self, solid):
+        """`solid`: vertices (mm, the tip in the origin, the axis z) and triangles."""
+        self._shown = uuid.uuid4().hex
+        ob = next(iter(self._tools()), None)
+        if ob is not None:
+            self._tool, ob[SHOWN], ob.hide_viewport = ob.name, self._shown, False
+            meshes.fill(ob.data, solid[0] / self._mm, solid[1])
+            return
+        ob = self._add(collection_of(self._mark), sculpts.marked(self._mark), TOOL)
+        ob[SHOWN] = self._shown
+        meshes.fill(ob.data, solid[0] / self._mm, solid[1])
+        material = bpy.data.materials.new(TOOL)
+        material[MARK] = self._mark
+        material.diffuse_color = (0.9, 0.45, 0.1, 1.0)
+        ob.data.materials.clear()
+        ob.data.materials.append(material)
+        self._tool = ob.name
+
+    def place_tool(self, pose):
+        """`pose`: (6,) tip and axis, mm in the sculpt's frame."""
+        ob, sculpt = bpy.data.objects.get(self._tool), sculpts.marked(self._mark)
+        if ob is not None and sculpt is not None:
+            turn = Vector((0, 0, 1)).rotation_difference(Vector(pose[3:])).to_matrix().to_4x4()
+            ob.matrix_world = sculpt.matrix_world @ Matrix.Translation(Vector(pose[:3]) / self._mm) @ turn
+
+    @property
+    def tool_there(self):
+        """Whether it is the tool that this has shown: an undo may have gone back to before that."""
+        return any(ob.get(SHOWN) == self._shown for ob in self._tools())
+
+    def hide_tool(self):
+        """It is not seen any more, nor is one that an undo has brought back. It stays until the next one or the end:
+        Blender's undo takes for unchanged what has not changed from step to step, and so would bring it back without
+        the collection that it was in, had it been removed between two."""
+        for ob in self._tools():
+            ob.hide_viewport = True
+
+    def _tools(self):
+        collection = collection_of(self._mark)
+        return [ob for ob in collection.objects if SHOWN in ob] if collection is not None else []
+
+    def _add(self, collection, sculpt, name):
+        mesh = bpy.data.meshes.new(name)
+        mesh[MARK] = self._mark
+        for material in self._materials:
+            mesh.materials.append(bpy.data.materials.get(material))
+        ob = bpy.data.objects.new(name, mesh)
+        ob.matrix_world = sculpt.matrix_world
+        ob.hide_render = True  # what is rendered is the sculpt
+        collection.objects.link(ob)
+        for _, _, space in views():
+            if space.local_view:
+                ob.local_view_set(space, True)
+        return ob
+
+
+def _new_collection(context, ob):
+    collection = bpy.data.collections.new("Riffler Live")
+    collection[MARK] = ob.riffler.mark
+    collection["hidden"], collection["selected"] = ob.hide_get(), ob.select_get()
+    # Views that draw a line around every object would draw it around every chunk. It is written down here, so that it
+    # is given back after a crash, too.
+    outlined = [f"{screen}/{k}" for screen, k, space in views() if space.shading.show_object_outline]
+    collection["outlined"] = "\n".join(outlined)
+    collection.hide_select = True
+    context.scene.collection.children.link(collection)
+    for screen, k, space in views():
+        if f"{screen}/{k}" in outlined:
+            space.shading.show_object_outline = False
+    return collection
+
+
+def hide(ob):
+    """The sculpt's own mesh is not seen, and does not weigh on each undo, where that would cost."""
+    versions.lighten(ob.data)
+    ob.hide_set(True)  # deselects it, too
+
+
+def reveal(ob, select=False):
+    """Undoes the hiding, in every view layer."""
+    for scene in bpy.data.scenes:
+        for layer in scene.view_layers:
+            if ob.name in layer.objects:
+                ob.hide_set(False, view_layer=layer)
+                if select:
+                    ob.select_set(True, view_layer=layer)
+
+
+def _outline(places):
+    """Gives the views their outlines back; where another sculpt is shown in chunks, that one will."""
+    other = next((c for c in bpy.data.collections if MARK in c), None)
+    if other is not None:
+        other["outlined"] = "\n".join([other["outlined"], *places])
+        return
+    for screen, k, space in views():
+        if f"{screen}/{k}" in places:
+            space.shading.show_object_outline = True
+
+
+def weigh(ob):
+    """Undoes versions.lighten, where nobody has shown anything else since."""
+    if sculpts.is_sculpt(ob) and not ob.data.polygons and ob.data.vertices:
+        sculpts.refill(ob.data, sculpts.shown_mm_per_unit(ob.data))
+
+
+def collection_of(mark):
+    """The collection of the sculpt of that mark, or None."""
+    return next((c for c in bpy.data.collections if c.get(MARK) == mark), None)
+
+
+def shown():
+    """Marks of the sculpts that are shown in chunks."""
+    return [c[MARK] for c in bpy.data.collections if MARK in c]
+
+
+def views():
+    """Every 3D view: name of its screen, number of its area, space."""
+    for screen in bpy.data.screens:
+        for k, area in enumerate(screen.areas):
+            if area.type == "VIEW_3D":
+                yield screen.name, k, area.spaces.active
+
+
+def sweep(mark=None, name=""):
+    """Takes away what there is, of the sculpt of that mark (and name, where it is known) or of all, and shows the
+    sculpts again."""
+    for collection in [c for c in bpy.data.collections if MARK in c and mark in (None, c[MARK])]:
+        ob, hidden, selected = sculpts.marked(collection[MARK], name), collection["hidden"], collection["selected"]
+        outlined = collection["outlined"].split("\n")
+        try:
+            weigh(ob)
+        except ValueError as error:  # what is packed cannot be read: there is no surface to be shown
+            print(f"Riffler: {error}")
+        parts = [ob for ob in collection.objects if ob.data is not None and MARK in ob.data]
+        bpy.data.batch_remove(parts)
+        for ob in list(collection.objects):  # somebody put it there
+            collection.objects.unlink(ob)
+            if not ob.users_collection:
+                bpy.context.scene.collection.objects.link(ob)
+        bpy.data.collections.remove(collection)
+        if ob is not None and not hidden:
+            reveal(ob, selected)
+        _outline(outlined)
+    for place in (bpy.data.meshes, bpy.data.materials):
+        bpy.data.batch_remove([thing for thing in place if MARK in thing and mark in (None, thing[MARK])])

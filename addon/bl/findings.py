@@ -1,0 +1,69 @@
+"""Lists of what was found, and the way to each: the frame, the place in the views, the line of NC code."""
+
+import bpy
+from mathutils import Vector
+
+from . import plan_store, replan, timeline, units
+
+
+def write(collection, entries):
+    """Fills a CollectionProperty of RifflerFinding from dictionaries."""
+    collection.clear()
+    for entry in entries:
+        item = collection.add()
+        for key, value in entry.items():
+            setattr(item, key, value)
+
+
+def read(collection):
+    """The same back."""
+    keys = ("name", "kind", "path", "point", "row", "line", "frame")
+    return [{**{key: getattr(item, key) for key in keys}, "place": tuple(item.place)} for item in collection]
+
+
+def frame_of(item, plan_ob):
+    """The frame of a finding, or None: that of a plan's point is where the plan is on the timeline now."""
+    if item.path < 0:
+        return item.frame if item.row >= 0 else None
+    if plan_ob is None or timeline.pair(plan_ob) is None:
+        return None
+    tracks = replan.layout_of(plan_ob, plan_store.plan(plan_ob)).tracks
+    if item.path >= len(tracks) or not 0 <= item.point < tracks[item.path].points:
+        return None  # the paths are others now
+    return tracks[item.path].frame_of(item.point)
+
+
+def go(context, item, frame, text):
+    """Shows a finding: the scene's frame (None: as it is), the views about its place, the line of `text`."""
+    scene = context.scene
+    if text is not None and not 0 < item.line <= len(text.lines):
+        text = None  # no line, or one that somebody has deleted
+    if frame is not None:
+        scene.frame_set(int(frame // 1), subframe=frame % 1)
+    place = Vector(item.place) / units.mm_per_unit(scene)
+    for screen in _screens(context):
+        for area in screen.areas:
+            space = area.spaces.active
+            if area.type == "VIEW_3D" and space.region_3d is not None:
+                space.region_3d.view_location = place
+            elif area.type == "TEXT_EDITOR" and text is not None:
+                space.text = text
+                space.top = max(0, item.line - 1 - max(getattr(space, "visible_lines", 0), 10) // 2)
+    if text is not None:
+        text.cursor_set(item.line - 1, character=0)
+        text.select_set(item.line - 1, 0, item.line - 1, len(text.lines[item.line - 1].body))
+
+
+def _screens(context):
+    return [window.screen for window in context.window_manager.windows]
+
+
+def text_of(existing, name, code):
+    """A Text block with the code: the one that had it before, where it is still there."""
+    text = existing or bpy.data.texts.new(name)
+    text.name = name
+    if text.as_string() != code:
+        text.clear()
+        text.write(code)
+        text.cursor_set(0)
+    return text

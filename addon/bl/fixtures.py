@@ -1,0 +1,50 @@
+"""What a tool must not touch: the meshes of a collection, in a sculpt's millimetres."""
+
+import hashlib
+
+import numpy as np
+import riffler
+import riffler.plan
+
+from ..core import poses as places
+from . import meshes
+
+CLEAR = 1e-3  # mm: how closely a lifted tool comes to what it touches
+_last = ("", None)  # the meshes' hash, and the collider of them: a stroke changes no fixture
+
+
+def collider(context, collection, to_mm, without=()):
+    """riffler.Collider of the meshes that are seen of `collection`, or None where there are none. `to_mm`: (4, 4) world
+    → mm; `without`: names of objects that are no fixtures."""
+    global _last
+    depsgraph = context.evaluated_depsgraph_get()
+    vertices, triangles, count = [], [], 0
+    for ob in collection.all_objects:
+        if ob.type != "MESH" or ob.name in without or not ob.visible_get():
+            continue
+        co, tri = meshes.read(ob, depsgraph)
+        vertices.append(places.transform_points(to_mm @ meshes.matrix(ob.matrix_world), co))
+        triangles.append(tri + count)
+        count += len(co)
+    if not sum(map(len, triangles)):
+        return None
+    co, tri = np.concatenate(vertices), np.concatenate(triangles).astype(np.int32)
+    key = hashlib.sha256(co.tobytes() + tri.tobytes()).hexdigest()
+    if _last[0] != key:
+        _last = (key, riffler.Collider(riffler.Mesh(co, tri)))
+    return _last[1]
+
+
+def keeper(tool, collider):
+    """Poses (n, 6) → poses that are free: lifted along the tool's axis, as little as it takes. Where no lift frees one
+    the tool waits at the place before; None where it has none."""
+
+    def keep_out(poses):
+        lifted, report = riffler.plan.lift(tool, poses, collider, tolerance=CLEAR)
+        free = np.flatnonzero(report["free"])
+        if not len(free):
+            return None
+        last = np.searchsorted(free, np.arange(len(poses)), side="right") - 1
+        return lifted[free[np.maximum(last, 0)]]
+
+    return keep_out

@@ -1,0 +1,264 @@
+"""Programs of a plan, of a file, of a sculpt's cuts; and as they are simulated and verified: in the frame of the stock,
+and on the timeline."""
+
+import json
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+import riffler
+
+from ..core import course, problems
+from ..core import units as names
+from . import live, plan_store, replan, sculpts, surroundings, timeline, units
+
+RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
+
+
+# ------------------------------------------------------------------ of a plan
+def unresolved(plan):
+    """Numbers, from 0, of the paths without cutter locations that are free all the way."""
+    cl = list(plan.cl) or [None] * len(plan.paths)
+    return [k for k, rows in enumerate(cl) if rows is None or not len(rows)]
+
+
+def ready(context, ob, plan):
+    """The surroundings.Taken of a plan that may become a program. ValueError with the remedy where it may not."""
+    if not plan.paths:
+        raise ValueError(f"{ob.name} has no paths: find some first")
+    without = [k for k, path in enumerate(plan.paths) if not len(path.axes)]
+    if without:
+        raise ValueError(f"{numbered(without)} without orientation: set a key first")
+    missing = unresolved(plan)
+    if missing:
+        raise ValueError(f"{numbered(missing)} may collide: use Resolve, and turn the keys where it finds no way")
+    taken = surroundings.take(context, ob)
+    clearance = units.clean(context.scene.riffler.plan.clearance)
+    if plan.provenance.get(RESOLVED) != taken.fingerprint(plan.tool, clearance):
+        raise ValueError("Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve")
+    return taken
+
+
+def numbered(paths):
+    """“path 3”, “paths 1, 2”: numbers from 0 as people count."""
+    shown = ", ".join(str(k + 1) for k in paths[:6]) + (" …" if len(paths) > 6 else "")
+    return f"{'path' if len(paths) == 1 else 'paths'} {shown}"
+
+
+def of_plan(context, ob, plan, feed, spindle):
+    """The riffler.Program of all paths, in their order, in the scene's millimetres."""
+    taken = ready(context, ob, plan)
+    part = surroundings.part_of(context.scene, ob).name
+    settings = context.scene.riffler.plan
+    return riffler.Program.from_cl(
+        list(plan.cl),
+        tools=[plan.tool] * len(plan.paths),
+        feed=feed,
+        spindle=spindle,
+        occupied=taken.bounds,
+        provenance={
+            "plan": ob.name,
+            "part": f"{part} {plan.part.get('sha256', '')[:16]}".strip(),
+            "paths": f"{len(plan.paths)}, {names.trim(sum(p.length for p in plan.paths), 1)} mm",
+            "clearance": f"{names.trim(units.clean(settings.clearance), 4)} mm",
+            "plan id": plan_store.identity(ob)[:16],
+        },
+    )
+
+
+def options(text):
+    """A machine's options from JSON. ValueError where it is none."""
+    if not text.strip():
+        return {}
+    try:
+        found = json.loads(text)
+    except ValueError as error:
+        raise ValueError(f'options: JSON expected, as {{"max_rotary": 3600}}: {error}') from None
+    if not isinstance(found, dict):
+        raise ValueError('options: a JSON object expected, as {"max_rotary": 3600}')
+    return found
+
+
+def removing(name, content):
+    """The cuts of a sculpt that a machine can make: those that take material away. ValueError where there is none."""
+    cuts = [c for c in content.cuts if c.mode == "remove"]
+    if not cuts:
+        raise ValueError(f"{name} has no cuts yet: carve it first")
+    return cuts
+
+
+def of_cuts(name, cuts, volume, feed, spindle):
+    """The program of these cuts of a sculpt, in its own frame."""
+    return riffler.Program.from_cl(
+        [c.poses for c in cuts],
+        tools=[riffler.Tool.from_dict(c.tool) for c in cuts],
+        feed=feed,
+        spindle=spindle,
+        # retracts clear the stock as it was before the first cut
+        occupied=(volume.lower, volume.upper),
+        provenance={"stock": name},
+    )
+
+
+# ------------------------------------------------------------------ on a stock
+@dataclass
+class Setup:
+    """A program on its stock. `program`, `stock`: in the stock's frame, mm; `to_world`: (4, 4) from there to the
+    scene's mm; `text`: the NC code that the program's lines are of; `plan`: name of the plan's object, or nothing."""
+
+    name: str
+    program: riffler.Program
+    stock: riffler.Volume
+    sculpt: str
+    to_world: np.ndarray
+    course: course.Course
+    text: str = ""
+    machine: str = ""  # that it is for, where its axes are those of the stock's frame
+    options: dict | None = None
+    plan: str = ""
+
+    @property
+    def runs(self):
+        """(tool, poses) for core.prefix.Prefix."""
+        return [(self.program.tools[number], poses) for number, poses in self.program.cuts()]
+
+
+def stock_object(context):
+    """The stock of the scene's settings, or the active sculpt, or None."""
+    chosen = context.scene.riffler.verify.stock
+    if sculpts.is_sculpt(chosen) and context.scene.objects.get(chosen.name) == chosen:
+        return chosen
+    return sculpts.active(context)
+
+
+def take(context, wanted):
+    """The Setup that `wanted` (properties.ProgramSettings) asks for. ValueError, OSError where it cannot be."""
+    live.end_all()
+    ob = stock_object(context)
+    if ob is None:
+        raise ValueError("There is no stock: select a sculpt, or make one that the part lies in")
+    if wanted.source == "CUTS":
+        return _cuts(context, ob)
+    content = live.content(ob)
+    found = _plan(context) if wanted.source == "PLAN" else _file(context, wanted)
+    in_stock = wanted.source == "FILE" and wanted.frame == "STOCK"
+    to_world = _rigid(ob, context.scene)
+    if not in_stock:
+        found.program = found.program.transformed(np.linalg.inv(to_world))
+    if not (in_stock or np.allclose(to_world, np.eye(4), rtol=0, atol=1e-6)):
+        found.machine = ""  # the axes of the machine are not those of the stock
+    found.stock, found.sculpt, found.to_world = content.volume.copy(), ob.name, to_world
+    return found
+
+
+def _rigid(ob, scene):
+    """The stock's frame in the scene, as a turn and a shift."""
+    matrix = sculpts.to_world_mm(ob, scene)
+    u, size, v = np.linalg.svd(matrix[:3, :3])
+    if np.abs(size - 1).max() > 1e-4 or np.linalg.det(matrix[:3, :3]) < 0:
+        raise ValueError(f"{ob.name} is scaled or mirrored: take that back (Alt S), as the program is in millimetres")
+    matrix[:3, :3] = u @ v
+    return matrix
+
+
+def _new(name, program, where, **more):
+    return Setup(name, program, None, "", np.eye(4), where, **more)
+
+
+def _cuts(context, ob):
+    settings, content = context.scene.riffler.nc, live.content(ob)
+    v, cuts = content.volume, removing(ob.name, content)
+    program = of_cuts(ob.name, cuts, v, units.clean(settings.feed), units.clean(settings.spindle))
+    out = _new(f"{ob.name}'s cuts", program, _timed(context.scene, program))
+    out.stock = riffler.Volume.block(v.lower, v.upper, v.pitch, v.directions)
+    out.sculpt, out.to_world = ob.name, _rigid(ob, context.scene)
+    return out
+
+
+def _plan(context):
+    ob = plan_store.active(context)
+    if ob is None:
+        raise ValueError("There is no plan: select one, or find paths on a part")
+    settings, plan = context.scene.riffler.plan, plan_store.plan(ob)
+    program = of_plan(context, ob, plan, units.clean(settings.feed), units.clean(settings.spindle))
+    where = _timed(context.scene, program)
+    if timeline.pair(ob) is not None:
+        replan.sync(context.scene, ob)
+        where = course.of_paths(program.poses, [(e.motion.poses, e.motion.frames) for e in replan.state(ob).motions])
+    chosen = options(settings.options)
+    program, text = _with_lines(program, settings.post, chosen)
+    return _new(ob.name, program, where, text=text, machine=settings.post, options=chosen, plan=ob.name)
+
+
+def _with_lines(program, post, chosen):
+    """The program with the lines that its rows have as NC code, and that code; neither where the machine's language is
+    not one that is read."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "program.ngc"
+        program.write(path, post=post, options=chosen)
+        text = path.read_text(encoding="utf-8", errors="replace")
+        try:
+            read = riffler.Program.read(path, machine=post, options=_of_reading(chosen))
+        except ValueError:
+            return program, ""
+    lines = course.lines(program.poses, read.poses, read.line)
+    more = {"spindle": program.spindle, "tools": program.tools, "provenance": program.provenance}
+    return riffler.Program(program.poses, program.feed, program.rapid, program.tool, lines, **more), text
+
+
+def _of_reading(chosen):
+    """Without those that only say how code is written."""
+    written = ("line_numbers", "coolant", "retract", "safe_height", "arcs", "max_rotary")
+    return {key: value for key, value in chosen.items() if key not in written and not key.startswith("rate_")}
+
+
+def _file(context, wanted):
+    if not wanted.filepath:
+        raise ValueError("Choose an NC file")
+    path = Path(bpy.path.abspath(wanted.filepath))
+    problems.check_source(path)
+    saved = path.suffix.lower() == ".rprog"
+    chosen = options(wanted.options)
+    program = riffler.Program.load(path) if saved else riffler.Program.read(path, wanted.machine, chosen)
+    if len(program.poses) < 2:
+        raise ValueError(f"{path.name} has no moves")
+    program = _with_tools(context, program, path.name)
+    text = "" if saved else path.read_text(encoding="utf-8", errors="replace")
+    machine = "" if saved else wanted.machine
+    where = _played(context, program, wanted) or _timed(context.scene, program)
+    return _new(path.name, program, where, text=text, machine=machine, options=chosen)
+
+
+def _played(context, program, wanted):
+    """The Course of a file that was written from the active plan: its rows are where the plan's tool is seen there."""
+    ob = plan_store.active(context)
+    if wanted.frame != "WORLD" or ob is None or timeline.pair(ob) is None:
+        return None
+    replan.sync(context.scene, ob)
+    paths = [(e.motion.poses, e.motion.frames) for e in replan.state(ob).motions if len(e.motion)]
+    return course.like_paths(program.poses, paths) if paths else None
+
+
+def _with_tools(context, program, name):
+    """NC code has numbers only: the one whose shape is not known is the scene's tool of plans."""
+    called = sorted({int(n) for n in np.unique(program.tool[1:])} - set(program.tools))
+    if len(called) > 1:
+        raise ValueError(
+            f"{name} calls tools {', '.join(map(str, called))}, and only one can be chosen here: take a .rprog file, "
+            "which has their shapes, or one program for each tool"
+        )
+    if not called:
+        return program
+    tools = {**program.tools, called[0]: riffler.Tool.from_dict(context.scene.riffler.plan.tool_dict())}
+    number = np.where(program.tool == 0, called[0], program.tool) if called[0] else program.tool
+    return riffler.Program(
+        program.poses, program.feed, program.rapid, number, program.line,
+        spindle=program.spindle, tools=tools, provenance=program.provenance,
+    )  # fmt: skip
+
+
+def _timed(scene, program):
+    fps = scene.render.fps / scene.render.fps_base
+    return course.by_time(course.seconds(program.poses, program.feed, program.rapid), fps)

@@ -1,0 +1,413 @@
+"""The timeline's keyframes become the plan's key orientations, and the plan becomes the animation again.
+
+The keyframes are what counts: the plan's keys and the animation follow from them, whoever has changed them and in
+which way, Blender's own tools, a script, undo or a file that was opened. Nothing here is an undo step: what follows
+from an edit goes with that edit, and after an undo it is made again from the keyframes that came back. So one Ctrl Z
+takes back a key and what it did.
+
+In a window this happens when nothing has changed for a tenth of a second; without one timers never run, and it happens
+at once.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import bpy
+import numpy as np
+import riffler
+
+from ..core import collisions, keys, motion, playback
+from ..core.surroundings import nothing
+from . import events, plan_store, surroundings, timeline, units
+
+CLASSES = ()
+OTHER_PATHS = "The plan has other paths now: put it on the timeline again"
+PAUSE = 0.1  # s without a change
+WAIT = 0.5  # s, while something renders
+LOOK = 0.03  # s between two looks at surroundings in the making
+ERRORS = (ValueError, OSError, RuntimeError)
+
+
+@dataclass
+class Baked:
+    """What was computed of one path, and what for."""
+
+    path: object
+    cl: object
+    ends: tuple
+    motion: motion.Motion  # as the program has it
+    played: motion.Played  # as the timeline has it
+    difference: playback.Difference | None = None
+
+    def of(self, path, cl, ends):
+        return self.path is path and self.cl is cl and self.ends == ends
+
+
+@dataclass
+class State:
+    """Of one plan, by its object's name: what the panel says, and what need not be computed again."""
+
+    problems: list = field(default_factory=list)
+    difference: playback.Difference = field(default_factory=playback.Difference)
+    changes: dict = field(default_factory=dict)  # path → core.keys.Change: what the last edit did
+    synced: int = 0  # how often plan and animation were brought up to date, since the add-on runs
+    baked: int = 0  # paths whose motion was computed
+    laid: int = 0  # paths that were laid out in time
+    layout: keys.Layout | None = None
+    seen: str = ""  # fingerprint of the keyframes
+    motions: list = field(default_factory=list)  # Baked, one for each path
+    near: object = None  # core.surroundings.Surroundings, once collisions were asked for
+    clearances: dict = field(default_factory=dict)  # of poses that were looked at, with those and that tool
+    tool: object = None
+    looks: int = 0  # clearances that were computed
+    colliding: list = field(default_factory=list)  # runs of frames
+    job: object = None  # core.collisions.ClearanceJob
+
+
+_states = {}
+_known = (-1, ())  # how many objects there were, and the names of the plans on the timeline
+
+
+def state(plan_ob):
+    return _states.setdefault(plan_ob.name, State())
+
+
+def forget():
+    """Another file, or the add-on goes."""
+    global _known
+    _states.clear()
+    _known = (-1, ())
+
+
+def on_timeline():
+    """All plans that are. Objects are looked through only when there are more or fewer of them than before."""
+    global _known
+    if len(bpy.data.objects) != _known[0] or any(_pair_of(name) is None for name in _known[1]):
+        names = [ob.name for ob in bpy.data.objects if timeline.TOOL in ob and timeline.pair(ob)]
+        _known = (len(bpy.data.objects), tuple(names))
+    return [bpy.data.objects[name] for name in _known[1]]
+
+
+def _pair_of(name):
+    ob = bpy.data.objects.get(name)
+    return timeline.pair(ob) if ob is not None else None
+
+
+# ------------------------------------------------------------------ keyframes → plan → animation
+def geometry(plan):
+    """What the keyframes' places were laid out for."""
+    return keys.fingerprint(*(a for p in plan.paths for a in (p.centres, np.array([p.closed]))))
+
+
+def fits(plan_ob, plan):
+    """True where the plan has the paths that it was laid out with."""
+    return geometry(plan) == timeline.pair(plan_ob)[0][timeline.PATHS]
+
+
+def layout_of(plan_ob, plan):
+    """Of a plan on the timeline; kept, as it is asked for whenever the view is drawn."""
+    now, (tool, _) = state(plan_ob), timeline.pair(plan_ob)
+    rate, first, known = tool[timeline.RATE], tool[timeline.FIRST], now.layout
+    if known is None or not known.of(plan.paths, rate, first):
+        now.layout = keys.Layout(plan.paths, rate, first, known)
+        now.laid += now.layout.made
+    return now.layout
+
+
+def sync(scene, plan_ob):
+    """Brings plan and animation to what the keyframes say; cheap where they already are. Problems go into the plan's
+    state; a path with one stays as it was."""
+    now, (tool, ghost) = state(plan_ob), timeline.pair(plan_ob)
+    now.problems, now.changes = [], {}
+    now.synced += 1
+    if plan_ob.library or tool.library or ghost.library:
+        return  # another file's
+    try:
+        plan = plan_store.plan(plan_ob)
+        if not fits(plan_ob, plan):
+            now.problems.append(OTHER_PATHS)
+            return
+        plan = _take_keys(plan_ob, plan, tool, now)
+        bake(scene, plan_ob, plan)
+    except ERRORS as error:
+        now.problems.append(str(error))
+
+
+def _take_keys(plan_ob, plan, tool, now):
+    frames, quats = timeline.read_keys(tool)
+    now.seen = keys.fingerprint(frames, quats)
+    if tool.animation_data and tool.animation_data.nla_tracks:
+        now.problems.append("The tool's keyframes are in the NLA: they change the plan only as its action")
+        return plan
+    if tool.rotation_mode != "QUATERNION":
+        now.problems.append(f"{tool.name}: set its rotation mode back to Quaternion; other keyframes do not count")
+    reading = keys.read(layout_of(plan_ob, plan), frames, quats)
+    now.problems += reading.problems
+    paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
+    for k, path in enumerate(plan.paths):
+        change = keys.change(path.keys, reading.keys[k])
+        if not change:
+            continue
+        try:
+            paths[k], cl[k] = _oriented(path, change.keys), None
+            now.changes[k] = change
+        except ValueError as error:
+            now.problems.append(f"Path {k + 1}, {error}; it stays as it was")
+    if now.changes:
+        plan = replace(plan, paths=paths, cl=cl)
+        plan_store.write(plan_ob, plan)
+    return plan
+
+
+def _oriented(path, wanted):
+    if wanted:
+        return path.oriented(wanted, path.interpolation or "smooth")
+    return riffler.plan.PencilPath(path.radius, path.centres, path.contacts, path.normals, path.closed)
+
+
+def bake(scene, plan_ob, plan):
+    """Brings the animation to the plan; only paths that are others than before are computed."""
+    now, layout = state(plan_ob), layout_of(plan_ob, plan)
+    tool, ghost = timeline.pair(plan_ob)
+    if now.tool is not plan.tool:
+        now.tool, now.clearances, now.motions = plan.tool, {}, []
+    cl = list(plan.cl) or [None] * len(plan.paths)
+    entries = []
+    for k, (path, rows, track) in enumerate(zip(plan.paths, cl, layout.tracks, strict=True)):
+        ends = (track.first, track.last)
+        if k < len(now.motions) and now.motions[k].of(path, rows, ends):
+            entries.append(now.motions[k])
+        else:
+            along = _motion(path, rows, track, plan.tool)
+            entries.append(Baked(path, rows, ends, along, motion.played(along)))
+            now.baked += 1
+    mm = units.mm_per_unit(scene)
+    timeline.bake(ghost, *motion.joined([e.played for e in entries]), mm)
+    play = timeline.player(ghost, mm) if any(len(e.motion) for e in entries) else None
+    now.difference = playback.Difference()
+    for entry in entries:
+        if play and entry.difference is None:
+            entry.difference = playback.compare(entry.motion, play)
+        now.difference = now.difference.worse(entry.difference or playback.Difference())
+    now.motions = entries
+    timeline.settle(scene, tool, ghost, afresh=True)
+    if now.near is not None:
+        look(scene, plan_ob)
+
+
+def _motion(path, rows, track, tool):
+    """Of a path without keys, along the middle between its contacts; there is no program of that."""
+    shown = path if len(path.axes) else path.with_axes(path.frames[:, 2])
+    start, report = riffler.plan.cutter_locations(shown, tool, nothing(), max_lift=0)
+    if not len(start):
+        raise ValueError(f"the tool does not stand on it: {report.blocked[0][1]}")
+    return motion.along(track, start, report.points, rows)
+
+
+# ------------------------------------------------------------------ collisions
+def look(scene, plan_ob):
+    """Looks at the poses that were not looked at yet: at once without a window, otherwise from a timer."""
+    now, near = state(plan_ob), surroundings.known(plan_ob)
+    if near is not None and near is not now.near:
+        now.near, now.clearances = near, {}
+    now.job = clearance_job(plan_ob, now.near, now.clearances)
+    if bpy.app.background:
+        while not now.job.step(1.0):
+            pass
+        show_collisions(scene, plan_ob)
+    elif not bpy.app.timers.is_registered(_go_on):
+        bpy.app.timers.register(_go_on, first_interval=0.0)
+
+
+def clearance_job(plan_ob, near, known):
+    """Of all poses of the animation; `known`: clearances with these surroundings."""
+    now = state(plan_ob)
+    poses = np.vstack([e.played.poses for e in now.motions] or [np.empty((0, 6))])
+    return collisions.ClearanceJob(near, now.tool, poses, known)
+
+
+def show_collisions(scene, plan_ob, job=None):
+    """Marks the frames that collide, and returns them as runs."""
+    now = state(plan_ob)
+    job, now.job = job or now.job, None
+    frames, _, _, ends = motion.joined([e.played for e in now.motions])
+    tolerance = plan_store.plan(plan_ob).tolerance or 0.01
+    now.looks += job.computed
+    now.colliding = collisions.runs(frames, job.clearances, -tolerance, ends)
+    timeline.mark(scene, now.colliding)
+    return now.colliding
+
+
+def _go_on():
+    """A timer's: 20 ms of looking at collisions, as long as there is something to look at."""
+    if _rendering():
+        return WAIT
+    for plan_ob in on_timeline():
+        job = state(plan_ob).job
+        if job is None:
+            continue
+        try:
+            if job.step(0.02):
+                show_collisions(_scene_of(plan_ob), plan_ob)
+        except ERRORS as error:
+            state(plan_ob).job = None
+            state(plan_ob).problems.append(str(error))
+        return 0.01
+    return None
+
+
+def outdated(plan_ob):
+    """True where the marks are of before part or fixtures changed, or may be."""
+    now = state(plan_ob)
+    return now.near is not None and (surroundings.known(plan_ob) is not now.near or now.job is not None)
+
+
+def _look_again():
+    """A timer's, once part and fixtures have been left alone: looks again where they are others now."""
+    waiting = False
+    for plan_ob in on_timeline():
+        now, scene = state(plan_ob), _scene_of(plan_ob)
+        if now.near is None:
+            continue
+        try:
+            near = surroundings.ask(surroundings.SceneContext(scene), plan_ob)
+        except ERRORS:
+            continue  # without a part the marks stay outdated
+        waiting |= near is None
+        if near is not None and near is not now.near:
+            look(scene, plan_ob)
+    return LOOK if waiting else None
+
+
+def _scene_of(ob):
+    return next((s for s in bpy.data.scenes if s.objects.get(ob.name) == ob), bpy.context.scene)
+
+
+# ------------------------------------------------------------------ what Blender tells
+def flush():
+    """All that is to follow from the keyframes follows now."""
+    events.stop(_due)
+    for plan_ob in on_timeline():
+        sync(_scene_of(plan_ob), plan_ob)
+
+
+def _due():
+    """A timer's."""
+    if _rendering():
+        return WAIT
+    for plan_ob in on_timeline():
+        sync(_scene_of(plan_ob), plan_ob)
+    return None
+
+
+def _rendering():
+    """A render job reads what timers would change meanwhile."""
+    return bpy.app.is_job_running("RENDER")
+
+
+def _soon():
+    if bpy.app.background:
+        flush()
+        return
+    _later(_due)
+
+
+def _later(function):
+    """In PAUSE, counted from the last time that it was asked for."""
+    events.stop(function)
+    bpy.app.timers.register(function, first_interval=PAUSE)
+
+
+@bpy.app.handlers.persistent
+def _on_update(scene, depsgraph):
+    plans = on_timeline()
+    if not plans or depsgraph.mode == "RENDER":
+        return
+    ids = [u.id.original for u in depsgraph.updates]
+    if any(isinstance(i, bpy.types.Action) for i in ids) and _changed(plans):
+        _soon()
+        return
+    for plan_ob in plans:
+        tool, ghost = timeline.pair(plan_ob)
+        if tool in ids:
+            timeline.settle(scene, tool, ghost)
+    _look_later(plans)
+
+
+def _look_later(plans):
+    """Collisions were asked for, and something may be elsewhere now. A script, which has no timers, asks by itself:
+    fixtures that it moves one by one are not to be looked at each time."""
+    if bpy.app.background:
+        return
+    asked = [p for p in plans if state(p).near is not None]
+    if any(surroundings.suspect(surroundings.SceneContext(_scene_of(p)), p) for p in asked):
+        _later(_look_again)
+
+
+def _changed(plans):
+    """True where keyframes are not those that were seen last."""
+    tools = [(state(p), timeline.pair(p)[0]) for p in plans]
+    return any(now.seen != keys.fingerprint(*timeline.read_keys(tool)) for now, tool in tools)
+
+
+@bpy.app.handlers.persistent
+def _on_frame(scene, depsgraph=None):
+    """A turn that was not keyed is gone with its frame, as ever in Blender. What is written to an animated property
+    here is overwritten in the same moment, so the tool is made ready for the next turn by a timer."""
+    if depsgraph is not None and depsgraph.mode != "VIEWPORT":
+        return  # a render's copy: nobody turns a tool in it
+    plans = on_timeline()
+    for plan_ob in plans:
+        timeline.hold(timeline.pair(plan_ob)[0])
+    if plans and not bpy.app.background:
+        _later(_settle_all)
+
+
+def _settle_all():
+    """A timer's."""
+    if _rendering():
+        return WAIT
+    for plan_ob in on_timeline():
+        timeline.settle(_scene_of(plan_ob), *timeline.pair(plan_ob), afresh=True)
+    return None
+
+
+@bpy.app.handlers.persistent
+def _on_history(*_):
+    """After undo and redo; names and numbers of objects may be others."""
+    global _known
+    _known = (-1, ())
+    if on_timeline():
+        _soon()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    forget()
+    if on_timeline():
+        _soon()
+
+
+@bpy.app.handlers.persistent
+def _on_save(*_):
+    if not bpy.app.background and bpy.app.timers.is_registered(_due):
+        flush()
+
+
+_HANDLERS = {
+    "depsgraph_update_post": _on_update,
+    "frame_change_post": _on_frame,
+    "undo_post": _on_history,
+    "redo_post": _on_history,
+    "load_post": _on_load,
+    "save_pre": _on_save,
+}
+
+
+def attach():
+    events.listen(_HANDLERS)
+
+
+def detach():
+    events.ignore(_HANDLERS)
+    events.stop(_due, _go_on, _settle_all, _look_again)
+    forget()

@@ -1,0 +1,170 @@
+"""A program that is simulated: the stock at the row of the scene's current frame, shown in chunks as a sculpt that is
+worked at is. The sculpt itself is hidden meanwhile and stays as it is: what is carved is a copy.
+
+With a window the carving is done from a timer, some milliseconds at a time, so that scrubbing stays light; the stock
+catches up. Without one timers never run, and it is done at once. Nothing modal runs. Undo ends a simulation, since it
+may bring back anything of what is shown; so do saving and the loading of a file.
+"""
+
+import time
+
+import bpy
+import riffler
+
+from ..core import pen
+from ..core.prefix import Prefix
+from ..core.problems import said
+from . import chunks, events, sculpts, timeline, working
+
+CLASSES = ()
+BUDGET, PAUSE = 0.02, 0.01  # s of carving, and between two lots of it
+SHOWN = 0.15  # s between two pictures of a stock that is still catching up
+_now = None
+
+
+class Simulation:
+    """Of a bl.programs.Setup. `prefix.volume` is the stock as it is shown."""
+
+    def __init__(self, context, setup):
+        ob = bpy.data.objects[setup.sculpt]
+        self.name, self.scene, self.course, self.sculpt = setup.name, context.scene.name, setup.course, ob.name
+        self.prefix = Prefix(setup.stock, setup.runs)
+        self._mesher = riffler.Mesher(self.prefix.volume)
+        self.mark = sculpts.new_mark(ob)
+        self.chunks = chunks.Chunks(context, ob, self._mesher.shape, sculpts.shown_mm_per_unit(ob.data))
+        try:
+            self.chunks.update(self._mesher, self._mesher.patches())
+        except BaseException:
+            chunks.sweep(self.mark, ob.name)
+            raise
+        self._own_tool = not setup.plan or timeline.pair(bpy.data.objects[setup.plan]) is None
+        self._tool, self._pictured = None, 0.0
+
+    @property
+    def object(self):
+        """The sculpt, as long as it and what is shown of it are there."""
+        return sculpts.marked(self.mark, self.sculpt) if self.chunks.there else None
+
+    @property
+    def scene_frame(self):
+        return bpy.data.scenes[self.scene].frame_current_final
+
+    def go_on(self, budget):
+        """Towards the row of the current frame; True when the stock is there and seen so."""
+        there = self.prefix.step(self.course.row_at(self.scene_frame), budget)
+        if there or time.monotonic() - self._pictured > SHOWN:
+            self._show()
+        return there
+
+    def _show(self):
+        self._pictured = time.monotonic()
+        self.chunks.update(self._mesher, self._mesher.update(self.prefix.volume))
+        self.chunks.place(self.object.matrix_world)
+        if self._own_tool:
+            tool, pose = self.prefix.pose(self.prefix.row)
+            if tool is not self._tool:
+                self._tool = tool
+                self.chunks.show_tool(pen.solid(tool.outline()))
+            self.chunks.place_tool(pose)
+
+
+def active():
+    """The Simulation that is shown, or None."""
+    return _now
+
+
+def begin(context, setup):
+    """Shows `setup` at the current frame; what was shown before is not any more. None where it has stopped at once,
+    which was told."""
+    global _now
+    end()
+    _now = Simulation(context, setup)
+    context.window_manager.riffler.simulating = setup.name
+    _follow()
+    return _now
+
+
+def end():
+    """The sculpt itself is seen again."""
+    global _now
+    was, _now = _now, None
+    events.stop(_tick)
+    if was is not None:
+        bpy.context.window_manager.riffler.simulating = ""
+        chunks.sweep(was.mark, was.sculpt)
+
+
+def _follow():
+    if bpy.app.background:
+        _lot(float("inf"))
+    elif not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=0.0)
+
+
+def _tick():
+    """A timer's. A render reads what would be changed."""
+    if _now is not None and bpy.app.is_job_running("RENDER"):
+        return SHOWN
+    return None if _now is None or _lot(BUDGET) else PAUSE
+
+
+def _lot(budget):
+    """True where nothing is left to do."""
+    if _now.object is None or _now.scene not in bpy.data.scenes:
+        end()
+        return True
+    try:
+        return _now.go_on(budget)
+    except (ValueError, OSError, RuntimeError, MemoryError) as error:
+        name = _now.name
+        end()
+        working.tell(f"{name}: simulation stopped: {said(error)}")
+        return True
+
+
+@bpy.app.handlers.persistent
+def _on_frame(scene, depsgraph=None):
+    """A render has a copy of the scene, and shows the sculpt itself."""
+    if _now is not None and scene.name == _now.scene and (depsgraph is None or depsgraph.mode == "VIEWPORT"):
+        _follow()
+
+
+@bpy.app.handlers.persistent
+def _end(*_):
+    end()
+
+
+@bpy.app.handlers.persistent
+def _before_render(*_):
+    if _now is not None and _now.object is not None:
+        try:
+            chunks.weigh(_now.object)
+        except ValueError as error:
+            working.tell(str(error))
+
+
+@bpy.app.handlers.persistent
+def _before_load(*_):
+    """What is shown goes with the file; what was saved of it, bl/live.py sweeps."""
+    global _now
+    _now = None
+    bpy.context.window_manager.riffler.simulating = ""
+
+
+_HANDLERS = {
+    "frame_change_post": _on_frame,
+    "save_pre": _end,
+    "undo_post": _end,
+    "redo_post": _end,
+    "render_init": _before_render,
+    "load_pre": _before_load,
+}
+
+
+def attach():
+    events.listen(_HANDLERS)
+
+
+def detach():
+    end()
+    events.ignore(_HANDLERS)

@@ -1,0 +1,179 @@
+"""A stroke of the sculpt tool on a live sculpt: samples become poses, and poses are carved, as the hand moves.
+
+What a stroke is made of is kept as text (`Brush.text`): the view, the samples, and the samples at which the surface was
+looked at anew. The same text on the same sculpt cuts the same, in a window or in a script.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+import riffler
+
+from .sight import Sight
+from .stroke import Hit, Sample, StrokeMaker, View, settings_for
+
+MODES = ("remove", "add", "soften", "mask", "unmask")
+OPPOSITE = {"remove": "add", "add": "remove", "soften": "soften", "mask": "unmask", "unmask": "mask"}
+NUMBERS = len(Sample._fields)
+DABS = 1 / 6  # of the tool's width: from one dab of smoothing to the next
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How a stroke is made, whatever makes it."""
+
+    mode: str = "remove"
+    depth: float = 0.5  # mm
+    axis: str = "NORMAL"  # NORMAL, VIEW, UP, TILT
+    pressure: str = "NONE"  # NONE, DEPTH, FEED
+    feed: float = 50.0  # mm/s
+    string: float = 0.0  # pixels
+    accumulate: bool = False
+
+
+class Brush:
+    """`add` samples and `look` now and then, then `end` once. `run` is a live sculpt (bl/live.py); `keep_out`: (n, 6)
+    poses → poses that do not touch what must not be touched, or None."""
+
+    def __init__(self, run, tool: dict, sight: Sight, choice: Choice, keep_out=None, surface=None):
+        """`surface`: what the tool follows; without one, the surface as it is now."""
+        if choice.mode not in MODES:
+            raise ValueError(f"mode must be one of {', '.join(MODES)}, not {choice.mode!r}")
+        self._run, self._sight, self._choice, self._keep_out = run, sight, choice, keep_out
+        self._outwards = choice.mode == "add"
+        given = riffler.Tool.from_dict(tool)
+        self.tool = stub(given, choice.depth) if self._outwards else given
+        self.samples: list[Sample] = []
+        self.looks: list[int] = []  # how many samples there were when the surface was looked at
+        self.removed, self.moves, self.lifted = 0.0, 0, 0
+        self.pose: np.ndarray | None = None  # (6,) where the tool is, mm
+        self.force = self.torque = np.zeros(3)
+        self._surface = surface or run.freeze()
+        self._maker = self._make_maker()
+
+    def add(self, sample: Sample) -> bool:
+        """True where something was carved."""
+        self.samples.append(sample)
+        return self._carve(self._maker.add(sample))
+
+    def end(self) -> bool:
+        return self._carve(self._maker.end())
+
+    def look(self) -> None:
+        """Shows what was carved; with `accumulate` the tool follows that from here on."""
+        self._run.show()
+        if self._choice.accumulate:
+            self.looks.append(len(self.samples))
+            self._surface = self._run.freeze()
+
+    def hover(self, x: float, y: float):
+        """What a click there would do: the tool's pose (6,) and the surface's point and normal (mm); None off the
+        surface. Carves nothing; for a brush that makes no stroke."""
+        pieces = self._make_maker().add(Sample(x, y))
+        found = self._surface.pick(*self._sight.ray(x, y))
+        return (pieces[0].poses[-1], *found[1:3]) if pieces and found is not None else None
+
+    def text(self) -> str:
+        rows = [list(s) for s in self.samples]
+        view = {"matrix": self._sight.matrix.ravel().tolist(), "size": list(self._sight.size)}
+        return json.dumps({"view": view, "rows": rows, "looks": self.looks})
+
+    # ------------------------------------------------------------------ within
+    def _make_maker(self) -> StrokeMaker:
+        choice, view, axis, more = self._choice, self._sight.basis(), self._choice.axis, {}
+        diameter, depth = self.tool.diameter, choice.depth
+        if choice.mode == "soften":  # a dab is as wide as the tool, and its middle is the tip, on the surface
+            axis, depth, more = "NORMAL", 0.0, {"spacing": max(self._run.volume.pitch, DABS * diameter)}
+        if axis == "UP":  # of the stock, which is a view from above
+            view, axis = View(*np.eye(3)), "VIEW"
+        if self._outwards:
+            view = View(*(-v for v in view))
+        settings = settings_for(
+            self._run.volume.pitch,
+            diameter,
+            depth=depth,
+            axis=axis,
+            pressure=choice.pressure,
+            feed=choice.feed,
+            string=choice.string,
+            **more,
+        )
+        outline = np.vstack([line for part, line in self.tool.outline(1e-3 * diameter) if part == "cutter"])
+        return StrokeMaker(settings, outline, self._pick, view)
+
+    def _pick(self, x: float, y: float) -> Hit | None:
+        found = self._surface.pick(*self._sight.ray(x, y))
+        if found is None:
+            return None
+        _, point, normal, _ = found
+        # Material is put on from within: by the tool's mirror image, whose tip comes out of the surface.
+        return Hit(np.asarray(point), -np.asarray(normal) if self._outwards else np.asarray(normal))
+
+    def _carve(self, pieces) -> bool:
+        for piece in pieces:
+            poses = piece.poses
+            if self._keep_out is not None:
+                poses = self._keep_out(poses)
+                if poses is None:
+                    self.lifted += len(piece.poses)
+                    continue
+                self.lifted += int((np.abs(poses - piece.poses).max(axis=1) > 0).sum())
+            cut = self._run.carve(self.tool, poses, dt=piece.dt, mode=self._choice.mode, new=piece.new)
+            self.moves += len(poses) - 1
+            self.pose = poses[-1]
+            if cut is None:  # of what has no chip: smoothing
+                continue
+            self.removed += float(np.sum(cut.removed))
+            if len(cut.force):
+                self.force, self.torque = np.array(cut.force[-1]), np.array(cut.torque[-1])
+        return bool(pieces)
+
+
+def stub(tool, depth: float):
+    """The cutter without what stands on its end: put on, a whole one would be a pillar as long as it is."""
+    line = np.vstack([points for part, points in tool.outline(1e-3 * tool.diameter) if part == "cutter"])
+    widest = line[line[:, 0] >= line[:, 0].max() * (1 - 1e-9), 1].min()
+    data = tool.to_dict()
+    shorter = {k: v for k, v in data.items() if k not in ("shank", "holder")}
+    shorter["length"] = min(tool.length, max(float(widest), depth, 0.05 * tool.diameter))
+    return riffler.Tool.from_dict(shorter)
+
+
+def read(text: str) -> tuple[Sight, list[Sample], list[int]]:
+    """Of Brush.text: view, samples, looks. ValueError naming what is wrong."""
+    try:
+        data = json.loads(text)
+        view, rows, looks = data["view"], data["rows"], data.get("looks", [])
+        matrix, size = view["matrix"], view["size"]
+    except (json.JSONDecodeError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"stroke must be JSON with view (matrix, size) and rows: {error}") from error
+    if not _numbers(matrix, 16) or not _numbers(size, 2):
+        raise ValueError("stroke: view has a matrix of 16 numbers and a size of 2")
+    if not isinstance(rows, list) or not rows:
+        raise ValueError("stroke: there are no rows")
+    for k, row in enumerate(rows):
+        if not _numbers(row) or not 2 <= len(row) <= NUMBERS or not np.isfinite(row).all():
+            raise ValueError(f"stroke: row {k} is not 2 to {NUMBERS} finite numbers ({', '.join(Sample._fields)})")
+    if not _numbers(looks) or any(not 0 <= n <= len(rows) or n != int(n) for n in looks):
+        raise ValueError(f"stroke: looks are counts of rows, 0 to {len(rows)}")
+    return Sight(matrix, size), [Sample(*map(float, row)) for row in rows], sorted(int(n) for n in looks)
+
+
+def _numbers(values, count=None) -> bool:
+    if not isinstance(values, list) or (count is not None and len(values) != count):
+        return False
+    return all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
+
+
+def replay(brush: Brush, samples: list[Sample], looks: list[int]) -> None:
+    """What a window did, in one go."""
+    waiting = list(looks)
+    for sample in samples:
+        brush.add(sample)
+        while waiting and waiting[0] <= len(brush.samples):
+            waiting.pop(0)
+            brush.look()
+    brush.end()

@@ -1,0 +1,219 @@
+"""A stroke of a mouse or a tablet as tool poses: the tool follows the surface under the cursor.
+
+Nothing here knows of Blender: a `pick` says what the surface is at a place of the view, and what comes back are poses
+to carve, piece by piece as the hand moves on. The same samples on the same surface give the same poses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+MOST_TILT = 1.0  # rad: tablets tell nonsense near the horizon
+MOST_PICKS = 1024  # between two samples: a hand that jumps across the view in one event
+FINEST = 0.25  # pixels between two picks
+
+
+class Sample(NamedTuple):
+    """What an event says: pixels, pressure 0 to 1, lean of the pen to the right and up (-1 to 1, of 90°), seconds."""
+
+    x: float
+    y: float
+    pressure: float = 1.0
+    tilt_x: float = 0.0
+    tilt_y: float = 0.0
+    time: float = 0.0
+
+
+class Hit(NamedTuple):
+    """Of a pick: a point of the surface (mm) and its normal, out of the material, in the stock's frame."""
+
+    point: np.ndarray
+    normal: np.ndarray
+
+
+class View(NamedTuple):
+    """Unit vectors of the view in the stock's frame; `back` points to whoever looks."""
+
+    right: np.ndarray
+    up: np.ndarray
+    back: np.ndarray
+
+
+@dataclass(frozen=True)
+class Settings:
+    depth: float = 0.5  # mm below the surface, along its normal
+    spacing: float = 0.5  # mm between two poses, and what the surface is looked at by
+    axis: str = "NORMAL"  # of the surface, VIEW, UP (the stock's z) or TILT (of the pen, upright on the view)
+    pressure: str = "NONE"  # what it does: NONE, DEPTH (share of depth), FEED (share of feed)
+    feed: float = 50.0  # mm/s, where the clock says nothing and for FEED
+    string: float = 0.0  # pixels: the tool hangs on a string of this length
+    settle: float = 3.0  # mm of way over which normals are averaged
+    gap: float = 10.0  # mm: what is further from one place to the next is another part of the surface
+
+
+class Piece(NamedTuple):
+    """Moves to carve: (n, 6) tip and axis, and (n - 1,) seconds. `new`: it does not go on from the last one."""
+
+    poses: np.ndarray
+    dt: np.ndarray
+    new: bool
+
+
+@dataclass
+class _Place:
+    sample: Sample
+    hit: Hit | None
+    row: np.ndarray | None = None  # the pose; None off the surface
+
+
+def support(outline: np.ndarray, axis: np.ndarray, towards: np.ndarray) -> np.ndarray:
+    """Of a tool with its tip in the origin, the point furthest along `towards` (3,). `outline`: (k, 2) radius, height.
+
+    A body of revolution's support is that of its meridian on the side that `towards` leans to.
+    """
+    along = float(np.dot(towards, axis))
+    across = towards - along * axis
+    size = float(np.linalg.norm(across))
+    best = int(np.argmax(outline[:, 0] * size + outline[:, 1] * along))
+    radius, height = outline[best]
+    return height * axis + (radius / size * across if size > 1e-12 else 0.0)
+
+
+@dataclass
+class StrokeMaker:
+    """`add` samples as they come, then `end`, once; both give what is to be carved now."""
+
+    settings: Settings
+    outline: np.ndarray  # (k, 2) radius and height of the cutter, mm; riffler.Tool.outline has it
+    pick: Callable[[float, float], Hit | None]
+    view: View
+    _last: _Place | None = field(default=None, init=False)
+    _newest: Sample | None = field(default=None, init=False)
+    _normal: np.ndarray | None = field(default=None, init=False)
+
+    def add(self, sample: Sample) -> list[Piece]:
+        self._newest = sample
+        return self._to(self._pull(sample))
+
+    def end(self) -> list[Piece]:
+        """The tool comes to where the hand let go, string or not."""
+        return [] if self._newest is None else self._to(self._newest)
+
+    # ------------------------------------------------------------------ where
+    def _pull(self, sample: Sample) -> Sample:
+        if self._last is None or self.settings.string <= 0:
+            return sample
+        here = self._last.sample
+        way = np.hypot(sample.x - here.x, sample.y - here.y)
+        share = 0.0 if way <= self.settings.string else 1 - self.settings.string / way
+        return sample._replace(x=here.x + share * (sample.x - here.x), y=here.y + share * (sample.y - here.y))
+
+    def _to(self, sample: Sample) -> list[Piece]:
+        last = self._last
+        if last is not None and sample[:3] == last.sample[:3]:
+            return []
+        goal = self._place(sample)
+        return self._pieces([goal] if last is None else [*self._between(last, goal), goal])
+
+    def _place(self, sample: Sample) -> _Place:
+        return _Place(sample, self.pick(sample.x, sample.y))
+
+    def _between(self, last: _Place, goal: _Place) -> list[_Place]:
+        """Places on the way, so that the tool does not go straight through what lies between."""
+        start, end = np.array(last.sample), np.array(goal.sample)
+        pixels = float(np.hypot(*(end - start)[:2]))
+        if last.hit is not None and goal.hit is not None:
+            wanted = np.linalg.norm(goal.hit.point - last.hit.point) / self.settings.spacing
+        else:
+            wanted = pixels  # onto the surface or off it: the edge may be at any of them
+        count = int(np.ceil(min(wanted, pixels / FINEST, MOST_PICKS)))
+        return [self._place(Sample(*(start + (end - start) * k / count))) for k in range(1, count)]
+
+    # ------------------------------------------------------------------ how
+    def _pieces(self, places: list[_Place]) -> list[Piece]:
+        pieces, rows, times = [], [], []
+        new = False
+        for place in places:
+            last = self._last
+            joined = place.hit is not None and last is not None and last.row is not None
+            if joined and np.linalg.norm(place.hit.point - last.hit.point) > self.settings.gap:
+                joined = False
+            if not joined:
+                self._close(pieces, rows, times, new)
+                rows, times, new = [], [], True
+                self._normal = None
+            if place.hit is not None:
+                if joined and not rows:
+                    rows, new = [last.row], False
+                self._row(place, joined, rows, times)
+            self._last = place
+        self._close(pieces, rows, times, new)
+        return pieces
+
+    def _row(self, place: _Place, joined: bool, rows: list, times: list) -> None:
+        normal = self._settled(place, joined)
+        depth = self.settings.depth * (place.sample.pressure if self.settings.pressure == "DEPTH" else 1.0)
+        axis = self._axis(place.sample, normal)
+        place.row = self._pose(place.hit.point, normal, axis, depth)
+        if not joined:  # comes down on the surface first: a click makes a dent
+            rows.append(self._pose(place.hit.point, normal, axis, 0.0))
+            times.append(self._seconds(depth, place.sample, 0.0))
+        else:
+            way = float(np.linalg.norm(place.row[:3] - rows[-1][:3]))
+            times.append(self._seconds(way, place.sample, place.sample.time - self._last.sample.time))
+        rows.append(place.row)
+
+    def _settled(self, place: _Place, joined: bool) -> np.ndarray:
+        """The surface's normal without the jerks of its facets: a mean that forgets over `settle`."""
+        if not joined or self._normal is None:
+            self._normal = place.hit.normal
+        else:
+            way = np.linalg.norm(place.hit.point - self._last.hit.point)
+            keep = float(np.exp(-way / self.settings.settle)) if self.settings.settle > 0 else 0.0
+            mean = keep * self._normal + (1 - keep) * place.hit.normal
+            size = np.linalg.norm(mean)
+            if size > 1e-6:
+                self._normal = mean / size
+        return self._normal
+
+    def _axis(self, sample: Sample, normal: np.ndarray) -> np.ndarray:
+        kind = self.settings.axis
+        if kind == "NORMAL":
+            return normal
+        if kind == "UP":
+            return np.array([0.0, 0.0, 1.0])
+        lean = np.array([sample.tilt_x, sample.tilt_y]) * (np.pi / 2) if kind == "TILT" else np.zeros(2)
+        lean = np.where(np.isfinite(lean), lean, 0.0)
+        angle = float(np.hypot(*lean))
+        if angle < 1e-12:
+            return self.view.back
+        lean /= angle
+        angle = min(angle, MOST_TILT)
+        across = lean[0] * self.view.right + lean[1] * self.view.up
+        return np.cos(angle) * self.view.back + np.sin(angle) * across
+
+    def _pose(self, point, normal, axis, depth) -> np.ndarray:
+        """The cutter's outermost point against the normal lies `depth` below `point`."""
+        tip = point - depth * normal - support(self.outline, axis, -normal)
+        return np.concatenate([tip, axis])
+
+    def _seconds(self, way: float, sample: Sample, passed: float) -> float:
+        """Never nothing: forces are per second."""
+        if self.settings.pressure == "FEED":
+            return max(way, 1e-6) / (self.settings.feed * min(max(sample.pressure, 0.01), 1.0))
+        return passed if passed > 0 else max(way, 1e-6) / self.settings.feed
+
+    @staticmethod
+    def _close(pieces, rows, times, new) -> None:
+        if len(rows) > 1:
+            pieces.append(Piece(np.array(rows), np.array(times), new))
+
+
+def settings_for(pitch: float, diameter: float, **chosen) -> Settings:
+    """Spacing, settling and gap that suit a volume's pitch and a tool's width."""
+    fitting = Settings(spacing=max(pitch, diameter / 12), settle=0.5 * diameter, gap=max(diameter, 4 * pitch))
+    return replace(fitting, **chosen)

@@ -1,0 +1,47 @@
+"""Copies of a stroke: mirrored in planes, turned about an axis. A tool of revolution is its own mirror image, so a copy
+of a pose is a pose."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def maps(mirror: str = "", axis: str = "Z", count: int = 1) -> list[np.ndarray]:
+    """(3, 3) orthogonal maps, the identity first: all products of mirrors in the planes x = 0, y = 0, z = 0 of the
+    letters in `mirror` and of `count` turns about `axis`. None twice."""
+    if count < 1:
+        raise ValueError("count must be at least 1")
+    if set(mirror) - set("XYZ") or axis not in ("X", "Y", "Z"):
+        raise ValueError("mirror takes letters of X, Y, Z, axis one of them")
+    found = [turned(axis, 2 * np.pi * k / count) for k in range(count)]
+    for letter in sorted(set(mirror)):
+        sides = np.ones(3)
+        sides["XYZ".index(letter)] = -1
+        found += [np.diag(sides) @ m for m in found]
+    kept: list[np.ndarray] = []
+    for m in found:
+        if not any(np.allclose(m, other, atol=1e-9) for other in kept):
+            kept.append(m)
+    return kept
+
+
+def turned(axis: str, angle: float) -> np.ndarray:
+    i = "XYZ".index(axis)
+    j, k = (i + 1) % 3, (i + 2) % 3
+    m = np.eye(3)
+    m[j, j] = m[k, k] = np.cos(angle)
+    m[k, j], m[j, k] = np.sin(angle), -np.sin(angle)
+    return m
+
+
+def copies(poses: np.ndarray, about: list[np.ndarray], origin) -> list[np.ndarray]:
+    """The poses, (n, 6), under each of the maps about `origin` (3,), mm. A copy that lies on one before is left out:
+    what runs along the mirror's plane is cut once."""
+    origin = np.asarray(origin, float)
+    near = 1e-6 * (1.0 + np.abs(poses[:, :3]).max(initial=0.0))
+    kept: list[np.ndarray] = []
+    for m in about:
+        copy = np.hstack([(poses[:, :3] - origin) @ m.T + origin, poses[:, 3:] @ m.T])
+        if not any(np.abs(copy - other).max(initial=0.0) < near for other in kept):
+            kept.append(copy)
+    return kept

@@ -1,0 +1,79 @@
+"""3MF files out: one closed mesh in millimetres. The package that reads and writes 3MF in full is not part of Blender's
+extension (docs/decisions.md); to write one mesh takes a zip and some XML.
+
+3MF Core Specification 1.3: parts and relationships in 2, units and model in 3.4, meshes in 4.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+TYPES = """<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">\
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>\
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>
+"""
+RELATIONS = """<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">\
+<Relationship Target="/3D/3dmodel.model" Id="rel0" \
+Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
+"""
+MODEL = """<?xml version="1.0" encoding="UTF-8"?>
+<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
+<metadata name="Application">Riffler</metadata>
+<resources><object id="1" type="model" name={name}><mesh>
+"""
+END = '</mesh></object></resources>\n<build><item objectid="1"/></build>\n</model>\n'
+ROWS = 50_000  # of text at a time: what is written needs no second copy of the mesh
+EPOCH = (1980, 1, 1, 0, 0, 0)  # the same mesh gives the same bytes
+
+
+def write(path, vertices, triangles, name: str = "part") -> None:
+    """`vertices` (n, 3) mm, `triangles` (k, 3). Whole or not at all. ValueError for a mesh without triangles or with
+    values that are not finite; coordinates keep nine digits, which give each float32 back."""
+    vertices, triangles = np.asarray(vertices, float), np.asarray(triangles)
+    if len(triangles) == 0:
+        raise ValueError("the mesh has no triangles; a 3MF file holds one at least")
+    if not np.isfinite(vertices).all():
+        raise ValueError("the mesh has a vertex that is not finite")
+    path = Path(path)
+    handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+            _part(archive, "[Content_Types].xml", [TYPES])
+            _part(archive, "_rels/.rels", [RELATIONS])
+            _part(archive, "3D/3dmodel.model", _model(vertices, triangles, name))
+        os.replace(draft, path)
+    except BaseException:
+        Path(draft).unlink(missing_ok=True)
+        raise
+
+
+def _part(archive, name, texts) -> None:
+    info = zipfile.ZipInfo(name, EPOCH)
+    info.compress_type, info.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+    with archive.open(info, "w", force_zip64=True) as part:
+        for text in texts:
+            part.write(text.encode())
+
+
+def _model(vertices, triangles, name) -> Iterator[str]:
+    yield MODEL.format(name=quoteattr(name))
+    yield "<vertices>\n"
+    yield from _rows('<vertex x="%.9g" y="%.9g" z="%.9g"/>\n', vertices)
+    yield "</vertices>\n<triangles>\n"
+    yield from _rows('<triangle v1="%d" v2="%d" v3="%d"/>\n', triangles)
+    yield "</triangles>\n" + END
+
+
+def _rows(form: str, rows) -> Iterator[str]:
+    for k in range(0, len(rows), ROWS):
+        some = rows[k : k + ROWS]
+        yield (form * len(some)) % tuple(some.ravel().tolist())

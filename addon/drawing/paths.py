@@ -1,0 +1,161 @@
+"""The active plan in the 3D view while the plan tool is chosen: where its paths touch the part, the normals there and
+the tool's axes; and the contact under the pointer."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ..bl import plan_store, turning, units
+from ..core import glyphs
+from . import batches
+
+CLASSES = ()
+NEAR = 24.0  # pixels from the pointer to a contact that it points at
+OFF = 0.02  # of the ball's radius: lines are that far out of the surface, to be seen
+NORMAL, AXIS = 0.5, 4.0  # of the ball's radius: how long they are drawn
+COLOURS = {
+    "CONTACTS": (0.15, 0.75, 0.95, 1.0),
+    "NORMALS": (0.55, 0.85, 0.4, 0.8),
+    "AXES": (0.95, 0.75, 0.3, 0.35),
+    "KEYS": (1.0, 0.6, 0.15, 1.0),
+}
+MARK, SHADOW = (1.0, 0.9, 0.3, 1.0), (0.0, 0.0, 0.0, 0.55)
+TEXT = (0.95, 0.95, 0.95, 1.0)
+
+kept = batches.Batches()
+_handlers = []
+
+
+# ------------------------------------------------------------------ lines, as ends of pieces (n, 3) in mm
+def contacts(path):
+    out = []
+    for side in (0, 1):
+        line = path.contacts[:, side] + OFF * path.radius * path.normals[:, side]
+        if path.closed:
+            line = np.vstack([line, line[:1]])
+        out.append(np.stack([line[:-1], line[1:]], axis=1).reshape(-1, 3))
+    return np.concatenate(out)
+
+
+def normals(path):
+    begin = path.contacts.reshape(-1, 3)
+    return np.stack([begin, begin + NORMAL * path.radius * path.normals.reshape(-1, 3)], axis=1).reshape(-1, 3)
+
+
+def axes(path, rows=None):
+    """At the points `rows`, by default all; none where the path has no orientations."""
+    if not len(path.axes):
+        return np.empty((0, 3))
+    rows = np.arange(len(path)) if rows is None else np.asarray(rows, int)
+    begin = path.centres[rows]
+    return np.stack([begin, begin + AXIS * path.radius * path.axes[rows]], axis=1).reshape(-1, 3)
+
+
+LINES = {"CONTACTS": contacts, "NORMALS": normals, "AXES": axes, "KEYS": lambda path: axes(path, list(path.keys))}
+
+
+def drawn(what, plan, mm_per_unit):
+    lines = [LINES[what](path) for path in plan.paths]
+    pos = np.concatenate(lines) / mm_per_unit if lines else np.empty((0, 3))
+    return "UNIFORM_COLOR", "LINES", {"pos": pos}
+
+
+def _draw():
+    context = bpy.context
+    if not turning.tool_active(context):
+        return
+    ob = turning.plan_object(context)
+    wanted = context.scene.riffler.plan.show
+    if ob is None or not wanted:
+        return
+    try:
+        plan = plan_store.plan(ob)
+    except ValueError:  # the panel says so
+        return
+    mm = units.mm_per_unit(context.scene)
+    signature = plan_store.identity(ob), mm
+    with batches.state(depth="LESS_EQUAL"):
+        for what in LINES:
+            if what in wanted or (what == "KEYS" and "AXES" in wanted):
+                make = lambda w=what: drawn(w, plan, mm)  # noqa: E731
+                batches.draw(kept.get(what, signature, make), COLOURS[what])
+
+
+# ------------------------------------------------------------------ the pointer
+@dataclass(frozen=True)
+class Found:
+    """A contact: numbers of path and point, which of the two it is, where, and the part's normal there."""
+
+    path: int
+    index: int
+    point: np.ndarray
+    normal: np.ndarray
+
+
+def nearest(plan, view, at, reach=NEAR):
+    """The contact that is seen nearest to a pixel, or None where none is within `reach` of it."""
+    origin, away = view.ray(*at)
+    best, closest = None, reach
+    for k, path in enumerate(plan.paths):
+        found = path.nearest(origin, away)
+        gap = float(np.hypot(*(view.project([found["point"]])[0] - at)))
+        if gap <= closest:  # never where it is not a number, behind whoever looks
+            best, closest = Found(k, found["index"], found["point"], found["normal"]), gap
+    return best
+
+
+def under(context, at):
+    """The contact of the active plan under the pointer, at pixels of the context's region."""
+    ob = turning.plan_object(context)
+    if ob is None or context.region_data is None:
+        return None
+    view = turning.sight(context, context.region, context.region_data)
+    return nearest(plan_store.plan(ob), view, at, NEAR * context.preferences.system.ui_scale)
+
+
+def draw_cursor(context, tool, xy):
+    """Blender draws cursors over the finished view: following the pointer costs no new picture of the part."""
+    import gpu
+
+    region, space = context.region, context.region_data
+    if region is None or space is None or turning.held is not None:
+        return
+    at = np.array([xy[0] - region.x, xy[1] - region.y], float)
+    try:
+        found = under(context, at)
+    except ValueError:
+        return
+    if found is None:
+        return
+    zoom = context.preferences.system.ui_scale
+    view = turning.sight(context, region, space)
+    radius = 9 * zoom / view.pixels_per_unit(found.point)
+    ring = view.project(glyphs.ring(found.point, found.normal, radius, 32))
+    pin = view.project([found.point, found.point + 2.5 * radius * found.normal])
+    with batches.state(), gpu.matrix.push_pop():
+        gpu.matrix.translate((region.x, region.y))
+        for k, (line, closed) in enumerate(((ring, True), (pin, False))):
+            for name, width, colour in (("shadow", 3.4 * zoom, SHADOW), ("line", 1.8 * zoom, MARK)):
+                make = lambda p=line, w=width, c=closed: batches.flat(glyphs.ribbon(p, w, c))  # noqa: E731
+                batches.draw(kept.get(f"{name} {k}", (line.tobytes(), zoom), make), colour)
+    _label(f"Path {found.path + 1}, point {found.index}", (xy[0] + 14 * zoom, xy[1] + 12 * zoom), zoom)
+
+
+def _label(text, place, zoom):
+    import blf
+
+    blf.size(0, 11 * zoom)
+    blf.color(0, *TEXT)
+    blf.position(0, *place, 0)
+    blf.draw(0, text)
+
+
+def attach():
+    _handlers.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
+
+
+def detach():
+    while _handlers:
+        bpy.types.SpaceView3D.draw_handler_remove(_handlers.pop(), "WINDOW")
+    kept.clear()

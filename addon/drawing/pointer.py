@@ -1,0 +1,123 @@
+"""The sculpt tool's cursor: the outline of the real cutter as a click would set it on the surface, its axis, and the
+place it goes in.
+
+Blender draws cursors over the finished view, so following the pointer costs no new picture of the sculpt.
+"""
+
+import numpy as np
+
+from ..bl import live, meshes, sculpts, units
+from ..core import brush, glyphs, poses
+from ..core.sight import Sight
+from . import batches
+
+COLOURS = {
+    "remove": (1.0, 0.45, 0.2),
+    "add": (0.3, 0.65, 1.0),
+    "soften": (0.55, 0.9, 0.45),
+    "mask": (0.85, 0.85, 0.85),
+    "unmask": (0.6, 0.6, 0.6),
+}
+SHADOW = (0.0, 0.0, 0.0, 0.55)
+SHOWN = 1.5  # diameters of the tool above its tip: more would cover the view
+
+kept = batches.Batches()
+pixels_per_mm = 10.0  # where the pointer was last: for Blender's radial control, which knows no place
+held = None  # the Brush of the stroke that is made now, and what its tool is
+
+
+def sight(region, space, run):
+    """From where a region looks at a live sculpt, in the sculpt's millimetres."""
+    return Sight(meshes.matrix(space.perspective_matrix) @ run.to_world, (region.width, region.height))
+
+
+def draw(context, mode, xy):
+    """`mode`: of core/brush.py; `xy`: the pointer in the window."""
+    region, space = context.region, context.region_data
+    ob = sculpts.active(context)
+    if region is None or space is None or ob is None or context.window_manager.riffler.sculpting:
+        return  # while a device sculpts, its tool is the cursor
+    at = xy[0] - region.x, xy[1] - region.y
+    tool = context.scene.riffler.tool.dictionary()
+    run = live.of(ob)
+    lines = None
+    if run is not None and run.object is not None:
+        lines = _on_surface(context, mode, run, tool, at)
+    if lines is None:
+        lines = _beside(context, ob, region, space, at)
+    _draw(lines, (region.x, region.y), COLOURS[mode], context.preferences.system.ui_scale)
+
+
+def _on_surface(context, mode, run, tool, at):
+    """None where nothing is under the pointer, and where a stroke would be refused with a message: drawing has none."""
+    global pixels_per_mm
+    settings = context.scene.riffler.sculpt
+    try:
+        view = sight(context.region, context.region_data, run)
+        if held is not None and held.pose is not None:
+            cutter, pose, place, normal = held.tool, held.pose, None, None
+        else:
+            probe = brush.Brush(run, tool, view, settings.choice(mode), surface=run.mesher)
+            found = probe.hover(*at)
+            if found is None:
+                return None
+            cutter, (pose, place, normal) = probe.tool, found
+    except ValueError:
+        return None
+    pixels_per_mm = view.pixels_per_unit(pose[:3])
+    return tool_lines(cutter, pose, place, normal, view)
+
+
+def tool_lines(cutter, pose, place, normal, view):
+    """[(points (n, 2) in pixels, closed, whether it is the outline)] of a tool at its pose."""
+    outline = cutter.outline(0.002 * cutter.diameter)
+    axis, back = pose[3:], view.basis().back
+    across = np.cross(axis, back)
+    size = float(np.linalg.norm(across))
+    shown = glyphs.meridian(outline, SHOWN * cutter.diameter)
+    out = []
+    if size > 0.05:  # seen along its axis a tool is its ring
+        out.append((pose[:3] + shown[:, :1] * (across / size) + shown[:, 1:] * axis, True, True))
+    line = np.vstack([points for part, points in outline if part == "cutter"])
+    radius, height = line[np.argmax(line[:, 0])]
+    out.append((glyphs.ring(pose[:3] + height * axis, axis, radius), True, True))
+    out.append((np.array([pose[:3], pose[:3] + SHOWN * cutter.diameter * axis]), False, False))
+    if place is not None:
+        out.append((glyphs.ring(place, normal, 0.12 * cutter.diameter, 24), True, False))
+    return [(view.project(points), closed, strong) for points, closed, strong in out]
+
+
+def _beside(context, ob, region, space, at):
+    """Off the surface, and before the first stroke: a ring as wide as the tool would be in the sculpt's middle."""
+    global pixels_per_mm
+    p = ob.data.riffler
+    mm = sculpts.shown_mm_per_unit(ob.data)
+    middle = poses.transform_points(meshes.matrix(ob.matrix_world), 0.5 * np.add(p.lower, p.upper)[None] / mm)[0]
+    seen = Sight(meshes.matrix(space.perspective_matrix), (region.width, region.height))
+    scale = float(np.cbrt(abs(np.linalg.det(meshes.matrix(ob.matrix_world)[:3, :3]))))
+    pixels_per_mm = seen.pixels_per_unit(middle) * scale / mm
+    radius = 0.5 * units.clean(context.scene.riffler.tool.diameter) * pixels_per_mm
+    angle = 2 * np.pi * np.arange(64) / 64
+    return [(np.asarray(at) + radius * np.c_[np.cos(angle), np.sin(angle)], True, True)]
+
+
+def _draw(lines, corner, colour, zoom):
+    import gpu
+
+    with batches.state(), gpu.matrix.push_pop():
+        gpu.matrix.translate(corner)
+        for k, (points, closed, strong) in enumerate(lines):
+            width = zoom * (1.6 if strong else 1.0)
+            signature = (points.tobytes(), width)
+            for name, extra, paint in (
+                ("shadow", 1.6 * zoom, SHADOW),
+                ("line", 0.0, (*colour, 0.95 if strong else 0.7)),
+            ):
+                batches.draw(
+                    kept.get(
+                        f"{name} {k}",
+                        signature,
+                        lambda p=points, w=width + extra, c=closed: batches.flat(glyphs.ribbon(p, w, c)),
+                    ),
+                    paint,
+                )

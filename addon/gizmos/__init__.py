@@ -1,0 +1,1 @@
+"""Handles in the 3D view."""

@@ -1,0 +1,158 @@
+"""What is done to a sculpt as a whole: another pitch, cut off by a plane, taken apart, edits taken over."""
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
+from riffler import tasks
+
+from ..bl import forms, sculpts, units
+from ..core import units as names
+from ..core.cache import Content
+from ..core.job import TaskJob
+from ..properties import stock
+from .sculpt_work import SculptEdit, SculptWork
+
+DIRECTIONS = (("KEEP", "As now", "The directions that the sculpt has"), *stock.DIRECTIONS)
+
+
+class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
+    """Make the clay finer or coarser: the same shape on rays that stand closer together or further apart"""
+
+    bl_idname = "riffler.resample"
+    bl_label = "Change Pitch"
+    doing = "Changing the pitch"
+    cancelled = "Pitch not changed: the sculpt is as it was"
+
+    pitch: FloatProperty(
+        name="Pitch (mm)", default=0.25, min=1e-4, precision=3, description="Distance between rays from now on"
+    )
+    directions: EnumProperty(
+        name="Rays", items=DIRECTIONS, default="KEEP", description="Along which axes they stand from now on"
+    )
+
+    def begin(self, context):
+        _, self._before = self.take(context)
+        volume = self._before.volume
+        self._wanted = volume.directions if self.directions == "KEEP" else self.directions
+        return TaskJob(tasks.resampled(volume, units.clean(self.pitch), self._wanted))
+
+    def finish(self, context, job):
+        before, mask = self._before, self._before.mask
+        if mask is not None:
+            mask = mask.resampled(units.clean(self.pitch), self._wanted)
+        self.keep(job.result, before.cuts, mask)
+        off = job.result.volume - before.volume.volume
+        self.report({"INFO"}, f"{names.format_count(job.result.rays)} rays; material {_signed(off)}")
+        return {"FINISHED"}
+
+
+def _signed(volume):
+    return f"{'+' if volume >= 0 else '−'}{names.format_volume(abs(volume))}"
+
+
+class RIFFLER_OT_crop(SculptEdit, bpy.types.Operator):
+    """Cut the sculpt off by the plane of another object, or by a point and a normal"""
+
+    bl_idname = "riffler.crop"
+    bl_label = "Crop by Plane"
+
+    plane: StringProperty(name="Plane", description="An object whose local plane z = 0 cuts; empty: the values below")
+    point: FloatVectorProperty(name="Point", subtype="TRANSLATION", description="In the world, Blender units")
+    normal: FloatVectorProperty(name="Normal", subtype="DIRECTION", description="Into what is taken away; 0: unused")
+    flip: BoolProperty(name="Other Side", description="Take away what lies behind the plane")
+
+    def edited(self, context, ob, content):
+        point, normal = self._plane(context, ob)
+        volume = content.volume.copy().clip(point, -normal if self.flip else normal)
+        if volume.volume <= 0:
+            raise ValueError("nothing would be left: choose the other side, or move the plane")
+        return Content(volume, content.cuts, content.mask)
+
+    def tell(self, before, after):
+        taken = before.volume.volume - after.volume.volume
+        self.report({"INFO"} if taken > 0 else {"WARNING"}, f"Removed {names.format_volume(taken)}")
+
+    def _plane(self, context, ob):
+        if not self.plane and any(self.normal):
+            m = sculpts.from_world(ob)
+            normal = np.linalg.inv(m[:3, :3]).T @ np.array(self.normal)
+            return (m @ (*self.point, 1.0))[:3], normal
+        return forms.plane(ob, forms.chosen(context, self.plane, {"MESH", "EMPTY"}, "the plane, a mesh or an empty,"))
+
+
+class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
+    """Take the sculpt's separate pieces apart: each becomes a sculpt of its own, the largest stays this one"""
+
+    bl_idname = "riffler.split"
+    bl_label = "Split into Parts"
+    doing = "Splitting"
+    cancelled = "Not split: the sculpt is as it was"
+
+    least: FloatProperty(
+        name="Smallest (mm³)", default=0.0, min=0.0, description="Smaller pieces stay with the largest"
+    )
+
+    def begin(self, context):
+        _, self._before = self.take(context)
+        return TaskJob(tasks.parts(self._before.volume, units.clean(self.least)))
+
+    def finish(self, context, job):
+        first, *others = job.result or [self._before.volume]
+        if not others:
+            self.report({"WARNING"}, "The sculpt is one piece")
+            return {"CANCELLED"}
+        ob = bpy.data.objects[self._object]
+        collections, matrix, name = ob.users_collection, ob.matrix_world.copy(), ob.name
+        made = []
+        try:
+            for piece in others:
+                new = sculpts.new_object(context, f"{name} Part", piece, matrix)
+                made.append(new)
+                sculpts.take_looks(new, ob)
+                for collection in collections:
+                    if new.name not in collection.objects:
+                        collection.objects.link(new)
+            self.keep(first, self._before.cuts, self._before.mask)  # last: until then the sculpt has all pieces
+        except BaseException:
+            bpy.data.batch_remove([*made, *(new.data for new in made)])
+            sculpts.select_only(context, ob)
+            raise
+        self.report({"INFO"}, f"{len(job.result)} parts")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
+    """Make the mesh as it is now, deformed by Blender's own tools and modifiers, the sculpt's material"""
+
+    bl_idname = "riffler.take_edits"
+    bl_label = "Take Edits"
+    doing = "Taking the edits"
+    cancelled = "Edits not taken: the sculpt's volume is as it was"
+    from_edits = True
+
+    def begin(self, context):
+        ob, content = self.take(context)
+        volume = content.volume
+        surface = forms.of_object(context, ob, ob)
+        # whole pitches further out, so that what has not moved stands on the rays that it stood on
+        bounds, h = surface.bounds, volume.pitch
+        lower = volume.lower - h * np.ceil(np.maximum(volume.lower - bounds[0], 0) / h)
+        upper = volume.upper + h * np.ceil(np.maximum(bounds[1] - volume.upper, 0) / h)
+        self._report = {}
+        return TaskJob(tasks.from_mesh(surface, h, volume.directions, lower=lower, upper=upper, report=self._report))
+
+    def finish(self, context, job):
+        if job.result.volume <= 0:
+            raise ValueError("the edited mesh has no volume: close it, or undo the edits")
+        self.keep(job.result, [], None)
+        ob = bpy.data.objects[self._object]
+        for modifier in [m for m in ob.modifiers if m.show_viewport]:
+            ob.modifiers.remove(modifier)
+        open_edges = self._report.get("open_edges", 0)
+        level = {"WARNING"} if open_edges else {"INFO"}
+        note = f", {names.format_count(open_edges)} open edges were closed" if open_edges else ""
+        self.report(level, f"{names.format_volume(job.result.volume)} of material{note}")
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_resample, RIFFLER_OT_crop, RIFFLER_OT_split, RIFFLER_OT_take_edits)

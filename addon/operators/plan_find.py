@@ -1,0 +1,123 @@
+"""Pencil cuts found on the part, in a thread of their own; the result is a plan and its curves."""
+
+import bpy
+import riffler
+
+from .. import properties
+from ..bl import live, parts, plan_curves, plan_store, units
+from ..core import units as names
+from ..core.job import TaskJob
+from . import shared
+from .long import LongWork
+
+
+class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator):
+    """Find the valleys of the part that a ball of the cutter's diameter touches on both sides, as paths of a plan"""
+
+    bl_idname = "riffler.plan_find"
+    bl_label = "Find Pencil Cuts"
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Finding pencil cuts"
+    cancelled = "Search cancelled: nothing has changed"
+
+    tool: bpy.props.StringProperty(
+        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the plan's tool of the scene"
+    )
+    replace: bpy.props.StringProperty(
+        name="Replace",
+        options={"SKIP_SAVE"},
+        description="Name of a plan whose paths are found anew on its own part; its orientations go. Empty: a new plan",
+    )
+
+    @classmethod
+    def description(cls, context, properties):
+        if not properties.replace:
+            return cls.__doc__
+        return f"Replace the paths of {properties.replace} and their orientations by what is found on its part now"
+
+    @classmethod
+    def poll(cls, context):
+        if not shared.object_mode(cls, context):
+            return False
+        if why := parts.unfit(context.scene.riffler.plan.part, context.scene):
+            return shared.deny(cls, why)
+        return not shared.busy(cls, context)
+
+    def begin(self, context):
+        settings = context.scene.riffler.plan
+        if self.replace and not plan_store.is_plan(context.scene.objects.get(self.replace)):
+            raise ValueError(f"there is no plan {self.replace!r} in this scene: leave Replace empty for a new one")
+        self._tool = riffler.Tool.from_dict(shared.tool_of_text(self.tool) if self.tool else settings.tool_dict())
+        part = self._own_part(context) or settings.part
+        live.end_all()  # the mesh of a sculpt that is being worked at is not up to date
+        mesh = parts.in_world(context, part)
+        self._part, self._mm = part.name, units.mm_per_unit(context.scene)
+        self._made_on = riffler.plan.part_of(mesh, self._part)
+        self._tolerance = names.clean(self.tolerance)
+        task = riffler.tasks.pencil(
+            mesh,
+            self._tool,
+            tolerance=self._tolerance,
+            minimum_length=names.clean(self.minimum_length),
+            passes=self.passes,
+            stepover=names.clean(self.stepover) or None,
+        )
+        return TaskJob(task)
+
+    def _own_part(self, context):
+        """That of the plan that is to be replaced, if it is still there."""
+        own = context.scene.objects[self.replace].riffler.plan.part if self.replace else None
+        return None if parts.unfit(own, context.scene) else own
+
+    def lost(self, context):
+        if context.scene.objects.get(self._part) is None:
+            return f"Search cancelled: {self._part} was removed or renamed meanwhile"
+        if self.replace and not plan_store.is_plan(context.scene.objects.get(self.replace)):
+            return f"Search cancelled: {self.replace} was removed or renamed meanwhile"
+        return ""
+
+    def finish(self, context, job):
+        paths = list(job.result)
+        if not paths:
+            raise ValueError(f"{self._part}: no pencil cut, as {job.result.reason}")
+        plan = riffler.plan.Plan(paths, self._tool, part=self._made_on, tolerance=self._tolerance)
+        if self.replace:
+            ob = context.scene.objects[self.replace]
+            plan_store.write(ob, plan)
+        else:
+            ob = plan_store.new(context, plan)
+        ob.riffler.plan.part = context.scene.objects[self._part]
+        plan_curves.show(ob, plan, self._mm)
+        total = names.trim(sum(path.length for path in paths), 1)
+        self.report({"INFO"}, f"{ob.name}: {names.format_count(len(paths))} paths, {total} mm")
+        return {"FINISHED"}
+
+    def draw(self, context):
+        shared.draw_fields(self, properties.FindSettings.__annotations__)
+
+
+class RIFFLER_OT_plan_show(bpy.types.Operator):
+    """Draw the plan's paths anew; edits to their curves are lost"""
+
+    bl_idname = "riffler.plan_show"
+    bl_label = "Redraw Paths"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        if plan_store.active(context) is None:
+            return shared.deny(cls, "Select a plan, or one of its paths")
+        return shared.object_mode(cls, context) and not shared.busy(cls, context)
+
+    def execute(self, context):
+        ob = plan_store.active(context)
+        try:
+            plan = plan_store.plan(ob)
+        except ValueError as error:
+            return shared.fail(self, error)
+        context.view_layer.objects.active = ob  # the curve that may be active goes
+        plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_plan_find, RIFFLER_OT_plan_show)

@@ -1,0 +1,162 @@
+"""From a plan to NC code: cutter locations that are free of part and fixtures, written for a machine."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import riffler
+from bpy.props import EnumProperty, FloatProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from ..bl import findings, plan_store, programs, replan, surroundings, timeline, units
+from ..bl.turning import plan_object
+from ..core import locating, problems
+from ..core import units as names
+from ..core.job import ChainJob
+from ..properties.plan import MACHINES
+from . import shared
+from .plan_work import PlanWork, part_poll, plan_poll
+
+EXTENSIONS = {"heidenhain": ".h", "apt": ".apt"}
+
+
+class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
+    """Find where the tool stands along the plan's paths: lifted along its axis where any of it would enter the part or
+    a fixture. What no lift frees is listed"""
+
+    bl_idname = "riffler.plan_resolve"
+    bl_label = "Resolve"
+    doing = "Resolving collisions"
+    cancelled = "Stopped resolving: the plan is as it was"
+
+    max_lift: FloatProperty(
+        name="Highest Lift", default=100.0, min=0.0, max=1e4, precision=2, description="Along the tool's axis, in mm"
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return plan_poll(cls, context) and part_poll(cls, context)
+
+    def begin(self, context):
+        ob, plan = self.take(context)
+        taken = surroundings.take(context, ob)
+        clearance = units.clean(context.scene.riffler.plan.clearance)
+        self._mark = taken.fingerprint(plan.tool, clearance)
+        same = plan.provenance.get(programs.RESOLVED) == self._mark
+        turned = [k for k, path in enumerate(plan.paths) if len(path.axes)]
+        if not turned:
+            raise ValueError("No path has an orientation: set a key first")
+        open_ones = set(programs.unresolved(plan)) if same else set(turned)
+        self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
+        self._found = []
+        collider = taken.result().collider
+        sizes = {"clearance": clearance, "tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
+
+        def start(k):
+            def go(before):
+                self._found += [before] if before is not None else []
+                return riffler.tasks.cutter_locations(plan.paths[k], plan.tool, collider, **sizes)
+
+            return go
+
+        return ChainJob(*map(start, self._paths), text=f"{names.format_count(len(self._paths))} paths")
+
+    def finish(self, context, job):
+        ob, plan = self.ob, plan_store.plan(self.ob)
+        cl = list(plan.cl) or [None] * len(plan.paths)
+        kept = [e for e in findings.read(ob.riffler.plan.findings) if e["path"] not in self._paths]
+        blocked = 0
+        for k, (rows, report) in zip(self._paths, [*self._found, job.result], strict=True):
+            cl[k] = rows if report.ok else None  # what collides anywhere is no program
+            blocked += not report.ok
+            kept += locating.entries(k, plan.paths[k].centres, rows, report)
+        plan = replace(plan, cl=cl, provenance={**plan.provenance, programs.RESOLVED: self._mark})
+        plan_store.write(ob, plan)
+        findings.write(ob.riffler.plan.findings, locating.ordered(kept))
+        said = ""
+        if timeline.pair(ob) is not None:
+            replan.sync(context.scene, ob)
+            said = f". {replan.state(ob).difference}"
+        count = names.format_count(len(self._paths))
+        if blocked:
+            why = f"{blocked} of {count} paths still collide: turn their keys, or take another tool"
+            self.report({"WARNING"}, why)
+        else:
+            self.report({"INFO"}, f"{count} paths are free{said}")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
+    """Write the plan's resolved paths as NC code in the scene's millimetres"""
+
+    bl_idname = "riffler.plan_nc"
+    bl_label = "Write NC"
+
+    filter_glob: StringProperty(default="*.ngc;*.nc;*.tap;*.h;*.apt", options={"HIDDEN"})
+    post: EnumProperty(
+        name="Machine", items=MACHINES, default="tcp", options={"SKIP_SAVE"}, description="That the code is written for"
+    )
+    feed: FloatProperty(
+        name="Feed", default=0.0, min=0.0, max=1e6, options={"SKIP_SAVE"}, description="mm/min; 0: the plan's"
+    )
+    spindle: FloatProperty(
+        name="Spindle", default=-1.0, min=-1.0, max=1e6, options={"SKIP_SAVE"}, description="rev/min; -1: the plan's"
+    )
+    options: StringProperty(name="Options", options={"SKIP_SAVE"}, description="Of the machine, as JSON")
+
+    @property
+    def filename_ext(self):
+        return EXTENSIONS.get(self.post, ".ngc")
+
+    @classmethod
+    def poll(cls, context):
+        if plan_object(context) is None:
+            return shared.deny(cls, "Select a plan first, or find paths on a part")
+        return not shared.busy(cls, context, simulation=False)
+
+    def invoke(self, context, event):
+        self._take_settings(context)
+        if not self.filepath:
+            self.filepath = plan_object(context).name + self.filename_ext
+        return ExportHelper.invoke(self, context, event)
+
+    def _take_settings(self, context):
+        """What was not asked for is as the scene has it."""
+        settings = context.scene.riffler.plan
+        for key in ("post", "options"):
+            if not self.properties.is_property_set(key):
+                setattr(self, key, getattr(settings, key))
+        self.feed = self.feed or settings.feed
+        self.spindle = settings.spindle if self.spindle < 0 else self.spindle
+
+    def execute(self, context):
+        self._take_settings(context)
+        try:
+            replan.flush()
+            ob = plan_object(context)
+            plan, chosen = plan_store.plan(ob), programs.options(self.options)
+            program = programs.of_plan(context, ob, plan, units.clean(self.feed), units.clean(self.spindle))
+            path = bpy.path.abspath(self.filepath)
+            problems.check_target(path)
+            written = program.write(path, post=self.post, tolerance=plan.tolerance or 0.01, options=chosen)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        self._tell(ob, path, program, written)
+        return {"FINISHED"}
+
+    def _tell(self, ob, path, program, written):
+        done = f"{bpy.path.basename(path)}: {names.format_count(written['blocks'])} blocks"
+        level = "INFO"
+        if timeline.pair(ob) is not None:
+            difference = replan.state(ob).difference
+            done, level = f"{done}. {difference}", "INFO" if difference.small else "WARNING"
+        if len(written["rewinds"]):
+            rows = ", ".join(str(int(r)) for r in np.atleast_1d(written["rewinds"])[:4])
+            done, level = f"{done}. The tool leaves the material to turn an axis back, at rows {rows}", "WARNING"
+        self.report({level}, done)
+
+    def draw(self, context):
+        shared.draw_fields(self, ("post", "feed", "spindle", "options"))
+
+
+CLASSES = (RIFFLER_OT_plan_resolve, RIFFLER_OT_plan_nc)

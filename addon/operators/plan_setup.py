@@ -1,0 +1,251 @@
+"""What a plan is made for: the part, the fixtures, and the tool with its shank and holder."""
+
+import bpy
+import riffler
+from bpy_extras.io_utils import ImportHelper
+
+from .. import properties
+from ..bl import libraries, live, parts
+from ..core import library
+from ..core import units as names
+from ..properties.fields import length
+from . import shared
+
+FIXTURES = "Riffler Fixtures"
+
+
+def surfaces(context):
+    """The selected objects that have a surface."""
+    return [ob for ob in context.selected_objects if ob.type in properties.WITH_SURFACE]
+
+
+def described(mesh):
+    """What a part is worth before it is planned on: the level of the report, and its text."""
+    found = riffler.plan.analyse(mesh)
+    size = names.format_size(found["bounds"][1] - found["bounds"][0])
+    facts = f"{size}, {names.format_count(found['triangles'])} triangles"
+    return "WARNING" if found["warnings"] else "INFO", "; ".join([facts, *found["warnings"]])
+
+
+def _editable(cls, collection):
+    """True where objects can be put into the fixtures' collection and taken out."""
+    if collection is None or not (collection.library or collection.override_library):
+        return True
+    return shared.deny(cls, f"{collection.name} is linked from another file: choose another collection for fixtures")
+
+
+class RIFFLER_OT_plan_part(bpy.types.Operator):
+    """Plan on the active object: the finished part, as it lies in the scene"""
+
+    bl_idname = "riffler.plan_part"
+    bl_label = "Set Part"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.object is None:
+            return shared.deny(cls, "Select the object that is the finished part")
+        if why := parts.unfit(context.object, context.scene):
+            return shared.deny(cls, why)
+        return not shared.busy(cls, context)
+
+    def execute(self, context):
+        settings, ob = context.scene.riffler.plan, context.object
+        if settings.fixtures is not None and ob in settings.fixtures.all_objects[:]:
+            home = settings.fixtures.name
+            return shared.fail(self, ValueError(f"{ob.name} is a fixture: take it out of {home} first"))
+        try:
+            live.end_all()  # the mesh of a sculpt that is being worked at is not up to date
+            mesh = parts.in_world(context, ob)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        settings.part = ob
+        level, text = described(mesh)
+        self.report({level}, f"{ob.name}: {text}")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
+    """Make fixtures of the selected objects: the tool will stay clear of them"""
+
+    bl_idname = "riffler.plan_fixtures_add"
+    bl_label = "Add Fixtures"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        if not (shared.object_mode(cls, context) and _editable(cls, context.scene.riffler.plan.fixtures)):
+            return False
+        if not any(ob != context.scene.riffler.plan.part for ob in surfaces(context)):
+            return shared.deny(cls, "Select the vise, the clamps: objects with a surface other than the part")
+        return not shared.busy(cls, context)
+
+    def execute(self, context):
+        settings = context.scene.riffler.plan
+        if settings.fixtures is None:
+            settings.fixtures = bpy.data.collections.new(FIXTURES)
+        if settings.fixtures not in context.scene.collection.children_recursive:
+            context.scene.collection.children.link(settings.fixtures)
+        added = [ob for ob in surfaces(context) if ob != settings.part and settings.fixtures not in ob.users_collection]
+        for ob in added:
+            settings.fixtures.objects.link(ob)
+        held = parts.fixtures(settings, settings.part)
+        self.report({"INFO"}, f"{settings.fixtures.name}: {len(held)} objects")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
+    """Take the selected objects out of the fixtures; they stay in the scene"""
+
+    bl_idname = "riffler.plan_fixtures_remove"
+    bl_label = "Remove Fixtures"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        home = context.scene.riffler.plan.fixtures
+        if home is None:
+            return shared.deny(cls, "There are no fixtures")
+        if not _editable(cls, home):
+            return False
+        if not any(home in ob.users_collection for ob in context.selected_objects):
+            return shared.deny(cls, "Select the fixtures that are none any more")
+        return not shared.busy(cls, context)
+
+    def execute(self, context):
+        home = context.scene.riffler.plan.fixtures
+        for ob in [ob for ob in context.selected_objects if home in ob.users_collection]:
+            if len(ob.users_collection) == 1:
+                context.scene.collection.objects.link(ob)
+            home.objects.unlink(ob)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_tool(bpy.types.Operator):
+    """Plan with this tool"""
+
+    bl_idname = "riffler.plan_tool"
+    bl_label = "Take Tool"
+    bl_options = {"REGISTER", "UNDO"}
+
+    name: bpy.props.StringProperty(name="Name", description="Of the tool; empty: the first of the file")
+    path: bpy.props.StringProperty(name="File", description="A tool file; empty: the presets", subtype="FILE_PATH")
+    sculpting: bpy.props.BoolProperty(
+        name="Of sculpting", default=False, description="The cutter of the Tool panel, whatever name and file say"
+    )
+
+    def execute(self, context):
+        scene = context.scene.riffler
+        path = bpy.path.abspath(self.path) if self.path and not self.sculpting else ""
+        try:
+            tool = scene.tool.dictionary() if self.sculpting else libraries.tool(self.name, path)
+            riffler.Tool.from_dict(tool)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        scene.plan.take(tool, path)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_tool_open(bpy.types.Operator, ImportHelper):
+    """Take a tool from a file (.json, .toml)"""
+
+    bl_idname = "riffler.plan_tool_open"
+    bl_label = "Open Tool File"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = ".json"
+    filter_glob: bpy.props.StringProperty(default="*.json;*.toml", options={"HIDDEN"})
+    name: bpy.props.StringProperty(name="Name", description="Of the tool; empty: the first of the file")
+
+    def execute(self, context):
+        path = bpy.path.abspath(self.filepath)
+        try:
+            context.scene.riffler.plan.take(libraries.tool(self.name, path), path)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_tool_save(bpy.types.Operator):
+    """Keep the plan's tool, with shank and holder, as a file in the tool library"""
+
+    bl_idname = "riffler.plan_tool_save"
+    bl_label = "Save Tool"
+    bl_options = {"REGISTER", "UNDO"}
+
+    name: bpy.props.StringProperty(name="Name", description="Of the tool, and of its file; empty: the one that it has")
+    folder: bpy.props.StringProperty(
+        name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"}, description="Empty: the tool library's"
+    )
+
+    def invoke(self, context, event):
+        try:
+            self.name = context.scene.riffler.plan.tool_dict().get("name", "")
+        except ValueError as error:
+            return shared.fail(self, error)
+        return context.window_manager.invoke_props_dialog(self)
+
+    def execute(self, context):
+        settings = context.scene.riffler.plan
+        folder = bpy.path.abspath(self.folder) if self.folder else ""
+        try:
+            folder = folder or libraries.target()
+            tool = riffler.Tool.from_dict(settings.tool_dict())
+            path = library.write(folder, (tool.named(self.name) if self.name else tool).to_dict())
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        settings.take(libraries.tool("", str(path)), str(path))
+        self.report({"INFO"}, f"{path} written")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_assembly(bpy.types.Operator):
+    """Give the plan's tool a shank and a holder: what must not touch the part when the tool leans"""
+
+    bl_idname = "riffler.plan_assembly"
+    bl_label = "Shank and Holder"
+    bl_options = {"REGISTER", "UNDO"}
+
+    shank: length("Shank diameter", 6.0, "In mm; 0: no shank")
+    reach: length("Reach", 40.0, "From the tip to the holder, in mm")
+    holder: length("Holder diameter", 28.0, "At its lower end, in mm; 0: no holder")
+    upper: length("Upper diameter", 32.0, "Of the holder, at its upper end, in mm")
+    height: length("Holder length", 30.0, "In mm")
+
+    def invoke(self, context, event):
+        try:
+            tool = riffler.Tool.from_dict(context.scene.riffler.plan.tool_dict())
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        self.shank = 2 * tool.shank[0][1] if tool.shank else tool.diameter
+        self.reach = tool.holder[0][0] if tool.holder else tool.length + 15
+        if tool.holder:
+            self.holder, self.upper = 2 * tool.holder[0][1], 2 * tool.holder[-1][3]
+            self.height = tool.holder[-1][2] - self.reach
+        return context.window_manager.invoke_props_dialog(self)
+
+    def execute(self, context):
+        settings = context.scene.riffler.plan
+        sizes = (self.shank, self.reach, self.holder, self.upper, self.height)
+        shank, reach, lower, upper, height = map(names.clean, sizes)
+        try:
+            tool = riffler.Tool.from_dict(settings.tool_dict())
+            if (shank or lower) and reach <= tool.length:
+                raise ValueError(f"the holder must begin above the cutter, whose length is {tool.length:g} mm")
+            tool = tool.with_shank([(tool.length, shank / 2, reach, shank / 2)] if shank else [])
+            tool = tool.with_holder([(reach, lower / 2, reach + height, upper / 2)] if lower else [])
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        settings.take(tool.to_dict())
+        return {"FINISHED"}
+
+
+CLASSES = (
+    RIFFLER_OT_plan_part,
+    RIFFLER_OT_plan_fixtures_add,
+    RIFFLER_OT_plan_fixtures_remove,
+    RIFFLER_OT_plan_tool,
+    RIFFLER_OT_plan_tool_open,
+    RIFFLER_OT_plan_tool_save,
+    RIFFLER_OT_plan_assembly,
+)

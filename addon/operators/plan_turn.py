@@ -1,0 +1,283 @@
+"""Turning the tool at the point of the path that the frame is at: by dials and handles in the view, by the map of free
+orientations, by numbers; and going to a point that is pointed at."""
+
+import math
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+from ..bl import looking, plan_store, replan, surroundings, timeline, turning, units
+from ..bl.turning import plan_object
+from ..core import quaternions, turn
+from ..drawing import cspace, force, paths
+from . import plan_keys, shared
+from .plan_work import tell, timeline_poll
+
+MAP = "MAP"
+HANDLES = (
+    (turn.INCLINATION, "Inclination", "Forward and backward, about the path's y"),
+    (turn.TILT, "Tilt", "To the left and to the right"),
+    (turn.FREE, "Free", "The tool's end goes where the pointer goes"),
+    (MAP, "Map", "To the cell of the map of free orientations that is pointed at"),
+)
+BUDGET = 2000.0  # µs for the force at a move of the pointer
+HELP = "Ctrl: steps of 5°    Shift: slowly    Numbers: degrees    Esc: as it was"
+
+
+def _spot(context, ob, path=0, point=0):
+    """The spot at the scene's frame, or of a path (from 1) and a point, and its frame. ValueError."""
+    plan = plan_store.plan(ob)
+    if not replan.fits(ob, plan):
+        raise ValueError(replan.OTHER_PATHS)
+    layout = replan.layout_of(ob, plan)
+    frame = plan_keys.frame_of(layout, path, point) if path else context.scene.frame_current_final
+    found = turning.spot(context.scene, ob, frame)
+    if found is None:
+        raise ValueError(f"Frame {frame:g} is on no path: go to one between {plan_keys.ranges(layout)}")
+    return found, frame
+
+
+class RIFFLER_OT_plan_turn(bpy.types.Operator):
+    """Turn the tool at this point of its path, and make that a key. In the view, drag a dial or the tool's end"""
+
+    bl_idname = "riffler.plan_turn"
+    bl_label = "Turn Tool"
+    bl_options = {"REGISTER", "UNDO", "BLOCKING"}
+
+    inclination: FloatProperty(
+        name="Inclination",
+        subtype="ANGLE",
+        min=-math.pi,
+        max=math.pi,
+        description="How far the tool leans forward along the path",
+    )
+    tilt: FloatProperty(
+        name="Tilt",
+        subtype="ANGLE",
+        min=-math.pi / 2,
+        max=math.pi / 2,
+        description="How far the tool leans to the left of the path",
+    )
+    relative: BoolProperty(name="Relative", description="The angles are added to those the tool has")
+    path: IntProperty(name="Path", min=0, options={"SKIP_SAVE"}, description="Number of the path; 0: that of the frame")
+    point: IntProperty(name="Point", min=0, options={"SKIP_SAVE"}, description="Of the path, from 0; with a path")
+    handle: EnumProperty(name="Handle", items=HANDLES, default=turn.FREE, options={"HIDDEN", "SKIP_SAVE"})
+
+    _turn = None
+
+    @classmethod
+    def poll(cls, context):
+        return timeline_poll(cls, context)
+
+    def draw(self, context):
+        shared.draw_fields(self, ("inclination", "tilt", "relative"))
+
+    def execute(self, context):
+        try:
+            ob = plan_object(context)
+            spot, frame = _spot(context, ob, self.path, self.point)
+            angles = turn.cleaned(self.inclination), turn.cleaned(self.tilt)
+            if self.relative:
+                angles = turn.within(*np.add(spot.line.lean(spot.index, spot.axis), angles))
+            plan_keys.set_key(context.scene, ob, frame, axis=spot.line.axis(spot.index, *angles))
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        return self._say(context, ob, frame, angles)
+
+    def _say(self, context, ob, frame, angles):
+        """What came of it; how the tool stands only where somebody has looked around before."""
+        near = surroundings.known(ob)
+        if near is None or replan.state(ob).problems:
+            return tell(self, ob)
+        spot = turning.spot(context.scene, ob, frame)
+        state = looking.state(context.scene, near, spot, spot.axis)
+        self.report({"INFO" if state.free else "WARNING"}, f"{turn.said(*angles)}: {state}")
+        return {"FINISHED"}
+
+    # ------------------------------------------------------------------ in a window
+    def invoke(self, context, event):
+        at = event.mouse_region_x, event.mouse_region_y
+        if self.handle == MAP:
+            angles = cspace.angles_at(context, at)
+            if angles is None:
+                return {"PASS_THROUGH"}
+            self.inclination, self.tilt, self.relative = *angles, False
+            return self.execute(context)
+        if bpy.app.background or context.region_data is None:
+            return self.execute(context)
+        try:
+            ob = plan_object(context)
+            spot, _ = _spot(context, ob)
+            view = turning.sight(context, context.region, context.region_data)
+            radius = turning.reach(context, view, spot.centre)
+            self._turn = turn.Turn(spot.line, spot.index, self._axis(context, spot), self.handle, view.ray(*at), radius)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        self._ob, self._path, self._index = ob.name, spot.path, spot.index
+        tool = spot.plan.tool
+        mm = units.mm_per_unit(context.scene)
+        self._shown = force.begin(
+            context.scene.riffler.sculpt.limit, tool.diameter / 2, np.diag([1 / mm, 1 / mm, 1 / mm, 1.0])
+        )
+        try:
+            self._follow(context)
+        except shared.ERRORS as error:
+            self.cancel(context)
+            return shared.fail(self, error)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def _axis(self, context, spot):
+        """As the tool is seen: somebody may have turned it by R."""
+        tool, ghost = timeline.pair(spot.ob)
+        if tool.constraints.get(timeline.TURN) and tool.constraints[timeline.TURN].influence == 0:
+            return quaternions.axes_of(timeline.stands(context.scene, tool, ghost))
+        return spot.axis
+
+    def modal(self, context, event):
+        if event.type in ("ESC", "RIGHTMOUSE") and event.value == "PRESS":
+            self.cancel(context)
+            return {"CANCELLED"}
+        if event.type in ("RET", "NUMPAD_ENTER") or (event.type == "LEFTMOUSE" and event.value == "RELEASE"):
+            return self._done(context)
+        try:
+            if event.type == "MOUSEMOVE":
+                view = turning.sight(context, context.region, context.region_data)
+                ray = view.ray(event.mouse_region_x, event.mouse_region_y)
+                self._turn.move(ray, slow=event.shift, snap=event.ctrl)
+                self._follow(context)
+            elif event.value == "PRESS" and self._turn.type(event.type, event.unicode or event.ascii):
+                self._follow(context)
+        except shared.ERRORS as error:
+            self.cancel(context)
+            return shared.fail(self, error)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """The tool is as it was; Blender calls it too, when another file is opened."""
+        self._end(context)
+        ob = bpy.data.objects.get(self._ob)
+        if ob is not None and timeline.pair(ob) is not None:
+            turning.release(context.scene, ob)
+
+    def _done(self, context):
+        angles, turned = self._turn.angles, self._turn.turned
+        self.cancel(context)
+        if not turned:
+            return {"CANCELLED"}
+        self.inclination, self.tilt = angles
+        self.relative = False
+        return self.execute(context)
+
+    def _end(self, context):
+        turning.held = None
+        force.end()
+        if context.area is not None:
+            context.area.header_text_set(None)
+            context.area.tag_redraw()
+
+    def _follow(self, context):
+        """Shows the tool as it is turned, what pushes it, and how it stands."""
+        ob = bpy.data.objects.get(self._ob)
+        spot = turning.spot(context.scene, ob)
+        if spot is None or (spot.path, spot.index) != (self._path, self._index):
+            raise ValueError("The plan or the frame has changed: the tool is as it was")
+        turning.held = axis = self._turn.axis
+        said = turn.said(*self._turn.angles)
+        try:
+            pose = turn.stand(spot.line, spot.index, axis, spot.plan.tool)
+        except ValueError as error:  # a bull-nosed cutter does not reach a valley at any angle
+            context.area.header_text_set(f"{said}: {error}    {HELP}")
+            return
+        turning.hand(context.scene, spot, pose)
+        state = self._look(context, spot, pose)
+        typed = f"  [{self._turn.typed}°]" if self._turn.typed else ""
+        context.area.header_text_set(f"{said}{typed}: {state}    {HELP}")
+        context.area.tag_redraw()
+
+    def _look(self, context, spot, pose):
+        near = surroundings.known(spot.ob)
+        if near is None:
+            try:
+                near = surroundings.ask(context, spot.ob)
+            except ValueError as error:
+                return str(error)
+        if near is None:
+            return "looking at the part …"
+        contact = near.collider.query(spot.plan.tool, pose, budget_us=BUDGET)
+        self._shown.pose, self._shown.force, self._shown.torque = pose, contact.force, contact.torque
+        clearance = units.clean(context.scene.riffler.plan.clearance)
+        return near.state(spot.plan.tool, pose, spot.plan.tolerance or 0.01, clearance)
+
+
+class PointsAt:
+    """Mixin of operators for a point of a path: one that is given, or the one under the pointer."""
+
+    path: IntProperty(name="Path", default=0, min=0, description="Number of the path; 0: that of the frame")
+    point: IntProperty(name="Point", default=0, min=0, description="Of the path, from 0; where a path is given")
+
+    @classmethod
+    def poll(cls, context):
+        return timeline_poll(cls, context)
+
+    def invoke(self, context, event):
+        if context.region_data is None:
+            return self.execute(context)
+        found = paths.under(context, (event.mouse_region_x, event.mouse_region_y))
+        if found is None:
+            return {"PASS_THROUGH"}
+        self.path, self.point = found.path + 1, found.index
+        return self.execute(context)
+
+    def _go(self, context):
+        spot, frame = _spot(context, plan_object(context), self.path, self.point)
+        context.scene.frame_set(int(frame // 1), subframe=frame % 1)
+        return spot, frame
+
+
+class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
+    """Go to the frame at which the tool is at this point of its path"""
+
+    bl_idname = "riffler.plan_point"
+    bl_label = "Go to Point of Path"
+    bl_options = {"REGISTER"}  # going to a frame is no step of undo in Blender
+
+    def execute(self, context):
+        try:
+            self._go(context)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_point_key(PointsAt, bpy.types.Operator):
+    """Set a key at this point of the path: the free orientation that leans least, or, where there is no part to look
+    at, the one it has"""
+
+    bl_idname = "riffler.plan_point_key"
+    bl_label = "Set Free Key at Point"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        try:
+            ob = plan_object(context)
+            spot, frame = _spot(context, ob, self.path, self.point)
+            axis, said = self._axis(context, spot)
+            plan_keys.set_key(context.scene, ob, frame, axis=axis)
+            self._go(context)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        self.report({"WARNING" if said else "INFO"}, said or turn.said(*spot.line.lean(spot.index, axis)))
+        return {"FINISHED"}
+
+    def _axis(self, context, spot):
+        if surroundings.part_of(context.scene, spot.ob) is None:
+            return spot.axis, "There is no part: the orientation is the one it was"
+        found = looking.free_orientations(context.scene, surroundings.now(context, spot.ob), spot)
+        if found.suggestion is None:
+            return spot.axis, f"No orientation is free here: {found.reason}"
+        return found.suggestion, ""
+
+
+CLASSES = (RIFFLER_OT_plan_turn, RIFFLER_OT_plan_point, RIFFLER_OT_plan_point_key)

@@ -1,0 +1,98 @@
+"""Pictures raised on a sculpt or engraved into it."""
+
+import bpy
+import numpy as np
+import riffler
+from bpy.props import StringProperty
+from riffler import shape
+
+from .. import properties
+from ..bl import forms, units
+from ..core import relief
+from ..core import units as names
+from ..core.cache import Content
+from .sculpt_work import SculptEdit
+
+FINEST = 1500  # places along a side: finer pictures than rays would be lost work
+REACH = 2.0  # pitches by which a relief reaches into what it joins
+
+
+class RIFFLER_OT_relief(properties.ReliefSettings, SculptEdit, bpy.types.Operator):
+    """Raise a picture on the sculpt, or engrave it: what is light is high, or deep"""
+
+    bl_idname = "riffler.relief"
+    bl_label = "Emboss Picture"
+
+    image: StringProperty(name="Picture", description="Name of an image in this file")
+    place: StringProperty(
+        name="Place", description="An object in whose plane z = 0 the picture lies, seen from where its z points"
+    )
+
+    def edited(self, context, ob, content):
+        volume = content.volume.copy()
+        form = forms.volume_of(self._mesh(context, ob, volume), volume)
+        if content.mask is not None:
+            form.subtract(content.mask)
+        volume.add(form) if self.mode == "RAISE" else volume.subtract(form)
+        return Content(volume, content.cuts, content.mask)
+
+    def tell(self, before, after):
+        changed = abs(after.volume.volume - before.volume.volume)
+        if self.mode == "RAISE" and not changed:
+            why = "the stock's box is full there, or protected. Engrave the picture inverted, or take a larger stock"
+            self.report({"WARNING"}, f"Nothing was put on: {why}")
+            return
+        what = "Added" if self.mode == "RAISE" else "Removed"
+        self.report({"INFO"} if changed > 0 else {"WARNING"}, f"{what} {names.format_volume(changed)}")
+
+    def _mesh(self, context, ob, volume):
+        image = bpy.data.images.get(self.image)
+        if image is None:
+            raise ValueError("choose a picture" if not self.image else f"there is no picture {self.image!r}")
+        place = forms.chosen(context, self.place, {"MESH", "EMPTY"}, "a place for the picture, a plane or an empty,")
+        heights = relief.luminance(forms.pixels(image))
+        heights = 1 - heights if self.invert else heights
+        width, depth = units.clean(self.width), units.clean(self.depth)
+        size = np.array([width, width * heights.shape[0] / heights.shape[1]])
+        points, up = self._grid(ob, place, size, volume.pitch)
+        heights = relief.fitted(heights, points.shape[1], points.shape[0]).T
+        reach = REACH * volume.pitch
+        found = np.ones(points.shape[:2], bool)
+        if self.follow:
+            points, found = _dropped(volume, points, up)
+            if not found.any():
+                raise ValueError(f"the picture's place, {place.name}, does not lie over the sculpt")
+        raised = 1.0 if self.mode == "RAISE" else -1.0
+        top, bottom, cells = relief.draped(points, found, up, heights, raised * depth, reach)
+        if not cells.any():
+            raise ValueError("the sculpt falls too steeply under the picture: turn its place")
+        return shape.slab(top, bottom, cells)
+
+    def _grid(self, ob, place, size, pitch):
+        """Places of the picture, (right, up, 3) mm in the sculpt's frame, and its unit normal."""
+        origin, right, top, up = forms.axes(ob, place)
+        count = np.clip(np.ceil(size / (0.5 * pitch)).astype(int) + 1, 2, FINEST)
+        x, y = (np.linspace(-0.5 * s, 0.5 * s, n) for s, n in zip(size, count, strict=True))
+        return origin + x[:, None, None] * right + y[None, :, None] * top, up
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop_search(self, "image", bpy.data, "images")
+        layout.prop_search(self, "place", bpy.data, "objects")
+        for key in properties.ReliefSettings.__annotations__:
+            layout.prop(self, key)
+
+
+def _dropped(volume, points, up):
+    """Where the places lie on the volume's surface, seen from above; those that look past it are not found."""
+    surface = riffler.Mesher(volume).freeze()
+    far = float(np.linalg.norm(volume.upper - volume.lower)) + float(np.abs(points).max())
+    origins = points.reshape(-1, 3) + far * up
+    distance, *_ = surface.pick(origins, np.tile(-up, (len(origins), 1)))
+    found = np.isfinite(distance)
+    places = origins - np.where(found, distance, np.nan)[:, None] * up
+    return places.reshape(points.shape), found.reshape(points.shape[:2])
+
+
+CLASSES = (RIFFLER_OT_relief,)

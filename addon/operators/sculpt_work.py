@@ -1,0 +1,64 @@
+"""Work on the active sculpt: what operators of cuts and of clay have in common."""
+
+import bpy
+
+from ..bl import live, sculpts, store
+from ..core.cache import Content
+from . import shared
+from .long import LongWork
+
+
+class SculptWork(LongWork):
+    """Mixin; a subclass makes the job from what `take` gives and ends in `keep`."""
+
+    bl_options = {"REGISTER", "UNDO"}
+    from_edits = False  # it takes over what Blender's own tools have made of the mesh
+
+    @classmethod
+    def poll(cls, context):
+        return shared.sculpt_poll(cls, context)
+
+    def take(self, context):
+        """(object, content) of the active sculpt; the content must not be changed."""
+        live.end_all()
+        ob = sculpts.active(context)
+        if not self.from_edits and sculpts.edited(ob.data):
+            self.report({"WARNING"}, "The mesh had been edited: this starts from the volume, the edits are gone")
+        self._object, self._identity = ob.name, store.identity(ob.data)
+        return ob, store.content(ob.data)
+
+    def lost(self, context):
+        ob = bpy.data.objects.get(self._object)
+        if sculpts.is_sculpt(ob) and store.identity(ob.data) == self._identity:
+            return ""
+        return f"{self.doing} cancelled: the sculpt was changed or removed meanwhile"
+
+    @property
+    def mesh(self):
+        return bpy.data.objects[self._object].data
+
+    def keep(self, volume, cuts, mask):
+        sculpts.commit(self.mesh, Content(volume, cuts, mask), sculpts.shown_mm_per_unit(self.mesh))
+
+
+class SculptEdit:
+    """Mixin of what is done in one go. A subclass has `edited(context, ob, content)`, the Content that the sculpt is to
+    have, or one of shared.ERRORS where it cannot be; and `tell(before, after)`, which reports what was done."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return shared.sculpt_poll(cls, context)
+
+    def execute(self, context):
+        ob = sculpts.active(context)
+        try:
+            live.end_all()
+            before = store.content(ob.data)
+            after = self.edited(context, ob, before)
+            sculpts.commit(ob.data, after, sculpts.shown_mm_per_unit(ob.data))
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
+        self.tell(before, after)
+        return {"FINISHED"}

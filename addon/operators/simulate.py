@@ -1,0 +1,84 @@
+"""A program is simulated: its stock follows the timeline, forwards and back."""
+
+import bpy
+
+from .. import properties
+from ..bl import programs, simulating
+from ..core import units as names
+from . import shared
+
+_keys = []  # (keymap, item) that were added
+
+
+def program_poll(cls, context):
+    """True where there may be a program on a stock."""
+    if not shared.object_mode(cls, context):
+        return False
+    if programs.stock_object(context) is None:
+        return shared.deny(cls, "There is no stock: select a sculpt, or make one that the part lies in")
+    return True
+
+
+class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
+    """Show the stock as the program leaves it at the current frame: play, or drag the frame. Esc in the view ends it"""
+
+    bl_idname = "riffler.simulate"
+    bl_label = "Simulate"
+    bl_options = {"REGISTER"}  # what is shown is no step of undo
+
+    @classmethod
+    def poll(cls, context):
+        return program_poll(cls, context) and not shared.busy(cls, context, simulation=False)
+
+    def execute(self, context):
+        try:
+            simulating.end()
+            setup = programs.take(context, self)
+            now = simulating.begin(context, setup)
+            if now is None:
+                raise ValueError(context.window_manager.riffler.notice)
+        except shared.ERRORS as error:
+            simulating.end()
+            return shared.fail(self, error)
+        first, last = now.course.first, now.course.last
+        context.scene.frame_end = max(context.scene.frame_end, last)
+        count = names.format_count(len(setup.program.poses))
+        self.report({"INFO"}, f"{setup.name}: {count} rows at frames {first} to {last}. Esc in the view ends it")
+        return {"FINISHED"}
+
+    def invoke(self, context, event):
+        return self.execute(context)
+
+
+class RIFFLER_OT_simulate_stop(bpy.types.Operator):
+    """End the simulation: the stock is seen as it is"""
+
+    bl_idname = "riffler.simulate_stop"
+    bl_label = "End Simulation"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        if simulating.active() is None:
+            return shared.deny(cls, "Nothing is being simulated")
+        return True
+
+    def execute(self, context):
+        simulating.end()
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_simulate, RIFFLER_OT_simulate_stop)
+
+
+def attach():
+    configuration = bpy.context.window_manager.keyconfigs.addon
+    if configuration is not None:  # there is none without a window
+        keymap = configuration.keymaps.new(name="3D View", space_type="VIEW_3D")
+        _keys.append((keymap, keymap.keymap_items.new(RIFFLER_OT_simulate_stop.bl_idname, "ESC", "PRESS")))
+
+
+def detach():
+    while _keys:
+        keymap, item = _keys.pop()
+        keymap.keymap_items.remove(item)

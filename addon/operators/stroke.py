@@ -1,0 +1,237 @@
+"""A stroke of the sculpt tool: from the press of a button to its release, of a mouse or a tablet's pen.
+
+The same stroke can be made from a script: `stroke` is what Brush.text says of one that was made (`last`).
+"""
+
+import time
+
+import bpy
+import riffler
+
+from ..bl import fixtures, live, sculpts
+from ..core import brush, units
+from ..core.stroke import Sample
+from ..drawing import force, pointer
+from . import shared
+
+LOOK = 1 / 30  # s from one look to the next
+MODES = (
+    ("REMOVE", "Carve", "Take material away"),
+    ("ADD", "Add", "Put material on"),
+    ("SOFTEN", "Smooth", "Smooth the surface"),
+    ("MASK", "Mask", "Protect what the tool sweeps"),
+    ("UNMASK", "Unmask", "Protect it no more"),
+)
+MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
+LIFTED = {"remove", "soften"}  # what a tool does from outside; fixtures are in its way
+
+_held = None  # the operator whose stroke is being made in a window
+last = ""  # the newest stroke that was made by hand, for riffler.stroke(stroke=…)
+
+
+class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
+    """Sculpt where the pointer goes. Esc or the right button takes the stroke back"""
+
+    bl_idname = "riffler.stroke"
+    bl_label = "Sculpt Stroke"
+    bl_options = {"UNDO"}  # not REGISTER: changed settings would need the hand again
+    _run, _fresh = None, False  # the live sculpt; whether this stroke has made one of it
+
+    mode: bpy.props.EnumProperty(
+        name="Mode", items=MODES, default="REMOVE", options={"SKIP_SAVE"}, description="What the tool does"
+    )
+    stroke: bpy.props.StringProperty(
+        name="Stroke",
+        options={"HIDDEN", "SKIP_SAVE"},
+        description="JSON of a view (matrix: 16 numbers, mm of the sculpt to clip space; size: pixels), rows (x, y, "
+        "pressure, tilt_x, tilt_y, time) and looks (after how many rows the tool follows what is cut)",
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return shared.sculpt_poll(cls, context)
+
+    def execute(self, context):
+        if not self.stroke:
+            return shared.fail(self, ValueError("stroke: say how the tool goes, as there is no pointer to follow"))
+        try:
+            view, samples, looks = brush.read(self.stroke)
+            self._take_up(context)
+            self._start(context, view)
+        except (*shared.ERRORS, TypeError) as error:
+            self._undone()
+            return shared.fail(self, error)
+        try:
+            brush.replay(self._brush, samples, looks)
+        except shared.ERRORS as error:
+            self._undone()
+            return shared.fail(self, error)
+        return self._finish(context)
+
+    def invoke(self, context, event):
+        global _held
+        if self.stroke or bpy.app.background or context.region_data is None:
+            return self.execute(context)
+        context.window.cursor_modal_set("WAIT")  # the first stroke brings the sculpt into chunks
+        try:
+            self._take_up(context)
+            self._start(context, pointer.sight(context.region, context.region_data, self._run))
+        except (*shared.ERRORS, TypeError) as error:
+            self._undone()
+            return shared.fail(self, error)
+        finally:
+            context.window.cursor_modal_restore()
+        settings = context.scene.riffler.sculpt
+        self._region = context.region.x, context.region.y
+        self._begin = self._looked = time.perf_counter()
+        self._dirty = False
+        self._shown = None
+        if settings.show_force:
+            limit = units.clean(settings.limit)
+            self._shown = force.begin(limit, self._brush.tool.diameter, self._run.to_world)
+        pointer.held = self._brush
+        self._timer = context.window_manager.event_timer_add(LOOK, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        _held = self
+        return self._step(context, event)
+
+    def modal(self, context, event):
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            return self._give_up(context)
+        if event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            return self._end(context)
+        if event.type in MOVES or event.type == "TIMER":
+            return self._step(context, event)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender calls it when the window closes."""
+        self._give_up(context)
+
+    # ------------------------------------------------------------------ the parts of a stroke
+    def _take_up(self, context):
+        ob = sculpts.active(context)
+        self._fresh = live.of(ob) is None
+        edited = self._fresh and sculpts.edited(ob.data)
+        self._run = live.begin(context, ob)
+        if edited:
+            self.report({"WARNING"}, "The mesh had been edited: the stroke starts from the volume, the edits are gone")
+
+    def _start(self, context, view):
+        ob = sculpts.active(context)
+        settings, mode = context.scene.riffler.sculpt, self.mode.lower()
+        self._run.maps, self._run.strength = settings.maps(), units.clean(settings.strength)
+        tool, keep_out = self.tool_dict(context), None
+        if settings.fixtures is not None and mode in LIFTED:
+            obstacle = fixtures.collider(context, settings.fixtures, self._run.to_mm, {ob.name})
+            if obstacle is not None:
+                keep_out = fixtures.keeper(riffler.Tool.from_dict(tool), obstacle)
+        self._brush = brush.Brush(self._run, tool, view, settings.choice(mode), keep_out)
+
+    def _step(self, context, event):
+        try:
+            if event.type != "TIMER":
+                self._dirty |= self._brush.add(self._sample(event))
+            now = time.perf_counter()
+            if self._dirty and now - self._looked >= LOOK:
+                self._looked, self._dirty = now, False
+                self._brush.look()
+                self._tell(context)
+        except shared.ERRORS as error:
+            self._give_up(context)
+            return shared.fail(self, error)
+        return {"RUNNING_MODAL"}
+
+    def _sample(self, event):
+        x, y = event.mouse_x - self._region[0], event.mouse_y - self._region[1]
+        pressure, lean = (event.pressure, event.tilt) if event.is_tablet else (1.0, (0.0, 0.0))
+        # A tablet's second tilt grows towards whoever holds the pen: down the view (GHOST_TabletData).
+        return Sample(x, y, pressure, lean[0], -lean[1], time.perf_counter() - self._begin)
+
+    def _tell(self, context):
+        made = self._brush
+        if self._shown is not None and made.pose is not None:
+            self._shown.pose, self._shown.force, self._shown.torque = made.pose, made.force, made.torque
+        if context.workspace is not None:
+            context.workspace.status_text_set(f"Riffler: {summary(made, self.mode)}    Esc: take the stroke back")
+
+    def _end(self, context):
+        global last
+        try:
+            self._brush.end()
+        except shared.ERRORS as error:
+            self._give_up(context)
+            return shared.fail(self, error)
+        last = self._brush.text()
+        self._leave(context)
+        return self._finish(context)
+
+    def _finish(self, context):
+        """The stroke becomes a state; Blender makes the undo step of what has finished."""
+        try:
+            changed = self._run.finish_stroke(context)
+        except shared.ERRORS as error:
+            self._undone()
+            return shared.fail(self, error)
+        if changed:
+            return {"FINISHED"}
+        self._undone()
+        self.report({"INFO"}, nothing(self._brush, self.mode))
+        return {"CANCELLED"}
+
+    def _give_up(self, context):
+        self._leave(context)
+        self._undone()
+        return {"CANCELLED"}
+
+    def _undone(self):
+        """Chunks that this stroke has brought go with it: no undo step has them, and Blender crashes in the next undo
+        over objects that none has."""
+        if self._run is None:
+            return
+        self._run.cancel_stroke()
+        if self._fresh:
+            self._run.end()
+
+    def _leave(self, context):
+        """Takes back what is there only while a stroke is made."""
+        global _held
+        _held = pointer.held = None
+        force.end()
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        if context.area is not None:
+            context.area.tag_redraw()  # the arrows go
+
+
+def summary(made, mode):
+    what = {"REMOVE": "removed", "ADD": "put on", "MASK": "protected", "UNMASK": "unprotected"}.get(mode, "changed")
+    lifted = f", {units.format_count(made.lifted)} moves lifted over fixtures" if made.lifted else ""
+    return f"{units.format_volume(made.removed)} {what} in {units.format_count(made.moves)} moves{lifted}"
+
+
+def nothing(made, mode):
+    """Why a stroke changed nothing."""
+    if made.moves == 0 and made.lifted:
+        return "The fixtures kept the tool out"
+    if made.moves == 0:
+        return "The stroke did not meet the sculpt"
+    if mode == "ADD":
+        return "Nothing was put on: the stock's box is full there, or protected. New stock with a larger box has room"
+    return "The stroke changed nothing: what it met is protected, or there was nothing left to change"
+
+
+CLASSES = (RIFFLER_OT_stroke,)
+
+
+def detach():
+    """A stroke that is being made is given up: Blender drops its operator without a word."""
+    if _held is not None:
+        _held._give_up(bpy.context)
+    force.end()
+    pointer.held = None
+    pointer.kept.clear()
+    force.kept.clear()

@@ -1,0 +1,148 @@
+"""The add-on's preferences: what belongs to the machine and to who sits at it, not to a file."""
+
+import bpy
+import riffler
+from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from . import properties
+from .bl import chosen
+from .core import diagnosis
+from .operators import doctor
+from .ui import keymaps
+
+HID = (
+    "Pens and pucks are HID devices. Blender has no permission that an extension could ask for them: Riffler opens one "
+    "while a session runs, and asks those that it knows who they are for the report below. Where the system refuses, "
+    "the report has the line that lets you, and where it goes."
+)
+SPACEMOUSE = (
+    "Blender reads a SpaceMouse, too: while it sculpts, it may also turn the view. Preferences, Input, NDOF has what "
+    "Blender does with it."
+)
+
+
+def _use_threads(self, _):
+    riffler.set_threads(self.threads or None)
+
+
+def _made_absolute(name):
+    """Blender may choose a folder beside the open file; preferences are for all files."""
+
+    def update(self, _):
+        text = getattr(self, name)
+        if text.startswith("//"):
+            setattr(self, name, bpy.path.abspath(text))
+
+    return update
+
+
+def _folder(name, label, description):
+    return StringProperty(name=label, subtype="DIR_PATH", description=description, update=_made_absolute(name))
+
+
+class RifflerPreferences(bpy.types.AddonPreferences):
+    bl_idname = __package__
+
+    device: EnumProperty(
+        name="Device",
+        items=[d for d in properties.DEVICES if d[0] != properties.RECORDING],
+        default="simulated",
+        description="What the hand holds where a scene does not say otherwise",
+    )
+    force: FloatProperty(
+        name="Force limit (N)",
+        default=5.0,
+        min=0.0,
+        max=20.0,
+        precision=1,
+        step=10,
+        description="The most that any session lets through to the hand, whatever the device can do; 0: none",
+    )
+    torque: FloatProperty(
+        name="Torque limit (N·mm)",
+        default=300.0,
+        min=0.0,
+        max=1200.0,
+        precision=0,
+        step=1000,
+        description="The most that any session lets through to the hand, whatever the device can do; 0: none",
+    )
+    power: FloatProperty(
+        name="Power limit (W)",
+        default=2.0,
+        min=0.0,
+        max=20.0,
+        precision=1,
+        step=10,
+        description="The most that any session gives to the moving hand; 0: none",
+    )
+    threads: IntProperty(
+        name="Threads",
+        default=0,
+        min=0,
+        max=256,
+        update=_use_threads,
+        description="Of long calculations; 0: as many as there are processors. Results are the same for any number",
+    )
+    journals: _folder(
+        "journals", "Journals", "Where strokes are kept until the file is saved, for recovery; empty: the folder below"
+    )
+    tools: _folder("tools", "Tools", "Tool files that everybody shares, say; empty: the folder below")
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        width = max(40, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 12)
+        self._device(layout, width)
+        self._machine(layout)
+        keymaps.draw(layout.column(), context)
+        self._report(layout, width)
+
+    def _device(self, layout, width):
+        column = layout.column()
+        column.prop(self, "device")
+        most = column.column(align=True)
+        for name in ("force", "torque", "power"):
+            most.prop(self, name)
+        notes = column.column(align=True)
+        notes.scale_y = 0.8
+        for text in (HID, SPACEMOUSE):
+            for k, line in enumerate(diagnosis.wrap(text, width)):
+                notes.label(text=line, icon="INFO" if k == 0 else "BLANK1")
+
+    def _machine(self, layout):
+        column = layout.column()
+        column.prop(self, "threads")
+        for name in ("journals", "tools"):
+            column.prop(self, name)
+            row = column.split(factor=0.4)
+            row.label(text="")
+            try:
+                there = chosen.target(name)
+            except FileNotFoundError as error:
+                row.label(text=str(error), icon="ERROR")
+            else:
+                row.label(text=str(there), icon="FILE_FOLDER")
+
+    def _report(self, layout, width):
+        layout.operator(doctor.RIFFLER_OT_doctor.bl_idname, icon="COPYDOWN")
+        if doctor.last:
+            box = layout.box().column(align=True)
+            box.scale_y = 0.8
+            for entry in doctor.last.splitlines():
+                for k, line in enumerate(diagnosis.wrap(entry, width)):
+                    box.label(text=line if k == 0 else f"   {line}")
+
+
+CLASSES = (RifflerPreferences,)
+
+
+def attach():
+    found = chosen.preferences()
+    if found is not None:
+        _use_threads(found, None)
+
+
+def detach():
+    riffler.set_threads(None)

@@ -1,0 +1,87 @@
+"""What the add-on keeps on scenes, objects, meshes and the window manager. Lengths in mm, angles in rad.
+
+A module has the fields of one topic; here they are put together, and attached to what owns them.
+"""
+
+import bpy
+from bpy.props import PointerProperty
+
+from .clay import ReliefSettings, RifflerClay
+from .cut import CutSettings, NcSettings, RifflerCut, RifflerNc
+from .pen import DEVICES, PREFERRED, RECORDING, PenProgress, PenSettings, RifflerPen
+from .plan import WITH_SURFACE, FindSettings, RifflerFinding, RifflerPlan, RifflerPlanObject
+from .progress import WorkProgress
+from .result import ResultSettings, RifflerResult
+from .sculpt import RifflerSculpt
+from .stock import RifflerMesh, RifflerObject, RifflerStock, StockSettings
+from .tool import RifflerTool
+from .verify import ProgramSettings, RifflerVerify, VerifySettings
+
+__all__ = [
+    "DEVICES",
+    "PREFERRED",
+    "RECORDING",
+    "WITH_SURFACE",
+    "CutSettings",
+    "FindSettings",
+    "NcSettings",
+    "PenSettings",
+    "ProgramSettings",
+    "ReliefSettings",
+    "ResultSettings",
+    "StockSettings",
+    "VerifySettings",
+]
+
+
+class RifflerScene(bpy.types.PropertyGroup):
+    stock: PointerProperty(type=RifflerStock)
+    tool: PointerProperty(type=RifflerTool)
+    cut: PointerProperty(type=RifflerCut)
+    nc: PointerProperty(type=RifflerNc)
+    pen: PointerProperty(type=RifflerPen)
+    clay: PointerProperty(type=RifflerClay)
+    result: PointerProperty(type=RifflerResult)
+    plan: PointerProperty(type=RifflerPlan)
+    sculpt: PointerProperty(type=RifflerSculpt)
+    verify: PointerProperty(type=RifflerVerify)
+
+
+class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
+    """On the window manager: what runs now."""
+
+
+CLASSES = (
+    RifflerStock,
+    RifflerTool,
+    RifflerCut,
+    RifflerNc,
+    RifflerPen,
+    RifflerClay,
+    RifflerResult,
+    RifflerFinding,
+    RifflerPlan,
+    RifflerSculpt,
+    RifflerVerify,
+    RifflerScene,
+    RifflerMesh,
+    RifflerPlanObject,
+    RifflerObject,
+    RifflerProgress,
+)
+_OWNERS = (
+    (bpy.types.Scene, RifflerScene),
+    (bpy.types.Mesh, RifflerMesh),
+    (bpy.types.Object, RifflerObject),
+    (bpy.types.WindowManager, RifflerProgress),
+)
+
+
+def attach():
+    for owner, group in _OWNERS:
+        owner.riffler = PointerProperty(type=group)
+
+
+def detach():
+    for owner, _ in _OWNERS:
+        del owner.riffler

@@ -1,0 +1,127 @@
+"""What a plan is made for, with what, and how; and what a plan's objects keep."""
+
+import json
+import zlib
+
+import bpy
+import riffler
+from bpy.props import (
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from ..core import presets
+from .fields import length
+
+# The numbers are what a .blend keeps: those of a machine stay when another machine is added.
+MACHINES = tuple((m, m, what, "NONE", zlib.crc32(m.encode()) >> 1) for m, what in riffler.machines().items())
+# Objects that have a surface, or may have one.
+WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+
+SHOWN = (
+    ("CONTACTS", "Contacts", "Where the cutter touches the part, on both sides of each path", 1),
+    ("NORMALS", "Normals", "Of the part at the contacts", 2),
+    ("AXES", "Axes", "Of the tool along each path; those of keys stand out", 4),
+)
+
+
+class FindSettings:
+    """Shared by the panel's settings and the operator."""
+
+    tolerance: length(
+        "Tolerance",
+        0.01,
+        "Of the paths, in mm; a valley that is no deeper below the ball is taken for a faceted one",
+        1e-4,
+        10.0,
+    )
+    minimum_length: length("Shortest", 0.0, "Paths that are shorter are left out, in mm")
+    passes: IntProperty(
+        name="Passes",
+        default=1,
+        min=1,
+        max=100,
+        description="1: along each valley only; each one more adds a path on either side of it",
+    )
+    stepover: length("Stepover", 0.0, "Between two passes, in mm; 0: what leaves ridges of the tolerance")
+
+
+class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
+    """On a scene. The tool is kept whole, so that a plan can be made anew where its file is gone."""
+
+    part: PointerProperty(
+        name="Part",
+        type=bpy.types.Object,
+        poll=lambda _, ob: ob.type in WITH_SURFACE,
+        description="The finished part, as it lies in the scene",
+    )
+    fixtures: PointerProperty(
+        name="Fixtures",
+        type=bpy.types.Collection,
+        description="Vises, clamps and whatever else the tool must stay clear of",
+    )
+    tool: StringProperty(name="Tool", description="Cutter, shank and holder as JSON", default="")
+    source: StringProperty(name="From", description="The file that the tool was taken from; empty: the presets")
+    clearance: length("Clearance", 0.0, "That the whole tool keeps from part and fixtures beside its cut, in mm")
+    feed: length("Feed", 800.0, "mm/min at the tip", 0.001, 1e6)
+    spindle: FloatProperty(name="Spindle", default=12000.0, min=0.0, max=1e6, precision=0, description="rev/min")
+    show: EnumProperty(
+        name="Show",
+        items=SHOWN,
+        options={"ENUM_FLAG"},
+        default={"CONTACTS", "AXES"},
+        description="What is drawn of the active plan while the Orient tool is chosen",
+    )
+    post: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="That the NC code is written for")
+
+    options: StringProperty(
+        name="Options",
+        description='Of the machine, as JSON: {"max_rotary": 3600, "coolant": true}; docs/machines.md has them all',
+    )
+
+    def tool_dict(self):
+        """The form of riffler.Tool.to_dict. ValueError where the text is none."""
+        if not self.tool:
+            return presets.preset(presets.presets()[0]["name"])
+        tool = json.loads(self.tool)
+        if not isinstance(tool, dict):
+            raise ValueError("the plan's tool is no JSON object: take one from a library")
+        return tool
+
+    def take(self, tool, source=""):
+        self.tool = json.dumps(tool, ensure_ascii=False)
+        self.source = source
+
+
+class RifflerFinding(bpy.types.PropertyGroup):
+    """One line of a list. `path` and `point`: of the plan, from 0; -1: it is about a program's row. `place`: mm of the
+    scene."""
+
+    name: StringProperty()
+    kind: StringProperty()
+    path: IntProperty(default=-1)
+    point: IntProperty(default=-1)
+    row: IntProperty(default=-1)
+    line: IntProperty()
+    frame: FloatProperty()
+    place: FloatVectorProperty(size=3)
+
+
+class RifflerPlanObject(bpy.types.PropertyGroup):
+    """On a plan's Empty: where the plan is, and what a panel shows without reading it. On its curves: which path they
+    show."""
+
+    store: PointerProperty(type=bpy.types.Image)
+    part: PointerProperty(type=bpy.types.Object)
+    paths: IntProperty()
+    length: FloatProperty()
+    tool: StringProperty()
+    path: IntProperty(default=-1)
+    findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
+    index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")

@@ -1,0 +1,31 @@
+"""The interface in other languages: <code of the language>.json has what is said in English, and how it is there.
+
+Blender looks in the table for labels, tooltips and why a button is grey; what is not there stays English. A message
+that has numbers or names in it is made when it is said, and stays English, too.
+"""
+
+import json
+from pathlib import Path
+
+import bpy
+
+CLASSES = ()
+FOLDER = Path(__file__).resolve().parent
+CONTEXTS = ("*", "Operator")  # buttons of operators have a context of their own
+
+
+def table():
+    """As bpy.app.translations.register takes it."""
+    found = {}
+    for path in sorted(FOLDER.glob("*.json")):
+        texts = json.loads(path.read_text(encoding="utf-8"))
+        found[path.stem] = {(context, text): said for text, said in texts.items() for context in CONTEXTS}
+    return found
+
+
+def attach():
+    bpy.app.translations.register(__name__, table())
+
+
+def detach():
+    bpy.app.translations.unregister(__name__)

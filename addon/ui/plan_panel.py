@@ -1,0 +1,188 @@
+"""The plan's tab: part, fixtures, tool, settings, what is missing, and what has been found. Drawing reads properties,
+and what operators/plan_watch.py knows already."""
+
+import bpy
+import riffler
+
+from .. import properties
+from ..bl import libraries, parts, plan_store, tool_pictures, versions
+from ..bl.turning import plan_object
+from ..core import library
+from ..core import units as names
+from ..operators import plan_find, plan_setup, plan_watch, shared
+from .panels import Sidebar, give, lines
+from .pen_panel import wrapped
+
+PICTURE = 4.5  # lines that a tool's picture is high
+
+
+class Tab(Sidebar):
+    """Mixin of the tab's panels."""
+
+    bl_category = "Riffler Plan"
+
+
+class OfPlan(Tab):
+    """Mixin of those that are there where there is a plan."""
+
+    @classmethod
+    def poll(cls, context):
+        return plan_object(context) is not None
+
+
+class RIFFLER_MT_plan_tools(bpy.types.Menu):
+    bl_idname = "RIFFLER_MT_plan_tools"
+    bl_label = "Tool Library"
+
+    def draw(self, context):
+        layout = self.layout
+        take = plan_setup.RIFFLER_OT_plan_tool.bl_idname
+        entries, problems = libraries.files()
+        for entry in (*entries, *library.shipped()):
+            op = layout.operator(take, text=entry.name, icon_value=tool_pictures.icon(entry.tool))
+            op.name, op.path = entry.name, str(entry.path or "")
+        layout.separator()
+        layout.operator(take, text="Cutter of the Tool Panel", icon="FORWARD").sculpting = True
+        layout.operator(plan_setup.RIFFLER_OT_plan_tool_open.bl_idname, text="Open File…", icon="FILEBROWSER")
+        for problem in problems:
+            layout.label(text=problem, icon="ERROR")
+
+
+class RIFFLER_PT_plan(Tab, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_plan"
+    bl_label = "Pencil Cuts (mm)"
+
+    def draw(self, context):
+        layout = self.layout
+        ob = plan_store.active(context)
+        state = context.window_manager.riffler
+        if ob is not None:
+            self._plan(layout, context, ob)
+        self._next(layout, context, ob)
+        if state.running:
+            versions.progress(layout, state)
+            layout.label(text=state.text)
+            return
+        column = layout.column(align=True)
+        column.use_property_split = True
+        column.use_property_decorate = False
+        for key in properties.FindSettings.__annotations__:
+            column.prop(context.scene.riffler.plan, key)
+        self._find(layout, context, "")
+        if ob is not None:
+            self._find(layout, context, ob.name)
+
+    def _plan(self, layout, context, ob):
+        p = ob.riffler.plan
+        layout.label(text=ob.name, icon="CURVE_DATA")
+        part = p.part.name if p.part else "a part that is gone"
+        count = f"Paths: {names.format_count(p.paths)}, {names.trim(p.length, 1)} mm"
+        lines(layout, count, *wrapped(context, f"On {part} with {p.tool}"))
+        verdict = plan_watch.known(context, ob)
+        if verdict is None:
+            return
+        if verdict.part:
+            lines(layout, *wrapped(context, f"{verdict.part}. Find the paths again."), icon="ERROR")
+        if verdict.edited:
+            edits = f"Curves that were edited or are gone: {names.format_count(verdict.edited)}. The plan is as it was."
+            lines(layout, *wrapped(context, edits), icon="ERROR")
+            layout.operator(plan_find.RIFFLER_OT_plan_show.bl_idname, icon="FILE_REFRESH")
+
+    def _next(self, layout, context, ob):
+        """What is missing for a search, and what comes next."""
+        settings = context.scene.riffler.plan
+        if why := parts.unfit(settings.part, context.scene):
+            lines(layout, *wrapped(context, f"{why}."), icon="INFO")
+        elif ob is None:
+            plans = plan_store.in_scene(context.scene)
+            said = "Select one of the plans, or find another." if plans else "Next: find the pencil cuts."
+            lines(layout, *wrapped(context, said), icon="INFO")
+
+    def _find(self, layout, context, replace):
+        text, icon = ("Find Again", "FILE_REFRESH") if replace else ("Find Pencil Cuts", "VIEWZOOM")
+        op = layout.operator(plan_find.RIFFLER_OT_plan_find.bl_idname, text=text, icon=icon)
+        op.replace = replace
+        give(op, context.scene.riffler.plan, properties.FindSettings)
+
+
+class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_plan_part"
+    bl_label = "Part and Fixtures"
+
+    def draw(self, context):
+        layout = self.layout
+        settings = context.scene.riffler.plan
+        layout.label(text="Part")
+        row = layout.row(align=True)
+        row.prop(settings, "part", text="")
+        row.operator(plan_setup.RIFFLER_OT_plan_part.bl_idname, text="", icon="IMPORT")
+        layout.label(text="Fixtures")
+        row = layout.row(align=True)
+        row.prop(settings, "fixtures", text="")
+        row.operator(plan_setup.RIFFLER_OT_plan_fixtures_add.bl_idname, text="", icon="ADD")
+        row.operator(plan_setup.RIFFLER_OT_plan_fixtures_remove.bl_idname, text="", icon="REMOVE")
+        held = [ob.name for ob in parts.fixtures(settings, settings.part)]
+        if held:
+            lines(layout, *wrapped(context, f"Stays clear of {', '.join(held)}"))
+
+
+class RIFFLER_PT_plan_tool(Tab, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_plan_tool"
+    bl_label = "Tool (mm)"
+
+    def draw(self, context):
+        layout = self.layout
+        settings = context.scene.riffler.plan
+        try:
+            given = settings.tool_dict()
+            tool = riffler.Tool.from_dict(given)
+        except shared.ERRORS as error:
+            layout.menu(RIFFLER_MT_plan_tools.bl_idname, text="Choose a tool")
+            lines(layout, *wrapped(context, str(error)), icon="ERROR")
+            return
+        layout.menu(RIFFLER_MT_plan_tools.bl_idname, text=tool.name)
+        row = layout.row()
+        row.template_icon(icon_value=tool_pictures.icon(tool_pictures.cutter(given)), scale=PICTURE)
+        if tool.shank or tool.holder:
+            row.template_icon(icon_value=tool_pictures.icon(given), scale=PICTURE)
+        lines(layout, *_facts(tool))
+        row = layout.row(align=True)
+        row.operator(plan_setup.RIFFLER_OT_plan_assembly.bl_idname, text="Holder…")
+        row.operator(plan_setup.RIFFLER_OT_plan_tool_save.bl_idname, text="Save…")
+
+
+def _facts(tool):
+    yield f"Cutter: Ø {names.trim(tool.diameter)}, {names.trim(tool.length)} mm long"
+    for what, pieces in (("Shank", tool.shank), ("Holder", tool.holder)):
+        if pieces:
+            widest = 2 * max(max(r0, r1) for _, r0, _, r1 in pieces)
+            yield f"{what}: Ø {names.trim(widest)}, {names.trim(pieces[0][0])} to {names.trim(pieces[-1][2])} mm"
+    if not tool.holder:
+        yield "No holder: it is not looked at."
+
+
+class RIFFLER_PT_plan_machine(Tab, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_plan_machine"
+    bl_label = "Machine (mm)"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.riffler.plan
+        layout.prop(settings, "post")
+        layout.prop(settings, "options")
+        layout.prop(settings, "clearance")
+        column = layout.column(align=True)
+        column.prop(settings, "feed")
+        column.prop(settings, "spindle")
+
+
+CLASSES = (
+    RIFFLER_MT_plan_tools,
+    RIFFLER_PT_plan_part,
+    RIFFLER_PT_plan_tool,
+    RIFFLER_PT_plan,
+    RIFFLER_PT_plan_machine,
+)

@@ -1,0 +1,38 @@
+"""From a sculpt to a mesh, and how far it is from what it should be."""
+
+import bpy
+
+from .. import properties
+from ..bl import attributes
+from ..operators import result
+from .panels import Sidebar, give
+
+
+class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_result"
+    bl_label = "Mesh (mm)"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.riffler.result
+        column = layout.column(align=True)
+        for key in properties.ResultSettings.__annotations__:
+            if key != "smooth_tolerance" or settings.iterations:
+                column.prop(settings, key)
+        op = layout.operator(result.RIFFLER_OT_to_mesh.bl_idname, icon="MESH_DATA")
+        give(op, settings, properties.ResultSettings)
+        layout.separator()
+        layout.prop(settings, "reference")
+        layout.prop(settings, "scale")
+        row = layout.row(align=True)
+        op = row.operator(result.RIFFLER_OT_show_deviation.bl_idname, icon="COLOR")
+        op.reference = settings.reference.name if settings.reference else ""
+        op.scale = settings.scale
+        if context.object is not None and context.object.type == "MESH" and attributes.SCALE in context.object.data:
+            row.operator(result.RIFFLER_OT_hide_deviation.bl_idname, text="", icon="X")
+
+
+CLASSES = (RIFFLER_PT_result,)

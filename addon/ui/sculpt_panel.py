@@ -1,0 +1,102 @@
+"""The sculpt tool's settings: in the header, in the sidebar, and in a pie under the pointer."""
+
+import bpy
+
+from ..bl import live, sculpts
+from ..core import presets
+from .panels import Sidebar, lines
+
+MODES = {"riffler.carve": "Carve", "riffler.add": "Add", "riffler.smooth": "Smooth", "riffler.mask": "Mask"}
+
+
+def tool_of(context):
+    """Identifier of the sculpt tool that is active in the 3D view, or ""."""
+    tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
+    return tool.idname if tool is not None and tool.idname in MODES else ""
+
+
+def draw_header(context, layout):
+    settings = context.scene.riffler
+    preset = settings.tool.from_preset()
+    layout.menu("RIFFLER_MT_tools", text=preset["name"] if preset else "Custom")
+    layout.prop(settings.sculpt, "radius", text="Radius (mm)")
+    layout.prop(settings.sculpt, "depth", text="Depth (mm)")
+    layout.prop(settings.sculpt, "axis", text="")
+    layout.popover(RIFFLER_PT_sculpt_tool.bl_idname, text="Stroke")
+
+
+class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_sculpt_tool"
+    bl_label = "Stroke (mm, mm/s, N)"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.riffler.sculpt
+        self._tools(layout, context)
+        column = layout.column(align=True)
+        column.prop(settings, "radius")
+        column.prop(settings, "depth")
+        layout.prop(settings, "axis")
+        layout.prop(settings, "pressure")
+        if settings.pressure == "FEED" or settings.show_force:
+            layout.prop(settings, "feed")
+        layout.prop(settings, "string")
+        layout.prop(settings, "strength")
+        layout.prop(settings, "accumulate")
+        layout.prop(settings, "fixtures")
+        self._symmetry(layout, settings)
+        column = layout.column(align=True)
+        column.prop(settings, "show_force")
+        if settings.show_force:
+            column.prop(settings, "limit")
+        self._work(layout, context)
+
+    def _tools(self, layout, context):
+        active = tool_of(context)
+        row = layout.row(align=True)
+        for name, label in MODES.items():
+            row.operator("wm.tool_set_by_id", text=label, depress=name == active).name = name
+
+    def _symmetry(self, layout, settings):
+        row = layout.row(heading="Mirror", align=True)
+        row.prop(settings, "mirror", expand=True)
+        layout.prop(settings, "radial")
+        if settings.radial > 1:
+            layout.prop(settings, "radial_axis", expand=True)
+
+    def _work(self, layout, context):
+        run = live.of(sculpts.active(context))
+        if run is None:
+            return
+        times = run.stages.milliseconds()
+        if any(times.values()):
+            lines(layout, "A look: " + ", ".join(f"{name} {ms:.1f} ms" for name, ms in times.items()), icon="TIME")
+
+
+class RIFFLER_MT_sculpt_pie(bpy.types.Menu):
+    bl_idname = "RIFFLER_MT_sculpt_pie"
+    bl_label = "Sculpt"
+
+    def draw(self, context):
+        pie = self.layout.menu_pie()
+        for name, label in MODES.items():  # left, right, below, above
+            pie.operator("wm.tool_set_by_id", text=label).name = name
+        tool = context.scene.riffler.tool
+        box = pie.box().column()
+        box.prop(tool, "kind", text="")
+        for key in presets.SIZES[tool.kind][:2]:
+            box.prop(tool, key)
+        settings = context.scene.riffler.sculpt
+        box = pie.box().column()
+        box.prop(settings, "depth")
+        box.prop(settings, "axis", text="")
+        box.prop(settings, "string")
+        row = pie.box().row(align=True)
+        row.prop(settings, "mirror", expand=True)
+        pie.prop(settings, "accumulate")
+
+
+CLASSES = (RIFFLER_PT_sculpt_tool, RIFFLER_MT_sculpt_pie)

@@ -1,0 +1,139 @@
+"""The tools in the 3D view's toolbar: what each one's buttons and keys do, its cursor and its header."""
+
+from pathlib import Path
+
+import bpy
+
+from ..bl import turning
+from ..core import brush
+from ..drawing import paths, pointer
+from ..gizmos.orientation import RIFFLER_GGT_orientation
+from ..gizmos.size import RIFFLER_GGT_size
+from . import sculpt_panel, timeline_panel
+
+ICONS = Path(__file__).resolve().parent.parent / "icons"  # an absolute path is taken as it is
+
+
+def _stroke(mode, **modifiers):
+    event = {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}
+    return ("riffler.stroke", event, {"properties": [("mode", mode.upper())]})
+
+
+def _radial(field, **modifiers):
+    """Blender's own control of a size by the pointer's distance."""
+    paths = {"data_path_primary": field, "zoom_path": "zoom", "fill_color_path": "colour"}
+    given = [(name, f"scene.riffler.sculpt.{path}") for name, path in paths.items()]
+    return ("wm.radial_control", {"type": "F", "value": "PRESS", **modifiers}, {"properties": given})
+
+
+class SculptTool:
+    """Mixin; a subclass has a mode of core/brush.py."""
+
+    bl_space_type = "VIEW_3D"
+    bl_context_mode = "OBJECT"
+    bl_cursor = "CROSSHAIR"
+    bl_widget = RIFFLER_GGT_size.bl_idname
+
+
+def _tool(mode, label, text):
+    """A WorkSpaceTool of a mode; Blender wants a class for each."""
+
+    def draw_cursor(context, tool, xy):
+        pointer.draw(context, mode, xy)
+
+    name = label.lower()
+    return type(
+        f"RifflerTool{label}",
+        (SculptTool, bpy.types.WorkSpaceTool),
+        {
+            "__doc__": text,
+            "__module__": __name__,
+            "bl_idname": f"riffler.{name}",
+            "bl_label": label,
+            "bl_description": text,
+            "bl_icon": str(ICONS / f"riffler.{name}"),
+            "bl_keymap": (
+                _stroke(mode),
+                _stroke(brush.OPPOSITE[mode], ctrl=True),
+                _stroke("soften", shift=True),
+                ("riffler.pen_stop", {"type": "ESC", "value": "PRESS"}, None),
+                _radial("radius"),
+                _radial("depth", shift=True),
+                (
+                    "wm.call_menu_pie",
+                    {"type": "W", "value": "PRESS"},
+                    {"properties": [("name", sculpt_panel.RIFFLER_MT_sculpt_pie.bl_idname)]},
+                ),
+            ),
+            "draw_settings": staticmethod(lambda context, layout, tool: sculpt_panel.draw_header(context, layout)),
+            "draw_cursor": staticmethod(draw_cursor),
+        },
+    )
+
+
+TOOLS = (
+    _tool("remove", "Carve", "Take material away with the cutter, along the surface. Ctrl: put it on. Shift: smooth"),
+    _tool("add", "Add", "Put material on in the shape of the cutter. Ctrl: take it away. Shift: smooth"),
+    _tool("soften", "Smooth", "Smooth the surface as wide as the cutter"),
+    _tool("mask", "Mask", "Protect what the cutter sweeps from all other tools. Ctrl: protect it no more"),
+)
+CLASSES = ()
+
+
+class PlanTool(bpy.types.WorkSpaceTool):
+    """At the point of the plan that the frame is at."""
+
+    bl_space_type = "VIEW_3D"
+    bl_context_mode = "OBJECT"
+    bl_idname = turning.TOOL
+    bl_label = "Orient"
+    bl_description = (
+        "Turn the plan's tool by dials, by its end, or by a click in the map of free orientations. A click on a path "
+        "goes to that point. Ctrl: set a free key there"
+    )
+    bl_icon = str(ICONS / turning.TOOL)
+    bl_cursor = "DEFAULT"
+    bl_widget = RIFFLER_GGT_orientation.bl_idname
+    bl_keymap = (
+        ("riffler.plan_turn", {"type": "LEFTMOUSE", "value": "PRESS"}, {"properties": [("handle", "MAP")]}),
+        ("riffler.plan_point", {"type": "LEFTMOUSE", "value": "PRESS"}, None),
+        ("riffler.plan_point_key", {"type": "LEFTMOUSE", "value": "PRESS", "ctrl": True}, None),
+    )
+
+    @staticmethod
+    def draw_settings(context, layout, tool):
+        timeline_panel.draw_header(context, layout)
+
+    @staticmethod
+    def draw_cursor(context, tool, xy):
+        paths.draw_cursor(context, tool, xy)
+
+
+def attach():
+    """The four of sculpting in one group of the toolbar, that of planning below: after a tool of a group it would be in
+    it."""
+    bpy.utils.register_tool(PlanTool, after={"builtin.measure"}, separator=True)
+    before = None
+    for tool in TOOLS:
+        if before is None:
+            bpy.utils.register_tool(tool, after={"builtin.measure"}, separator=True, group=True)
+        else:
+            bpy.utils.register_tool(tool, after={before})
+        before = tool.bl_idname
+
+
+def detach():
+    _put_down()
+    for tool in reversed(TOOLS):
+        bpy.utils.unregister_tool(tool)
+    bpy.utils.unregister_tool(PlanTool)
+
+
+def _put_down():
+    """Whoever has one of ours at hand gets Blender's first one: a tool that is gone leaves no way to select."""
+    for window in () if bpy.app.background else bpy.context.window_manager.windows:
+        tool = window.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
+        area = next((a for a in window.screen.areas if a.type == "VIEW_3D"), None)
+        if area is not None and tool is not None and tool.idname in {t.bl_idname for t in (*TOOLS, PlanTool)}:
+            with bpy.context.temp_override(window=window, area=area):
+                bpy.ops.wm.tool_set_by_id(name="builtin.select_box")

@@ -1,0 +1,107 @@
+"""From a plan to NC code, simulated and verified: what was found, and the way to it."""
+
+import bpy
+
+from .. import properties
+from ..bl import programs, simulating, timeline, turning
+from ..operators import plan_nc, simulate, verify
+from .panels import lines
+from .pen_panel import wrapped
+from .plan_panel import OfPlan, Tab
+
+ICONS = {
+    "blocked": "CANCEL",
+    "unsafe": "ERROR",
+    "lifted": "TRIA_UP",
+    "inserted": "ADD",
+    "gouge": "REMOVE",
+    "rest": "ADD",
+    "machine": "SETTINGS",
+    "unknown": "QUESTION",
+}
+
+
+class RIFFLER_UL_findings(bpy.types.UIList):
+    bl_idname = "RIFFLER_UL_findings"
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0):
+        row = layout.row(align=True)
+        row.label(text=item.name, icon=ICONS.get(item.kind, "ERROR"))
+        if item.line > 0:
+            sub = row.row()
+            sub.alignment = "RIGHT"
+            sub.label(text=f"line {item.line}")
+        op = row.operator(verify.RIFFLER_OT_finding_go.bl_idname, text="", icon="VIEWZOOM", emboss=False)
+        op.of, op.index = ("PLAN" if item.path >= 0 else "VERIFY"), index
+
+
+class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_nc"
+    bl_label = "NC Code (mm)"
+
+    def draw(self, context):
+        layout, ob = self.layout, turning.plan_object(context)
+        layout.operator(plan_nc.RIFFLER_OT_plan_resolve.bl_idname, icon="MOD_PHYSICS")
+        p = ob.riffler.plan
+        if p.findings:
+            layout.template_list(RIFFLER_UL_findings.bl_idname, "plan", p, "findings", p, "index", rows=3)
+            if timeline.pair(ob) is None:
+                lines(layout, *wrapped(context, "Put the plan on the timeline to jump to frames."), icon="INFO")
+        layout.operator(plan_nc.RIFFLER_OT_plan_nc.bl_idname, icon="EXPORT")
+
+
+class RIFFLER_PT_verify(Tab, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_verify"
+    bl_label = "Simulate and Verify (mm)"
+
+    def draw(self, context):
+        layout = self.layout
+        settings = context.scene.riffler.verify
+        self._program(layout, context, settings)
+        row = layout.row(align=True)
+        op = row.operator(simulate.RIFFLER_OT_simulate.bl_idname, icon="PLAY")
+        self._give(op, settings, properties.ProgramSettings)
+        if simulating.active() is not None:
+            row.operator(simulate.RIFFLER_OT_simulate_stop.bl_idname, text="", icon="X")
+        column = layout.column(align=True)
+        column.use_property_split = True
+        column.use_property_decorate = False
+        for key in properties.VerifySettings.__annotations__:
+            column.prop(settings, key)
+        row = layout.row(align=True)
+        op = row.operator(verify.RIFFLER_OT_verify.bl_idname, icon="CHECKMARK")
+        self._give(op, settings, properties.VerifySettings)
+        if settings.said:
+            row.operator(verify.RIFFLER_OT_verify_clear.bl_idname, text="", icon="X")
+            self._found(layout, context, settings)
+
+    def _found(self, layout, context, settings):
+        lines(layout, *wrapped(context, settings.said), icon="ERROR" if settings.findings else "CHECKMARK")
+        if not settings.findings:
+            return
+        kind = RIFFLER_UL_findings.bl_idname
+        layout.template_list(kind, "verify", settings, "findings", settings, "index", rows=4)
+        if 0 <= settings.index < len(settings.findings):
+            lines(layout, *wrapped(context, settings.findings[settings.index].name))
+
+    def _program(self, layout, context, settings):
+        column = layout.column(align=True)
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "source")
+        if settings.source == "FILE":
+            for key in ("filepath", "machine", "options", "frame"):
+                column.prop(settings, key)
+        column.prop(settings, "stock")
+        if settings.stock is None:
+            ob = programs.stock_object(context)
+            said = f"Stock: {ob.name}" if ob else "Choose a stock, or select a sculpt"
+            lines(layout, *wrapped(context, said), icon="INFO")
+
+    def _give(self, op, settings, group):
+        """An operator the settings of a group, and of those that it is built on."""
+        for key in (k for base in group.__mro__ for k in vars(base).get("__annotations__", ())):
+            setattr(op, key, getattr(settings, key))
+
+
+CLASSES = (RIFFLER_UL_findings, RIFFLER_PT_nc, RIFFLER_PT_verify)

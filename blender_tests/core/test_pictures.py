@@ -1,0 +1,96 @@
+"""Loose comparison of pictures, on pictures of our own making."""
+
+import importlib.util
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+PLACE = Path(__file__).resolve().parent.parent / "windowed" / "pictures.py"
+spec = importlib.util.spec_from_file_location("pictures", PLACE)
+pictures = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(pictures)
+
+VIEW, PANEL = (0.0, 0.05, 0.8, 1.0), (0.8, 0.0, 1.0, 1.0)
+AREAS = [("VIEW_3D", VIEW), ("PROPERTIES", PANEL)]
+
+
+def window(shift=0, away=0, panel=True, view=True, noise=0.0):
+    """A dark window with a bright figure and a panel with lines of text."""
+    image = np.full((950, 1400), 0.25)
+    if view:
+        image[300 + shift + away : 600 + shift + away, 300 + shift : 800 + shift] = 0.7
+    if panel:
+        for y in range(20, 900, 18):
+            image[y + shift : y + shift + 8, 1150 + shift : 1380 : 5] = 0.9
+    return np.clip(image + np.random.default_rng(5).normal(0, noise, image.shape), 0, 1)
+
+
+def complaints(image, vary=()):
+    return pictures.judge(pictures.grids(image), pictures.grids(window()), AREAS, vary)
+
+
+def test_luminance_is_the_mean_of_a_cell_whatever_the_size():
+    image = np.zeros((97, 131))
+    image[:, :50] = 1
+    expected = [np.mean([x < 50 for x in range(a, b)]) for a, b in
+                zip((131 * np.arange(32)) // 32, (131 * np.arange(1, 33)) // 32, strict=True)]  # fmt: skip
+    assert np.allclose(pictures.cells(image), np.tile(expected, (20, 1)))
+
+
+@pytest.mark.parametrize("change", [{}, {"shift": 2}, {"noise": 0.002}])
+def test_what_looks_alike_passes(change):
+    assert complaints(window(**change)) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "kind"), [({"panel": False}, "PROPERTIES"), ({"view": False}, "VIEW_3D"), ({"away": 250}, "VIEW_3D")]
+)
+def test_what_is_missing_or_elsewhere_is_said_with_its_area(change, kind):
+    found = complaints(window(**change))
+    assert len(found) == 1 and found[0].startswith(kind)
+    assert complaints(window(**change), vary=[kind]) == []
+    assert complaints(window(**change), vary=[VIEW, PANEL]) == []
+
+
+def test_an_empty_picture_is_not_taken_for_the_window():
+    assert len(complaints(np.zeros((950, 1400)))) == 2
+
+
+def test_what_lies_on_top_is_judged_by_itself():
+    areas = [("VIEW_3D", (0.0, 0.0, 1.0, 1.0)), ("SIDEBAR", PANEL)]
+    found, kept = pictures.grids(window(panel=False)), pictures.grids(window())
+    assert [c.split(":")[0] for c in pictures.judge(found, kept, areas)] == ["SIDEBAR"]
+    assert [c.split(":")[0] for c in pictures.judge(found, kept, areas[:1])] == ["VIEW_3D"]
+
+
+def test_what_belongs_to_no_area_may_say_anything():
+    image = window()
+    image[:47, :1100] = 1.0  # the bar of menus
+    assert complaints(image) == []
+
+
+def test_text_keeps_what_a_grid_says():
+    found = pictures.grids(window(noise=0.05))
+    for grid in found.values():
+        assert np.abs(pictures.from_text(pictures.to_text(grid)) - grid).max() <= 0.5 / 255
+
+
+@pytest.mark.skipif(not shutil.which("convert"), reason="no ImageMagick here")
+def test_a_file_is_judged_by_the_reference_of_its_name_and_version(tmp_path, monkeypatch):
+    monkeypatch.setattr(pictures, "REFERENCES", tmp_path / "references")
+
+    def write(image):
+        data = b"P5 1400 950 255\n" + np.rint(image * 255).astype(np.uint8).tobytes()
+        subprocess.run(["convert", "pgm:-", str(tmp_path / "a.png")], input=data, check=True)
+
+    write(window())
+    assert pictures.check(tmp_path, "a", "4.3", AREAS) is None
+    monkeypatch.setattr("sys.argv", ["pictures.py", str(tmp_path / "pictures-4.3.json"), "a"])
+    pictures.main()
+    assert pictures.check(tmp_path, "a", "4.3", AREAS) == ""
+    assert pictures.check(tmp_path, "a", "5.2", AREAS) is None
+    write(window(panel=False))
+    assert "PROPERTIES" in pictures.check(tmp_path, "a", "4.3", AREAS)

@@ -1,0 +1,54 @@
+"""The list of modules that the add-on registers, held against the files that there are."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import addon
+from addon import registration
+
+ADDON = Path(addon.__file__).parent
+LISTED = (*registration.MODULES, registration.FALLBACK)
+
+
+def path_of(name):
+    path = ADDON.joinpath(*name.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def top_level(path):
+    """Names that a file defines or assigns, not counting what it imports."""
+    names = set()
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            names.add(node.name)
+        elif isinstance(node, ast.Assign):
+            names |= {t.id for t in node.targets if isinstance(t, ast.Name)}
+    return names
+
+
+def test_every_module_of_the_list_says_what_it_registers():
+    assert len(set(LISTED)) == len(LISTED)
+    for name in LISTED:
+        assert "CLASSES" in top_level(path_of(name)), name
+
+
+def test_no_module_that_has_something_to_register_is_left_out():
+    own = {path_of(name) for name in LISTED} | {ADDON / "registration.py"}
+    for path in sorted(ADDON.rglob("*.py")):
+        if path not in own and "_vendor" not in path.parts:
+            assert not top_level(path) & {"CLASSES", "attach", "detach"}, path
+
+
+def test_what_was_attached_is_detached_even_where_something_else_fails(monkeypatch):
+    log = []
+
+    def fails():
+        log.append("fails")
+        raise ValueError("in the middle")
+
+    monkeypatch.setattr(registration, "_undo", [lambda: log.append("first"), fails, lambda: log.append("last")])
+    with pytest.raises(ValueError, match="in the middle"):
+        registration.unregister()
+    assert log == ["last", "fails", "first"] and registration._undo == []

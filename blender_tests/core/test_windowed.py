@@ -1,0 +1,31 @@
+"""Scripts of windows: steps that nobody takes would be tests that cannot fail."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+SCRIPTS = sorted((Path(__file__).parents[1] / "windowed").glob("*.py"))
+TREES = {script: ast.parse(script.read_text()) for script in SCRIPTS}
+
+
+def functions(tree):
+    """Names, and whether each is a generator: a part of a script's steps."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            yield node.name, any(isinstance(n, ast.Yield | ast.YieldFrom) for n in ast.walk(node))
+
+
+EVERYWHERE = [f for tree in TREES.values() for f in functions(tree)]
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_all_steps_are_taken(script):
+    parts = {name for name, generates in EVERYWHERE if generates} - {name for name, g in EVERYWHERE if not g}
+    assert {"steps", "picture", "drag"} <= parts
+    parts |= {name for name, generates in functions(TREES[script]) if generates}
+    taken = {id(node.value) for node in ast.walk(TREES[script]) if isinstance(node, ast.YieldFrom)}
+    for node in ast.walk(TREES[script]):
+        if isinstance(node, ast.Call) and (name := getattr(node.func, "attr", getattr(node.func, "id", ""))) in parts:
+            taken_by_the_driver = name == "steps"
+            assert id(node) in taken or taken_by_the_driver, f"{script.name}, line {node.lineno}: nobody takes {name}"

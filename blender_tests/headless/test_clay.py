@@ -1,0 +1,218 @@
+"""What is done to a sculpt as a whole: pitch, crop, parts, edits, masks, reliefs."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+import support
+
+SIZE = (40, 30, 20)
+
+
+def sculpt(directions="xyz", pitch=0.5, size=SIZE):
+    support.scale(1)
+    return support.stock(size=size, pitch=pitch, directions=directions)
+
+
+def volume(ob):
+    return support.content(ob).volume
+
+
+def close(a, b, share=1e-3):
+    return abs(a - b) <= share * abs(b)
+
+
+def empty(name, matrix):
+    ob = bpy.data.objects.new(name, None)
+    bpy.context.collection.objects.link(ob)
+    ob.matrix_world = matrix
+    bpy.context.view_layer.update()
+    return ob
+
+
+def circle(name, centre, radius, matrix=None):
+    """A closed poly spline in its own plane z = 0."""
+    angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    points = np.c_[radius * np.cos(angle), radius * np.sin(angle), 0 * angle] + centre
+    return support.curve(name, points, matrix=matrix, mm_per_unit=1.0, cyclic=True)
+
+
+def matches(ob):
+    surface = volume(ob).to_mesh()
+    assert np.array_equal(support.coordinates(ob.data), np.asarray(surface.vertices, np.float32))
+
+
+def test_pitch_there_and_back_keeps_the_shape():
+    ob = sculpt()
+    bpy.ops.riffler.cut_curve(
+        curve=support.curve("C", [(-5, 15, 18), (45, 15, 18)], mm_per_unit=1.0).name, tool=support.BALL
+    )
+    before = volume(ob).volume
+    for pitch in (0.25, 0.5):
+        assert bpy.ops.riffler.resample(pitch=pitch) == {"FINISHED"}
+        assert close(volume(ob).volume, before) and volume(ob).pitch == pitch
+        matches(ob)
+    assert bpy.ops.riffler.resample(pitch=1.0, directions="z") == {"FINISHED"}
+    assert volume(ob).directions == "z" and len(support.content(ob).cuts) == 1
+    support.refused(lambda: bpy.ops.riffler.resample(pitch=1e-4), "coarser pitch")
+    assert volume(ob).pitch == 1.0
+
+
+def test_crop_by_the_plane_of_an_object_and_by_numbers():
+    ob = sculpt()
+    ob.matrix_world = Matrix.Translation((5, 0, 0)) @ Matrix.Rotation(0.5, 4, "Z")
+    bpy.context.view_layer.update()
+    plane = empty("Plane", ob.matrix_world @ Matrix.Translation((20, 15, 10)) @ Matrix.Rotation(0.7, 4, "X"))
+    support.select(ob)
+    assert bpy.ops.riffler.crop(plane="Plane") == {"FINISHED"}
+    assert close(volume(ob).volume, 12000)  # through the middle: a half
+    matches(ob)
+    normal = ob.matrix_world.to_3x3() @ Vector((1, 0, 0))
+    assert bpy.ops.riffler.crop(point=ob.matrix_world @ Vector((30, 0, 0)), normal=normal) == {"FINISHED"}
+    assert close(volume(ob).volume, 9000)
+    assert bpy.ops.riffler.crop(point=ob.matrix_world @ Vector((10, 0, 0)), normal=normal, flip=True) == {"FINISHED"}
+    assert close(volume(ob).volume, 6000)
+    plane.location.z -= 100
+    bpy.context.view_layer.update()
+    support.refused(lambda: bpy.ops.riffler.crop(plane="Plane"), "nothing would be left")
+    support.refused(lambda: bpy.ops.riffler.crop(plane="Nothing"), "there is no object")
+    support.refused(lambda: bpy.ops.riffler.crop(), "select the plane")
+    assert close(volume(ob).volume, 6000)
+
+
+def test_parts_become_sculpts_whose_volumes_sum():
+    ob = sculpt()
+    saw = support.curve("Saw", [(13, -5, -1), (13, 40, -1)], mm_per_unit=1.0)
+    bpy.ops.riffler.cut_curve(curve=saw.name, tool='{"kind": "flat", "diameter": 2.0, "length": 60.0}')
+    before, name = volume(ob).volume, ob.name
+    support.push("cut")
+    assert bpy.ops.riffler.split("EXEC_DEFAULT", True) == {"FINISHED"}
+    parts = [o for o in bpy.data.objects if o.type == "MESH" and o.data.riffler.store]
+    assert len(parts) == 2 and abs(sum(volume(o).volume for o in parts) - before) < 1e-6
+    assert close(volume(bpy.data.objects[name]).volume, 26 * 600)
+    for o in parts:
+        matches(o)
+    bpy.ops.ed.undo()
+    parts = [o for o in bpy.data.objects if o.type == "MESH" and o.data.riffler.store]
+    assert [o.name for o in parts] == [name] and volume(parts[0]).volume == before
+    support.select(parts[0])
+    assert bpy.ops.riffler.split(least=1e6) == {"CANCELLED"}
+
+
+def test_edits_with_blenders_own_tools_become_material():
+    ob = sculpt()
+    co = support.coordinates(ob.data).copy()
+    co[:, 0] *= 1.25
+    co[:, 2] += 3.0
+    ob.data.vertices.foreach_set("co", co.ravel())
+    ob.data.update()
+    assert bpy.ops.riffler.take_edits() == {"FINISHED"}
+    assert close(volume(ob).volume, 1.25 * 24000)
+    assert np.allclose(np.ptp(support.coordinates(ob.data), axis=0), (50, 30, 20), atol=1e-4)
+    assert np.allclose(volume(ob).lower, (0, 0, 0)) and np.allclose(volume(ob).upper, (50, 30, 23))
+    matches(ob)
+    modifier = ob.modifiers.new("Bend", "SIMPLE_DEFORM")
+    modifier.deform_method, modifier.deform_axis, modifier.factor = "TAPER", "Z", -0.5
+    bpy.context.view_layer.update()
+    assert bpy.ops.riffler.take_edits() == {"FINISHED"} and not ob.modifiers
+    assert volume(ob).volume < 0.95 * 30000
+    matches(ob)
+
+
+def test_edits_without_volume_are_refused_and_nothing_is_lost():
+    ob = sculpt()
+    before = volume(ob).to_bytes()
+    co = support.coordinates(ob.data)
+    co[:, 2] = 0
+    ob.data.vertices.foreach_set("co", co.ravel())
+    ob.data.update()
+    support.refused(lambda: bpy.ops.riffler.take_edits(), "volume")
+    assert volume(ob).to_bytes() == before
+
+
+def test_a_mask_from_a_curve_protects_what_lies_under_it():
+    ob = sculpt()
+    ring = circle("Ring", (20, 15, 100), 8)
+    support.select(ob)
+    assert bpy.ops.riffler.mask_form(form=ring.name) == {"FINISHED"}
+    assert close(support.content(ob).mask.volume, np.pi * 64 * 20, 0.01)
+    path = support.curve("C", [(-5, 15, 15), (45, 15, 15)], mm_per_unit=1.0)
+    whole = volume(ob).copy()
+    bpy.ops.riffler.cut_curve(curve=path.name, tool=support.BALL)
+    protected = whole.intersect(support.content(ob).mask)
+    assert volume(ob).copy().intersect(support.content(ob).mask).to_bytes() == protected.to_bytes()
+    assert volume(ob).volume < 24000 - 100
+    matches(ob)
+
+
+def test_masks_are_added_taken_away_turned_round_and_cleared():
+    ob = sculpt()
+    a, b = circle("A", (12, 15, 0), 6), circle("B", (28, 15, 0), 6)
+    support.select(ob)
+    one = np.pi * 36 * 20
+
+    def mask():
+        found = support.content(ob).mask
+        return 0.0 if found is None else found.volume
+
+    bpy.ops.riffler.mask_form(form=a.name)
+    bpy.ops.riffler.mask_form(form=b.name, how="ADD")
+    assert close(mask(), 2 * one, 0.01)
+    bpy.ops.riffler.mask_form(form=a.name, how="SUBTRACT")
+    assert close(mask(), one, 0.01)
+    bpy.ops.riffler.mask_invert()
+    assert close(mask(), 24000 - one, 0.01)
+    bpy.ops.riffler.mask_clear()
+    assert support.content(ob).mask is None
+    bpy.ops.riffler.mask_invert()
+    assert close(mask(), 24000)
+    open_curve = support.curve("Open", [(0, 0, 0), (10, 10, 0)], mm_per_unit=1.0)
+    support.refused(lambda: bpy.ops.riffler.mask_form(form=open_curve.name), "no closed spline")
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=8, location=(20, 15, 20))
+    ball = bpy.context.object
+    support.select(ob)
+    bpy.ops.riffler.mask_form(form=ball.name)
+    assert close(mask(), 0.5 * 4 / 3 * np.pi * 8**3, 0.03)
+
+
+def test_a_picture_is_raised_and_engraved_to_the_depth_that_was_asked():
+    ob = sculpt()
+    image = bpy.data.images.new("Picture", 40, 20, float_buffer=True)
+    pixels = np.zeros((20, 40, 4), np.float32)
+    pixels[:, :, 3] = 1
+    pixels[5:15, 10:30, :3] = 1
+    image.pixels.foreach_set(pixels.ravel())
+    # stock that something can be raised on
+    empty("Lid", Matrix.Translation((0, 0, 15)))
+    support.select(ob)
+    bpy.ops.riffler.crop(plane="Lid")
+    before = volume(ob).volume
+    empty("Place", Matrix.Translation((20, 15, 30)))
+    support.select(ob)
+    settings = {"image": "Picture", "place": "Place", "width": 20.0, "depth": 2.0}
+    assert bpy.ops.riffler.relief(mode="RAISE", **settings) == {"FINISHED"}
+    # 10 × 5 mm of white in a picture of 20 × 10 mm, its rim softened by a pixel
+    assert close(volume(ob).volume - before, 100, 0.05)
+    assert abs(volume(ob).intervals("z")[1].max() - 17) < 1e-6
+    assert abs(support.coordinates(ob.data)[:, 2].max() - 17) < 0.25  # walls that are steeper than rays can tell
+    matches(ob)
+    assert bpy.ops.riffler.relief(mode="ENGRAVE", invert=True, **settings) == {"FINISHED"}
+    assert abs(volume(ob).volume - before - 100 + 300) < 20
+    support.refused(lambda: bpy.ops.riffler.relief(place="Place"), "choose a picture")
+    support.refused(
+        lambda: bpy.ops.riffler.relief(
+            image="Picture",
+            place=empty("Away", Matrix.Translation((500, 0, 0))).name,
+            width=20.0,
+            depth=1.0,
+        ),
+        "does not lie over",
+    )
+
+
+def test_every_operator_says_what_is_missing():
+    for ob in list(bpy.context.selected_objects):
+        ob.select_set(False)
+    bpy.context.view_layer.objects.active = None
+    for name in ("resample", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"):
+        assert not getattr(bpy.ops.riffler, name).poll(), name

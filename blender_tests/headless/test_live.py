@@ -1,0 +1,370 @@
+"""A sculpt that is worked at: chunks, undo by strokes, and what the sculpt is afterwards."""
+
+import bpy
+import numpy as np
+import riffler
+from mathutils import Matrix
+from sculpting import (
+    BALL,
+    is_shown,
+    live,
+    matches_its_volume,
+    nothing_is_left,
+    sculpt,
+    stroke,
+    work,
+)
+
+import support
+
+
+class close_to(float):
+    """Equal within a millionth."""
+
+    def __eq__(self, other):
+        return abs(other - float(self)) <= 1e-6 * abs(self) + 1e-9
+
+    __hash__ = None
+
+
+def test_chunks_show_the_volume_and_only_dirty_ones_move():
+    name = sculpt()
+    run = work(name)
+    is_shown(name)
+    assert bpy.data.objects[name].hide_get()
+    run.stages.take_counts()
+    stroke(name, 1)
+    counts = run.stages.take_counts()
+    assert 0 < counts["chunks"] <= 12 and counts["moves"] == 1
+    is_shown(name)
+    run.show()
+    assert run.stages.take_counts()["bytes"] == 0
+    for k in range(20):
+        stroke(name, 7 * k, "add" if k % 3 == 0 else "remove")
+    is_shown(name)
+    assert all(m.validate() is False for m in bpy.data.meshes)
+    live().end_all()
+    nothing_is_left()
+    matches_its_volume(name)
+
+
+def test_chunks_hang_on_one_go_where_the_sculpt_goes_and_stay_there_without_it():
+    name = sculpt()
+    run = work(name)
+    chunks = [ob for ob in support.part("bl.chunks").collection_of(run.mark).objects if "riffler_chunk" in ob]
+    (root,) = [ob for ob in chunks if ob.parent is None]
+    assert len(chunks) > 1
+    for matrix in (Matrix.Translation((5, 6, 7)), Matrix.Rotation(0.5, 4, "Y")):
+        bpy.data.objects[name].matrix_world = matrix
+        stroke(name, 1 + int(matrix[0][3]))
+        run.show()
+        bpy.context.view_layer.update()
+        assert all(np.allclose(ob.matrix_world, matrix, atol=1e-6) for ob in chunks)
+        if root is not None:
+            chunks.remove(root)
+            bpy.data.objects.remove(root)
+            root = None
+    live().end_all()
+    nothing_is_left()
+    matches_its_volume(name)
+
+
+def test_work_that_is_ended_is_in_volume_mesh_and_cuts():
+    name = sculpt()
+    last = [stroke(name, k) for k in range(3)][-1]
+    assert support.part("bl.sculpts").behind(bpy.data.objects[name].data)  # the mesh has to wait
+    live().end_all()
+    content = support.content(bpy.data.objects[name])
+    assert content.volume.to_bytes() == last
+    assert [c.moves for c in content.cuts] == [1, 1, 1]
+    matches_its_volume(name)
+    nothing_is_left()
+
+
+def test_the_panel_has_the_facts_of_the_last_stroke():
+    name = sculpt()
+
+    def of_the_mesh():
+        p = bpy.data.objects[name].data.riffler
+        return p.material, p.nbytes, p.cuts, p.moves
+
+    run, before = work(name), of_the_mesh()
+    assert run.facts == before
+    stroke(name, 1)
+    assert run.facts.cuts == 1 and run.facts.material == run.volume.volume < before[0]
+    assert run.facts is run.facts, "counted once"
+    assert of_the_mesh() == before, "the mesh has to wait"
+    bpy.ops.ed.undo()
+    run = work(name)
+    assert run.facts == before
+    stroke(name, 2)
+    kept = run.facts
+    live().end_all()
+    assert np.allclose(of_the_mesh(), kept, rtol=1e-6, atol=0), "of which Blender keeps single floats"
+
+
+def test_live_work_takes_the_place_of_what_is_damaged_in_the_file():
+    name = sculpt()
+    last = stroke(name, 1)
+    image = bpy.data.objects[name].data.riffler.store
+    block = bytearray(image.packed_file.data)
+    block[len(block) // 2] ^= 0xFF
+    image.pack(data=bytes(block), data_len=len(block))
+    support.part("bl.store").clear_cache()
+    live().end_all()
+    assert support.content(bpy.data.objects[name]).volume.to_bytes() == last
+    nothing_is_left()
+
+
+def test_a_stroke_that_changes_nothing_is_none_and_a_cancelled_one_leaves_no_trace():
+    name = sculpt()
+    run = work(name)
+    before = run.volume.to_bytes()
+    run.begin_stroke()
+    assert not run.finish_stroke(bpy.context)
+    run.carve(BALL, np.array([[10.0, 10, 15, 0, 0, 1], [40, 10, 15, 0, 0, 1]]))
+    run.show()
+    run.cancel_stroke()
+    assert run.volume.to_bytes() == before and run.cuts == []
+    is_shown(name)
+    live().end_all()
+    matches_its_volume(name)
+
+
+def test_any_walk_through_undo_and_redo_shows_the_state_that_was_made():
+    name = sculpt()
+    states = [work(name).volume.to_bytes()]
+    states += [stroke(name, k, ("remove", "add")[k % 4 == 3]) for k in range(8)]
+    at, rng = 8, np.random.default_rng(4)
+    for _ in range(30):
+        if (rng.random() < 0.5 and at > 1) or at == 8:
+            bpy.ops.ed.undo()
+            at -= 1
+        else:
+            bpy.ops.ed.redo()
+            at += 1
+        assert live().of(bpy.data.objects[name]).volume.to_bytes() == states[at], at
+        is_shown(name)
+    while at < 8:
+        bpy.ops.ed.redo()
+        at += 1
+    bpy.ops.ed.undo()
+    states[8:] = [stroke(name, 11)]
+    is_shown(name)
+    live().end_all()
+    assert support.content(bpy.data.objects[name]).volume.to_bytes() == states[8]
+
+
+def test_undo_fills_no_chunk_again():
+    name = sculpt()
+    for k in range(4):
+        stroke(name, k)
+    run = work(name)
+    run.stages.take_counts()
+    for _ in range(3):
+        bpy.ops.ed.undo()
+    for _ in range(3):
+        bpy.ops.ed.redo()
+    assert live().of(bpy.data.objects[name]) is run
+    assert run.stages.take_counts()["chunks"] == 0
+    is_shown(name)
+
+
+def test_undo_past_the_beginning_ends_the_work_and_redo_goes_on_with_it():
+    name = sculpt()
+    before = support.content(bpy.data.objects[name]).volume.to_bytes()
+    first, second = stroke(name, 0), stroke(name, 1)
+    bpy.ops.ed.undo()
+    bpy.ops.ed.undo()
+    assert live().of(bpy.data.objects[name]) is None
+    assert support.content(bpy.data.objects[name]).volume.to_bytes() == before
+    matches_its_volume(name)
+    bpy.ops.ed.redo()
+    assert live().of(bpy.data.objects[name]).volume.to_bytes() == first
+    is_shown(name)
+    bpy.ops.ed.redo()
+    assert live().of(bpy.data.objects[name]).volume.to_bytes() == second
+    live().end_all()
+    matches_its_volume(name)
+
+
+def test_undo_after_the_end_brings_the_work_back():
+    name = sculpt()
+    first, second = stroke(name, 0), stroke(name, 1)
+    live().end_all()
+    bpy.data.objects[name].location.x = 5
+    support.push("moved")
+    bpy.ops.ed.undo()
+    assert live().of(bpy.data.objects[name]).volume.to_bytes() == second
+    is_shown(name)
+    bpy.ops.ed.undo()
+    assert live().of(bpy.data.objects[name]).volume.to_bytes() == first
+    third = stroke(name, 2)
+    is_shown(name)
+    live().end_all()
+    assert support.content(bpy.data.objects[name]).volume.to_bytes() == third != second
+    matches_its_volume(name)
+    nothing_is_left()
+
+
+def test_two_sculpts_are_worked_at_and_undone_in_turn():
+    a, b = sculpt("A"), sculpt("B")
+    done = []
+    for k in range(6):
+        which = (a, b)[k % 2]
+        stroke(which, k)
+        done.append(
+            {n: live().of(bpy.data.objects[n]).volume.to_bytes() for n in (a, b) if live().of(bpy.data.objects[n])}
+        )
+    for k in range(4, 0, -1):
+        bpy.ops.ed.undo()
+        for n, state in done[k].items():
+            assert live().of(bpy.data.objects[n]).volume.to_bytes() == state, (k, n)
+            is_shown(n)
+    live().end_all()
+    for n in (a, b):
+        assert support.content(bpy.data.objects[n]).volume.to_bytes() == done[1][n]
+        matches_its_volume(n)
+    nothing_is_left()
+
+
+def test_a_saved_file_has_the_last_stroke_and_opens_without_chunks():
+    name = sculpt()
+    last = stroke(name, 3)
+    path = support.out("live.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    nothing_is_left()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert support.content(bpy.data.objects[name]).volume.to_bytes() == last
+    matches_its_volume(name)
+    nothing_is_left()
+
+
+def test_what_needs_the_sculpt_gets_what_is_shown():
+    name = sculpt()
+    last = stroke(name, 3)
+    path = support.out("live.stl")
+    bpy.context.view_layer.objects.active = bpy.data.objects[name]
+    assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
+    volume = live().of(bpy.data.objects[name]).volume
+    assert riffler.Mesh.read(path).volume == close_to(volume.to_mesh().volume)
+    assert volume.to_bytes() == last
+    assert bpy.ops.riffler.rebuild() == {"FINISHED"}
+    nothing_is_left()
+    matches_its_volume(name)
+
+
+def test_a_sculpt_that_is_removed_takes_its_work_with_it():
+    name = sculpt()
+    stroke(name, 1)
+    bpy.data.objects.remove(bpy.data.objects[name])
+    live().end_all()
+    nothing_is_left()
+
+
+def test_symmetry_cuts_copies_and_keeps_them_as_cuts():
+    symmetry = support.part("core.symmetry")
+    name = sculpt()
+    run = work(name)
+    run.maps = symmetry.maps("XY")
+    run.begin_stroke()
+    poses = np.array([[10.0, 10, 18, 0, 0, 1], [20, 10, 18, 0, 0, 1], [24, 14, 18, 0, 0, 1]])
+    run.carve(BALL, poses[:2])
+    run.carve(BALL, poses[1:], new=False)
+    run.finish_stroke(bpy.context, "four")
+    assert [c.moves for c in run.cuts] == [2, 2, 2, 2]
+    again = support.content(bpy.data.objects[name]).volume.copy()
+    for cut in run.cuts:
+        again.carve(riffler.Tool.from_dict(cut.tool), cut.poses)
+    assert again.volume == close_to(run.volume.volume)
+    live().end_all()
+
+
+def test_smoothing_takes_the_roughness_keeps_what_is_masked_and_is_undone():
+    name = sculpt()
+    for k in range(6):
+        stroke(name, 2 * k)
+    run = work(name)
+    rough = run.volume.to_bytes()
+    run.strength = 1.0
+    dabs = np.array([[x, 30.0, 19, 0, 0, 1] for x in np.arange(12.0, 48, 2)])
+    run.begin_stroke()
+    assert run.carve(riffler.Tool.ball(16, 30), dabs, mode="soften") is None
+    assert run.finish_stroke(bpy.context, "smooth")
+    smooth = run.volume.to_bytes()
+    assert smooth != rough and not run.volume.to_mesh().audit()["open_edges"]
+    is_shown(name)
+    bpy.ops.ed.undo()
+    assert live().of(bpy.data.objects[name]).volume.to_bytes() == rough
+    run = work(name)
+    run.begin_stroke()
+    run.carve(riffler.Tool.ball(60, 60), np.array([[30.0, 30, -5, 0, 0, 1], [30, 30.1, -5, 0, 0, 1]]), mode="mask")
+    run.carve(riffler.Tool.ball(16, 30), dabs, mode="soften")
+    kept = run.mask.copy().intersect(run.volume).to_bytes()
+    assert run.mask.copy().intersect(riffler.Volume.from_bytes(rough)).to_bytes() == kept
+    run.cancel_stroke()
+    assert run.volume.to_bytes() == rough
+
+
+def test_a_mask_protects_is_saved_and_undone():
+    name = sculpt()
+    run = work(name)
+    run.begin_stroke()
+    run.carve(BALL, np.array([[30.0, 5, 16, 0, 0, 1], [30, 55, 16, 0, 0, 1]]), mode="mask")
+    assert run.finish_stroke(bpy.context, "mask") and run.cuts == []
+    protected = run.mask.to_bytes()
+    full = run.volume.volume
+    stroke(name, 2)
+    kept = run.volume.copy().intersect(run.mask).volume
+    assert kept == close_to(run.mask.volume)
+    assert run.volume.volume < full
+    bpy.ops.ed.undo()
+    bpy.ops.ed.undo()
+    assert live().of(bpy.data.objects[name]) is None or live().of(bpy.data.objects[name]).mask is None
+    bpy.ops.ed.redo()
+    assert live().of(bpy.data.objects[name]).mask.to_bytes() == protected
+    path = support.out("mask.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert support.content(bpy.data.objects[name]).mask.to_bytes() == protected
+
+
+def covered(name_or_mesh):
+    """Area shares of faces with the mask's material: of a sculpt's chunks, or of one mesh."""
+    if isinstance(name_or_mesh, str):
+        found = [ob.data for ob in support.part("bl.chunks").collection_of(work(name_or_mesh).mark).objects]
+    else:
+        found = [name_or_mesh]
+    total = masked = 0.0
+    for mesh in found:
+        slots = [m.name if m else "" for m in mesh.materials]
+        for polygon in mesh.polygons:
+            total += polygon.area
+            if slots and slots[polygon.material_index] == "Riffler Mask":
+                masked += polygon.area
+    return masked / total
+
+
+def test_what_is_protected_is_seen_while_it_is_painted_and_afterwards():
+    name = sculpt(size=(40, 30, 20))
+    run = work(name)
+    assert covered(name) == 0
+    run.begin_stroke()
+    run.carve(riffler.Tool.flat(20, 60), np.array([[20.0, 15, -5, 0, 0, 1], [20, 15.001, -5, 0, 0, 1]]), mode="mask")
+    run.stages.take_counts()
+    assert run.finish_stroke(bpy.context, "mask")
+    # two discs of 10 mm radius on a block of 40 × 30 × 20
+    share = 2 * np.pi * 100 / (2 * (1200 + 800 + 600))
+    assert abs(covered(name) - share) < 0.03
+    run.begin_stroke()
+    run.carve(riffler.Tool.flat(20, 60), np.array([[5.0, 5, -5, 0, 0, 1], [5, 5.001, -5, 0, 0, 1]]), mode="mask")
+    run.show()
+    assert covered(name) > share + 0.05
+    run.cancel_stroke()
+    assert abs(covered(name) - share) < 0.03
+    live().end_all()
+    mesh = bpy.data.objects[name].data
+    assert abs(covered(mesh) - share) < 0.03
+    support.select(bpy.data.objects[name])
+    bpy.ops.riffler.mask_clear()
+    assert covered(mesh) == 0

@@ -1,0 +1,379 @@
+"""What is said where something cannot be: every refusal names the remedy, and nothing is changed or lost."""
+
+import ctypes
+import os
+import struct
+import sys
+from pathlib import Path
+
+import bmesh
+import bpy
+import numpy as np
+import plans
+
+import support
+
+# ---------------------------------------------------------------------- why a button is grey
+
+# Operators that change the active sculpt: refused in every one of the states below.
+OF_SCULPTS = {
+    "cut_curve", "cut_recording", "stroke", "pen_sculpt", "rebuild", "resample", "crop", "split", "take_edits",
+    "mask_form", "mask_invert", "mask_clear", "relief", "to_mesh",
+}  # fmt: skip
+
+
+def operators():
+    for module in support.part("registration").modules():
+        for cls in module.CLASSES:
+            if issubclass(cls, bpy.types.Operator):
+                yield cls.bl_idname.partition(".")[2]
+
+
+def refusals():
+    """By operator, why it is refused now; only those that are."""
+    found = {}
+    for name in operators():
+        call = getattr(bpy.ops.riffler, name)
+        if not call.poll():
+            try:
+                call()
+            except RuntimeError as error:
+                found[name] = str(error).strip().partition("poll() ")[2]
+    return found
+
+
+def nothing_selected():
+    support.stock()
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = None
+
+
+def wrong_type():
+    support.select(bpy.data.objects["Camera"])
+
+
+def edit_mode():
+    support.stock()
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def linked():
+    name = support.stock().name
+    path = support.out("messages.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile()
+    with bpy.data.libraries.load(path, link=True) as (_, into):
+        into.objects = [name]
+    bpy.context.collection.objects.link(into.objects[0])
+    bpy.context.view_layer.objects.active = into.objects[0]
+
+
+def work_running():
+    support.stock()
+    bpy.context.window_manager.riffler.running = "Cutting"
+
+
+def pen_elsewhere():
+    support.stock()
+    bpy.context.window_manager.riffler.sculpting = True
+
+
+STATES = {
+    nothing_selected: "Select a sculpt",
+    wrong_type: "Select a sculpt",
+    edit_mode: "Leave Edit Mode",
+    linked: "make it local",
+    work_running: "Esc cancels",
+    pen_elsewhere: "Esc ends it",
+}
+
+
+def test_no_button_is_grey_without_saying_why():
+    progress = bpy.context.window_manager.riffler
+    for state, remedy in STATES.items():
+        bpy.ops.wm.read_homefile(use_empty=False)
+        support.scale(1)
+        state()
+        try:
+            found = refusals()
+        finally:
+            progress = bpy.context.window_manager.riffler
+            progress.running, progress.sculpting = "", False
+            if bpy.context.mode != "OBJECT":
+                bpy.ops.object.mode_set(mode="OBJECT")
+        unsaid = [name for name, why in found.items() if not why or "context is incorrect" in why]
+        assert not unsaid, (state.__name__, unsaid)
+        assert set(found) >= OF_SCULPTS, (state.__name__, OF_SCULPTS - set(found))
+        wrong = {name: found[name] for name in OF_SCULPTS if remedy not in found[name]}
+        assert not wrong, (state.__name__, wrong)
+
+
+def test_work_at_another_sculpt_is_parked_not_lost():
+    """Somebody works at one sculpt, and another is cut: the first keeps what was carved."""
+    import sculpting
+
+    first, second = sculpting.sculpt("First"), sculpting.sculpt("Second")
+    sculpting.stroke(first, 1)
+    carved = sculpting.live().of(bpy.data.objects[first]).volume.to_bytes()
+    support.select(bpy.data.objects[second])
+    assert not refusals().keys() & OF_SCULPTS
+    assert bpy.ops.riffler.mask_invert() == {"FINISHED"}
+    assert support.content(bpy.data.objects[first]).volume.to_bytes() == carved
+    sculpting.matches_its_volume(first)
+
+
+def test_a_scene_that_becomes_millimetres_keeps_live_work():
+    import sculpting
+
+    name = sculpting.sculpt()
+    support.scale(10)
+    bpy.ops.riffler.rebuild()
+    sculpting.stroke(name, 1)
+    carved = sculpting.live().of(bpy.data.objects[name]).volume.to_bytes()
+    bpy.ops.riffler.millimetres()
+    sculpting.nothing_is_left()
+    ob = bpy.data.objects[name]
+    assert support.content(ob).volume.to_bytes() == carved
+    assert np.allclose(ob.dimensions[:2], sculpting.SIZE[:2])
+    sculpting.matches_its_volume(name)
+
+
+# ---------------------------------------------------------------------- bad input
+
+
+def cube(size=20.0, **more):
+    bpy.ops.mesh.primitive_cube_add(size=size, **more)
+    return bpy.context.object
+
+
+def refused(call, *words):
+    """With all the words, and nothing is there afterwards that was not before."""
+    before = [len(x) for x in (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.curves)]
+    text = support.refused(call, *words)
+    assert [len(x) for x in (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.curves)] == before, text
+
+
+def from_object(**more):
+    return bpy.ops.riffler.new_stock(source="OBJECT", **{"pitch": 0.5, "directions": "z", **more})
+
+
+def printed(call):
+    """What Blender prints while it runs, which are the operators' reports where no window shows them."""
+    path, kept = Path(support.out("printed.txt")), os.dup(1)
+    flush()
+    with path.open("w") as file:
+        os.dup2(file.fileno(), 1)
+        try:
+            call()
+        finally:
+            flush()
+            os.dup2(kept, 1)
+            os.close(kept)
+    return path.read_text()
+
+
+def flush():
+    """Blender prints some by itself, and some by Python."""
+    sys.stdout.flush()
+    ctypes.CDLL(None).fflush(None)
+
+
+def test_objects_without_volume():
+    support.scale(1)
+    bpy.ops.mesh.primitive_plane_add(size=20)
+    refused(from_object, "Plane is flat", "Solidify")
+    empty = bpy.data.objects.new("Nothing", bpy.data.meshes.new("Nothing"))
+    bpy.context.collection.objects.link(empty)
+    support.select(empty)
+    refused(from_object, "Nothing has no faces", "choose another")
+    support.select(bpy.data.objects["Camera"])
+    refused(from_object, "select the object", "mesh")
+
+
+def opened(ob):
+    made = bmesh.new()
+    made.from_mesh(ob.data)
+    made.faces.ensure_lookup_table()
+    bmesh.ops.delete(made, geom=[made.faces[0]], context="FACES")
+    made.to_mesh(ob.data)
+    made.free()
+
+
+def test_an_open_object_is_closed_and_that_is_said():
+    support.scale(1)
+    opened(cube())
+    assert "is not closed: 4 open edges" in printed(from_object)
+    assert abs(support.content(bpy.context.object).volume.volume - 8000) < 1
+    cube(location=(50, 0, 0))
+    assert "Warning" not in printed(from_object)
+
+
+def test_metres_taken_for_millimetres_are_refused_at_once():
+    """Blender's own cube, 2 m, at 0.5 mm would be 192 million triangles: more than its arrays hold."""
+    support.scale(1000)
+    cube(2.0)
+    refused(from_object, "2000 × 2000 × 2000 mm", "coarser pitch", "Scene in Millimetres")
+    bpy.context.view_layer.objects.active = None
+    refused(lambda: support.stock(size=(2000, 2000, 2000), pitch=0.5), "coarser pitch", "Scene in Millimetres")
+    bpy.ops.riffler.millimetres()
+    support.select(cube(20.0))
+    assert from_object() == {"FINISHED"}
+
+
+def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
+    support.scale(1)
+    ob = support.stock()
+    distorted = support.part("bl.sculpts").distorted
+    assert distorted(ob) == ""
+    ob.rotation_euler, ob.location = (0.3, 0.2, 0.1), (5, 6, 7)
+    bpy.context.view_layer.update()
+    assert distorted(ob) == ""
+    ob.scale = (1, 1, 2)
+    bpy.context.view_layer.update()
+    assert "Clear > Scale" in distorted(ob)
+    line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    assert "Clear > Scale" in printed(lambda: bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT))
+    above = bpy.data.objects.new("Above", None)
+    bpy.context.collection.objects.link(above)
+    ob.scale, ob.parent, above.scale = (1, 1, 1), above, (1, 3, 1)
+    bpy.context.view_layer.update()
+    assert "what it hangs on" in distorted(ob)
+
+
+def test_a_part_that_is_sheared_or_gone():
+    support.scale(1)
+    part = plans.part_object()
+    settings = bpy.context.scene.riffler.plan
+    support.select(part)
+    bpy.ops.riffler.plan_part()
+    above = bpy.data.objects.new("Above", None)
+    bpy.context.collection.objects.link(above)
+    above.scale, part.parent, part.rotation_euler = (1, 3, 1), above, (0.5, 0.3, 0.2)
+    bpy.context.view_layer.update()
+    refused(bpy.ops.riffler.plan_find, "Step is sheared", "Apply")
+    part.parent = None
+    bpy.data.objects.remove(above)
+    bpy.context.collection.objects.unlink(part)
+    assert settings.part == part
+    assert "set another part" in refusals()["plan_find"]
+    bpy.data.objects.remove(part)
+    assert "select one and use Set Part" in refusals()["plan_find"]
+
+
+def test_files_that_are_missing():
+    support.scale(1)
+    ob = support.stock()
+    before = bpy.context.scene.riffler.plan.tool
+    for call in (bpy.ops.riffler.plan_tool_open, bpy.ops.riffler.cut_recording):
+        refused(lambda call=call: call(filepath="/nowhere/x.rjournal"), "/nowhere", "choose")
+    refused(lambda: bpy.ops.riffler.plan_tool(path="/nowhere/x.json"), "x.json", "choose a tool file")
+    refused(lambda: bpy.ops.riffler.new_stock(source="RECORDING", recording="/nowhere/x.rjournal"), "choose another")
+    support.select(ob)
+    recording = {"device": "recording", "recording": "/nowhere/x.rjournal", "seconds": 1.0}
+    refused(lambda: bpy.ops.riffler.pen_sculpt(**recording), "/nowhere/x.rjournal", "choose another")
+    assert bpy.context.scene.riffler.plan.tool == before
+
+
+def exports():
+    return {name: getattr(bpy.ops.riffler, f"export_{name}") for name in ("stl", "3mf", "nc", "recording")}
+
+
+def test_folders_that_are_missing_or_may_not_be_written():
+    support.scale(1)
+    ob = support.stock()
+    line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT)
+    folder = Path(support.out("locked"))
+    folder.mkdir(exist_ok=True)
+    access = os.access
+    for name, call in exports().items():
+        path = folder / f"x.{name}"
+        path.unlink(missing_ok=True)
+        refused(lambda c=call: c(filepath="/nowhere/x", check_existing=False), "no folder /nowhere", "choose another")
+        os.access = lambda place, mode: str(place) != str(folder) and access(place, mode)  # the tests may run as root
+        try:
+            refused(lambda c=call, p=path: c(filepath=str(p), check_existing=False), "may not be written", "another")
+        finally:
+            os.access = access
+        assert not path.exists()
+        assert call(filepath=str(path), check_existing=False) == {"FINISHED"} and path.stat().st_size > 100
+        path.unlink()
+    assert support.content(ob).cuts
+    pen = {"device": "simulated", "record": True, "folder": "/nowhere", "seconds": 1.0}
+    refused(lambda: bpy.ops.riffler.pen_sculpt(**pen), "no folder /nowhere", "choose another")
+    refused(lambda: bpy.ops.riffler.plan_tool_save(folder="/proc/x"), "/proc/x", "choose a folder that can be written")
+
+
+def test_a_sculpt_of_a_newer_version_is_kept_and_named():
+    support.scale(1)
+    ob = support.stock()
+    packed, store = support.part("bl.packed"), support.part("bl.store")
+    image = ob.data.riffler.store
+    block = bytearray(packed.read(image, "the sculpt"))
+    block[8:12] = struct.pack("<I", 99)
+    packed.write(image, bytes(block), support.part("core.record").content_id(bytes(block)))
+    store.clear_cache()
+    for call in (bpy.ops.riffler.mask_invert, lambda: bpy.ops.riffler.export_stl(filepath=support.out("newer.stl"))):
+        refused(call, "format 99", "install a newer one")
+    assert packed.read(image, "the sculpt") == bytes(block) and len(ob.data.polygons) > 0
+
+
+def test_a_plan_of_a_newer_version_is_kept_and_named():
+    support.scale(1)
+    packed, store = support.part("bl.packed"), support.part("bl.plan_store")
+    import riffler
+
+    ob = store.new(bpy.context, riffler.plan.Plan(plans.paths()[:1], plans.TOOL, tolerance=0.01))
+    image = ob.riffler.plan.store
+    block = packed.read(image, "the plan")
+    newer = block.replace(b'"version": 1', b'"version": 99', 1).replace(b'"version":1', b'"version":99', 1)
+    assert newer != block
+    packed.write(image, newer, support.part("core.record").content_id(newer))
+    store.clear_cache()
+    support.select(ob)
+    refused(bpy.ops.riffler.plan_show, "newer Riffler")
+    assert packed.read(image, "the plan") == newer
+
+
+# ---------------------------------------------------------------------- its own folder
+
+
+def listing(root):
+    """(size, time) of every file; not of what Python keeps of modules that it has read."""
+    paths = [p for p in root.rglob("*") if p.is_file() and "__pycache__" not in p.parts]
+    return {p: (p.stat().st_size, p.stat().st_mtime_ns) for p in paths}
+
+
+def test_nothing_is_written_into_the_addons_own_folder():
+    import riffler
+    import sculpting
+
+    roots = [Path(support.part("registration").__file__).resolve().parent, Path(riffler.__file__).resolve().parent]
+    before = [listing(root) for root in roots]
+    assert all(len(found) > 20 for found in before)
+    name = sculpting.sculpt()
+    sculpting.stroke(name, 1)
+    support.part("bl.live").end_all()
+    line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    support.select(bpy.data.objects[name])
+    bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT)
+    for kind, call in exports().items():
+        call(filepath=support.out(f"own.{kind}"), check_existing=False)
+    bpy.ops.riffler.pen_sculpt(device="simulated", seconds=0.5, gap=500.0)
+    bpy.ops.riffler.to_mesh()
+    bpy.ops.riffler.plan_tool(name=support.part("core.presets").presets()[0]["name"])
+    bpy.ops.riffler.plan_tool_save(name="Own folder")
+    bpy.ops.riffler.doctor()
+    support.select(plans.part_object())
+    bpy.ops.riffler.plan_part()
+    bpy.ops.riffler.plan_find()
+    bpy.ops.riffler.plan_to_timeline()
+    assert [listing(root) for root in roots] == before
+    bpy.ops.preferences.addon_disable(module=support.MODULE)
+    bpy.ops.preferences.addon_enable(module=support.MODULE)
+    # Blender itself unpacks an extension's wheels again.
+    now = [listing(root) for root in roots]
+    assert now[0] == before[0] and now[1].keys() == before[1].keys()
+    saved = support.part("bl.libraries").target() / "Own folder.json"
+    assert saved.is_file()
+    saved.unlink()

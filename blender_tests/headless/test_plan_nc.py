@@ -1,0 +1,183 @@
+"""A plan's paths resolved, and written as NC code that says what the timeline plays."""
+
+import json
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import bpy
+import numpy as np
+import plans
+import programs
+import riffler
+
+import support
+
+
+def write(name="plan.ngc", **more):
+    path = support.out(name)
+    Path(path).unlink(missing_ok=True)
+    bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=path, **more)
+    return path
+
+
+def free(poses):
+    """The least clearance of poses over the step."""
+    return riffler.Collider(riffler.Mesh(*plans.step())).clearance(plans.TOOL, poses).min()
+
+
+def test_resolved_paths_become_nc_code_that_reads_back():
+    ob = programs.resolved()
+    (rows,) = programs.content(ob).cl
+    assert len(rows) >= len(programs.content(ob).paths[0]) and free(rows) > -0.011
+    settings = bpy.context.scene.riffler.plan
+    settings.feed, settings.spindle = 750, 9000
+    for machine in ("tcp", "linuxcnc-xyzac", "head-table"):
+        path = write(f"plan-{machine}.ngc", post=machine)
+        read = riffler.Program.read(path, machine=machine)
+        away = [np.linalg.norm(read.poses[:, :3] - row[:3], axis=1).min() for row in rows]
+        assert max(away) < 2e-4, (machine, max(away))
+        k = [int(np.linalg.norm(read.poses - row, axis=1).argmin()) for row in rows]
+        assert np.abs(read.poses[k, 3:] - rows[:, 3:]).max() < 1e-5 and (np.diff(k) > 0).all()
+        assert np.allclose(read.feed[k[1:]], 750, rtol=2e-3) and np.all(read.spindle[k] == 9000)
+        assert read.poses[read.rapid, 2].max() > 24  # above the part
+    text = Path(path).read_text()
+    assert (
+        "(part: Step" in text
+        and f"(plan: {ob.name})" in text
+        and support.part("bl.plan_store").identity(ob)[:16] in text
+    )
+
+
+def interpreted(path):
+    """X Y Z A C (n, 5) of the feed moves as LinuxCNC's interpreter says them. It needs a table of tools, and keeps a
+    file in the home folder."""
+    folder = Path(support.JOB["repo"]) / ".envs" / "linuxcnc" / "usr"
+    if not (folder / "bin" / "rs274").exists():
+        raise support.Skip("no LinuxCNC interpreter: make envs")
+    table, out = path.with_suffix(".tbl"), path.with_suffix(".canon")
+    table.write_text("T1 P1 Z0 D6\n")
+    out.unlink(missing_ok=True)
+    libraries = {"LD_LIBRARY_PATH": f"{folder}/lib:{folder}/lib/x86_64-linux-gnu", "HOME": str(path.parent)}
+    call = [folder / "bin" / "rs274", "-t", table, "-g", path, out]
+    done = subprocess.run(call, env=os.environ | libraries, capture_output=True, text=True, timeout=60, check=False)
+    text = out.read_text() if out.exists() else ""
+    assert done.returncode == 0 and "PROGRAM_END" in text, done.stderr or done.stdout
+    feeds = re.findall(r"STRAIGHT_FEED\((.*)\)", text)
+    return np.array([[float(x) for x in feed.split(",")] for feed in feeds])[:, [0, 1, 2, 3, 5]]
+
+
+def test_linuxcnc_accepts_it():
+    ob = programs.resolved()
+    path = Path(write("accepted.ngc", post="linuxcnc-xyzac"))
+    feeds, (rows,) = interpreted(path), programs.content(ob).cl
+    assert len(feeds) >= len(rows)
+    # a table tilts by A and turns by C: the axis in the part is Rz(−C) Rx(−A) z or its mirror, whose height is cos A
+    wanted = np.degrees(np.arccos(rows[:, 5]))
+    assert np.abs(np.abs(feeds[:, 3]).max() - wanted.max()) < 1e-3
+
+
+def test_what_collides_is_lifted_and_listed():
+    """A tool that stands square on the step's floor is free; leaning into the wall it is not, and is lifted."""
+    ob = programs.resolved(programs.valley(programs.LEANING, programs.INTO, programs.LEANING))
+    plan = programs.content(ob)
+    lines = programs.listed(ob.riffler.plan.findings)
+    kinds = {e["kind"] for e in lines}
+    if plan.cl[0] is None:
+        assert kinds & {"blocked", "unsafe"}
+    else:
+        assert "lifted" in kinds and free(plan.cl[0]) > -0.011
+    first = lines[0]
+    assert first["path"] == 0 and "Path 1, " in first["name"]
+    bpy.context.scene.frame_set(1)
+    assert bpy.ops.riffler.finding_go(of="PLAN", index=0) == {"FINISHED"}
+    track = support.part("bl.replan").layout_of(ob, plan).tracks[0]
+    assert track.nearest(bpy.context.scene.frame_current_final) == first["point"] > 0
+
+
+def test_unresolved_paths_are_refused():
+    ob = programs.plan(programs.valley(programs.LEANING), plans.ring())
+    path = support.out("refused.ngc")
+    Path(path).unlink(missing_ok=True)
+    call = lambda: bpy.ops.riffler.plan_nc(filepath=path)  # noqa: E731
+    support.refused(call, "path 2 without orientation", "set a key")
+    support.part("bl.plan_store").write(ob, riffler.plan.Plan([programs.valley(programs.LEANING)], plans.TOOL))
+    support.refused(call, "path 1 may collide", "Resolve")
+    bpy.ops.riffler.plan_resolve()
+    call()
+    for change in (lambda: setattr(bpy.context.scene.riffler.plan, "clearance", 0.3), moved):
+        change()
+        Path(path).unlink(missing_ok=True)
+        support.refused(call, "have changed", "Resolve")
+        assert not Path(path).exists()
+        bpy.ops.riffler.plan_resolve()
+        call()
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=path, options="[1]"), "JSON object")
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=path, post="3-axis"), "axis")
+
+
+def moved():
+    bpy.context.scene.riffler.plan.part.location.z = -0.5
+    bpy.context.view_layer.update()
+
+
+def test_a_key_that_changes_takes_the_path_s_locations_away():
+    from keyed import insert, pair
+
+    ob = programs.resolved(programs.valley(programs.LEANING), programs.valley((0, -0.3, 1)))
+    assert programs.content(ob).cl[0] is not None and programs.content(ob).cl[1] is not None
+    kept = programs.content(ob).cl[1]
+    insert(pair(ob)[0], 73, (0, -0.5, 1))
+    assert programs.content(ob).cl[0] is None and np.array_equal(programs.content(ob).cl[1], kept)
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "path 1 may collide")
+    bpy.ops.riffler.plan_resolve()
+    assert np.array_equal(programs.content(ob).cl[1], kept) and programs.content(ob).cl[0] is not None
+
+
+def test_blocked_paths_stay_unresolved_and_name_their_points():
+    """No lift of at most a hundredth of a millimetre frees a shank that stands in the wall."""
+    ob = programs.plan(programs.valley(programs.INTO))
+    bpy.ops.riffler.plan_resolve(max_lift=0.01)
+    assert programs.content(ob).cl[0] is None
+    lines = programs.listed(ob.riffler.plan.findings)
+    assert lines[0]["kind"] == "blocked" and "points from 0" in lines[0]["name"]
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "path 1 may collide")
+
+
+def test_resolving_is_one_step_of_undo():
+    ob = programs.plan()
+    name = ob.name
+    support.push("plan")
+    bpy.ops.riffler.plan_resolve("EXEC_DEFAULT", True)
+    assert programs.content(ob).cl[0] is not None
+    bpy.ops.ed.undo()
+    assert not any(rows is not None for rows in programs.content(bpy.data.objects[name]).cl)
+
+
+def test_the_plan_s_locations_are_what_plays():
+    ob = programs.resolved()
+    state = support.part("bl.replan").state(ob)
+    assert np.array_equal(state.motions[0].motion.poses, programs.content(ob).cl[0])
+    assert state.difference.small and not state.problems
+
+
+def test_options_reach_the_machine():
+    programs.resolved()
+    chosen = {"rot_point": [0, 0, -40], "offset": [0, 0, 25]}
+    bpy.context.scene.riffler.plan.options = json.dumps(chosen)
+    path = write("options.ngc", post="linuxcnc-xyzac")
+    read = riffler.Program.read(path, machine="linuxcnc-xyzac", options=chosen)
+    rows = support.part("bl.plan_store").plan(bpy.data.objects["Riffler Plan"]).cl[0]
+    assert max(np.linalg.norm(read.poses - row, axis=1).min() for row in rows) < 2e-4
+
+
+def test_what_is_missing_is_said():
+    bpy.context.view_layer.objects.active = None
+    for name in ("plan_resolve", "plan_nc"):
+        assert not getattr(bpy.ops.riffler, name).poll()
+        support.refused(getattr(bpy.ops.riffler, name), "Select a plan")
+    ob = programs.plan(timeline=False)
+    ob.riffler.plan.part = None
+    bpy.context.scene.riffler.plan.part = None
+    support.refused(bpy.ops.riffler.plan_resolve, "There is no part")

@@ -1,0 +1,286 @@
+"""The add-on's preferences: device, limits, threads and folders are those that are used; keys, menus, the doctor."""
+
+import contextlib
+import importlib.util
+import shutil
+from pathlib import Path
+
+import bpy
+import leftovers
+import numpy as np
+import riffler
+
+import support
+
+
+@contextlib.contextmanager
+def preferred(**chosen):
+    """Preferences outlast a file: given back afterwards."""
+    preferences = support.part("bl.chosen").preferences  # others after the add-on was disabled
+    before = {name: getattr(preferences(), name) for name in chosen}
+    try:
+        for name, value in chosen.items():
+            setattr(preferences(), name, value)
+        yield preferences()
+    finally:
+        for name, value in before.items():
+            setattr(preferences(), name, value)
+
+
+def folder(name):
+    path = Path(support.out(name))
+    shutil.rmtree(path, ignore_errors=True)
+    path.mkdir()
+    return path
+
+
+def other(device):
+    """A device of another kind than the simulated one; none is plugged in."""
+    return next(kind for kind in riffler.pen.kinds() if kind not in ("simulated", device))
+
+
+def test_the_preferences_are_the_addons_in_whatever_way_it_was_installed():
+    found = bpy.context.preferences.addons[support.MODULE].preferences
+    assert found == support.part("bl.chosen").preferences() and type(found).__name__ == "RifflerPreferences"
+
+
+def test_limits_come_as_they_are_in_the_core():
+    """The defaults of the native core (native/haptics/limits.hpp): 5 N, 300 N·mm, 2 W."""
+    given = support.part("bl.chosen").limits()
+    assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (5, 300, 2000))
+
+
+def test_no_session_lets_more_force_through_than_was_allowed():
+    """By its journal, which has every step: 0.2 N of the 5 that are let through otherwise."""
+    support.scale(1)
+    ob = support.stock(size=(60, 60, 20), pitch=0.5, directions="z")
+    place = folder("limited")
+    with preferred(force=0.2, torque=30.0, power=0.5):
+        settings = bpy.context.scene.riffler.pen
+        given = support.part("operators.pen").session_options(bpy.context, ob, settings)
+        assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (0.2, 30, 500))
+        device = {"device": "simulated", "gap": 0.0, "removal_constant": 0.5}
+        forces = []
+        for _ in range(4):  # a busy machine takes the force away now and then
+            bpy.ops.riffler.pen_sculpt(seconds=4.0, tool=support.BALL, record=True, folder=str(place), **device)
+            strokes = [s for p in place.glob("*.rjournal") for s in riffler.Journal.read(p).strokes]
+            forces = [np.linalg.norm(s.forces[:, :3], axis=1).max() for s in strokes if s.forces is not None and len(s)]
+            if forces:
+                break
+    assert forces, "the simulated hand has cut nothing four times"
+    assert 0 < max(forces) <= 0.2 + 1e-6, forces
+
+
+def test_the_device_is_the_one_of_the_preferences_unless_the_scene_has_another():
+    support.scale(1)
+    support.stock(size=(10, 10, 5), pitch=0.5)
+    assert bpy.context.scene.riffler.pen.device == "preferred"
+    kind = other("simulated")
+    with preferred(device=kind):
+        support.refused(lambda: bpy.ops.riffler.pen_sculpt(seconds=0.1))  # nothing of it is plugged in
+        assert bpy.ops.riffler.pen_sculpt(seconds=0.1, device="simulated", gap=500.0) == {"CANCELLED"}
+
+
+def test_threads():
+    automatic = riffler.threads()
+    with preferred(threads=3):
+        assert riffler.threads() == 3
+        bpy.ops.preferences.addon_disable(module=support.MODULE)
+        assert riffler.threads() == automatic
+        bpy.ops.preferences.addon_enable(module=support.MODULE)
+    assert riffler.threads() == automatic
+
+
+def test_saved_threads_are_used_again_when_the_addon_is_enabled():
+    with preferred(threads=3):
+        riffler.set_threads(None)
+        support.part("preferences").attach()
+        assert riffler.threads() == 3
+
+
+def test_journals_are_written_into_the_folder_that_was_chosen():
+    import sculpting
+
+    place = folder("journals")
+    with preferred(journals=str(place)):
+        sculpting.stroke(sculpting.sculpt(), 1)
+        assert len([p for p in place.iterdir() if p.is_dir()]) == 1
+        support.part("bl.live").end_all()
+        support.part("bl.keeping").drop()
+
+
+def test_journals_are_found_in_the_old_folder_too():
+    keeping, chosen = support.part("bl.keeping"), support.part("bl.chosen")
+    own = chosen.target("journals")
+    own.mkdir(parents=True, exist_ok=True)
+    with preferred(journals=str(folder("new journals"))) as found:
+        assert chosen.folders("journals") == [Path(found.journals), own]
+        assert keeping.folder() == Path(found.journals) and not keeping.crashed(look=True)
+        shutil.copytree(left_in(own), own / "cut off")  # the copy is held by nobody
+        try:
+            assert [f.folder for f in keeping.crashed(look=True)] == [own / "cut off"]
+        finally:
+            shutil.rmtree(own / "cut off")
+            keeping.crashed(look=True)
+
+
+def left_in(place):
+    """The folder of a journal with one stroke."""
+    import sculpting
+
+    with preferred(journals=""):
+        sculpting.stroke(sculpting.sculpt(), 1)
+        return next(p for p in place.iterdir() if p.is_dir())
+
+
+def test_a_folder_that_is_gone_is_named_and_work_goes_on():
+    import sculpting
+
+    gone = str(Path(support.out("")) / "gone")
+    libraries = support.part("bl.libraries")
+    with preferred(journals=gone, tools=gone):
+        name = sculpting.sculpt()
+        before = support.content(bpy.data.objects[name]).volume.volume
+        sculpting.stroke(name, 1)
+        run = support.part("bl.live").of(bpy.data.objects[name])
+        assert run.volume.volume < before
+        assert gone in run.keeping.problem and "preferences" in run.keeping.problem
+        support.part("bl.live").end_all()
+        _, problems = libraries.files()
+        assert any(gone in line for line in problems)
+        support.refused(lambda: bpy.ops.riffler.plan_tool_save(name="Mine"), gone, "preferences")
+    assert not Path(gone).exists()
+
+
+def test_tools_of_both_folders_are_offered():
+    place = folder("shared tools")
+    bpy.ops.riffler.plan_tool(name=support.part("core.presets").presets()[0]["name"])
+    with preferred(tools=str(place)):
+        bpy.ops.riffler.plan_tool_save(name="Everybody's")
+        assert len(list(place.iterdir())) == 1
+        assert "Everybody's" in [e.name for e in support.part("bl.libraries").files()[0]]
+
+
+def test_a_folder_beside_the_file_becomes_one_for_all_files():
+    bpy.ops.wm.save_as_mainfile(filepath=support.out("beside.blend"))
+    with preferred(tools="//") as found:
+        assert Path(found.tools) == Path(support.out("beside.blend")).parent
+
+
+def test_the_doctor_writes_what_it_finds_into_a_text():
+    assert bpy.ops.riffler.doctor() == {"FINISHED"}
+    text = bpy.data.texts["Riffler Doctor"].as_string()
+    import numpy
+
+    words = ("riffler", riffler.__version__, numpy.__version__, bpy.app.version_string, support.MODULE, "threads")
+    for word in (*words, str(support.part("bl.chosen").target("tools"))):
+        assert word in text, (word, text)
+    assert text.count("\nBlender ") == 1
+    bpy.ops.riffler.doctor()
+    assert [t.name for t in bpy.data.texts] == ["Riffler Doctor"]
+
+
+def blenders_keys():
+    """(keymap, key, ctrl, shift, alt) of everything in Blender's own configuration."""
+    for place in bpy.utils.script_paths():
+        path = Path(place) / "presets" / "keyconfig" / "keymap_data" / "blender_default.py"
+        if path.exists():
+            spec = importlib.util.spec_from_file_location("blender_default", path)
+            module = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(module)
+            for name, _, content in module.generate_keymaps(module.Params(select_mouse="LEFT")):
+                for _, key, _ in content["items"]:
+                    yield (name, key["type"], *(bool(key.get(m)) for m in ("ctrl", "shift", "alt")))
+            return
+    raise AssertionError("Blender's keys were not found")
+
+
+def test_the_keys_are_in_the_addons_configuration_and_take_none_of_blenders():
+    keymaps = support.part("ui.keymaps")
+    assert len(list(keymaps.users())) == len(keymaps.KEYS)
+    assert len([line for line in leftovers.keymaps() if "wm.call_menu" in line]) >= len(keymaps.KEYS)
+    taken = set(blenders_keys())
+    assert ("Object Mode", "D", False, True, False) in taken  # duplicate
+    for _, _, key, _ in keymaps.KEYS:
+        for name in ("Object Mode", "3D View", "3D View Generic", "Object Non-modal", "Window", "Screen", "Frames"):
+            assert (name, key["type"], *(key.get(m, False) for m in ("ctrl", "shift", "alt"))) not in taken, (name, key)
+
+
+def test_menus_are_drawn_into_blenders():
+    drawn = leftovers.menus(support.MODULE)
+    assert len(drawn) == 4 and any("VIEW3D_MT_mesh_add" in line for line in drawn), drawn
+
+
+def shown():
+    """(where, property) of all that a person can set, and (where, None) of operators."""
+    for module in support.part("registration").modules():
+        for cls in module.CLASSES:
+            if issubclass(cls, bpy.types.Operator):
+                rna = getattr(bpy.ops.riffler, cls.bl_idname.partition(".")[2]).get_rna_type()
+                yield cls.__name__, None, rna
+            elif cls.__name__ == "RifflerPreferences" or (
+                issubclass(cls, bpy.types.PropertyGroup) and cls.__name__ in groups()
+            ):
+                rna = cls.bl_rna
+            else:
+                continue
+            own = {p.identifier for p in rna.properties} - {"rna_type", "name", "bl_idname"}
+            own |= {"name"} & set(getattr(cls, "__annotations__", {}))
+            for name in sorted(own):
+                if not rna.properties[name].is_hidden:
+                    yield cls.__name__, rna.properties[name], rna
+
+
+def groups():
+    """Of the scene's settings: what objects, meshes and the window manager have is shown nowhere."""
+    scene = support.part("properties").RifflerScene.bl_rna
+    return {p.fixed_type.identifier for p in scene.properties if p.type == "POINTER" and p.identifier != "rna_type"}
+
+
+def test_whatever_a_person_can_press_or_set_has_a_tooltip_in_one_line():
+    seen = list(shown())
+    assert len(seen) > 150 and len(groups()) >= 9
+    bad = [(where, p.identifier if p else "itself") for where, p, rna in seen if not (p or rna).description]
+    assert not bad, bad
+    bad = [where for where, p, rna in seen if "\n" in (p or rna).description or (p or rna).description.endswith(".")]
+    assert not bad, bad
+
+
+def test_every_text_of_the_translations_is_one_of_the_addons():
+    """In a class, or word by word in the sources (what is drawn, and why something is refused)."""
+    import ast
+
+    known = set()
+    for _, p, rna in shown():
+        known |= {(p or rna).name, (p or rna).description}
+        if p is not None and p.type == "ENUM":
+            known |= {t for item in p.enum_items for t in (item.name, item.description)}
+    root = Path(support.part("registration").__file__).parent
+    for path in root.rglob("*.py"):
+        if "_vendor" not in path.parts:
+            known |= {n.value for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if is_text(n)}
+    table = support.part("translations").table()
+    assert set(table) >= {"de"}
+    for language, texts in table.items():
+        unknown = {text for _, text in texts} - known
+        assert not unknown, (language, unknown)
+        assert all(said.strip() and said[-1:] != "." for said in texts.values()), language
+
+
+def is_text(node):
+    import ast
+
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
+
+
+def test_a_blender_in_german_speaks_german():
+    view = bpy.context.preferences.view
+    if "de_DE" not in bpy.app.translations.locales:
+        raise support.Skip("this Blender was built without languages")
+    before = view.language
+    try:
+        view.language = "de_DE"
+        view.use_translate_interface = True
+        assert bpy.app.translations.pgettext_iface("New Stock", "Operator") == "Neues Rohteil"
+    finally:
+        view.language = before

@@ -1,0 +1,105 @@
+"""From sculpts to meshes and files, and how far they are from what they should be."""
+
+import bpy
+import numpy as np
+import riffler
+
+import support
+
+
+def sculpt():
+    support.scale(1)
+    ob = support.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
+    path = support.curve("C", [(-5, 15, 18), (45, 15, 18)], mm_per_unit=1.0)
+    support.select(ob)
+    bpy.ops.riffler.cut_curve(curve=path.name, tool=support.BALL)
+    return ob
+
+
+def values(mesh, name, field="value", width=1):
+    out = np.empty(len(mesh.vertices) * width, np.float32)
+    mesh.attributes[name].data.foreach_get(field, out)
+    return out.reshape(-1, width) if width > 1 else out
+
+
+def test_a_mesh_is_made_with_the_error_that_is_said():
+    ob = sculpt()
+    exact = support.content(ob).volume.to_mesh()
+    assert bpy.ops.riffler.to_mesh(tolerance=0.02, iterations=3, smooth_tolerance=0.01) == {"FINISHED"}
+    made = bpy.context.object
+    assert made != ob and not made.data.riffler.store and ob.hide_get()
+    co, tri = support.coordinates(made.data), support.triangles(made.data)
+    assert 0 < len(tri) < 0.2 * len(exact.triangles)
+    mesh = riffler.Mesh(co.astype(float), tri)
+    assert mesh.audit()["open_edges"] == 0
+    # against the dense surface, both ways: smoothing and decimating each keep their tolerance
+    assert max(np.abs(mesh.deviation(exact)).max(), np.abs(exact.deviation(mesh)).max()) < 0.03 + 1e-5
+
+
+def test_without_decimation_and_smoothing_the_mesh_is_the_sculpts():
+    ob = sculpt()
+    exact = support.content(ob).volume.to_mesh()
+    assert bpy.ops.riffler.to_mesh(tolerance=0.0, hide_sculpt=False) == {"FINISHED"}
+    assert len(bpy.context.object.data.polygons) == len(exact.triangles) and not ob.hide_get()
+
+
+def test_3mf_and_stl_hold_the_same_surface():
+    ob = sculpt()
+    ob.location.x = 7
+    bpy.context.view_layer.update()
+    support.select(ob)
+    for name in ("stl", "3mf"):
+        path = support.out(f"result.{name}")
+        assert getattr(bpy.ops.riffler, f"export_{name}")(filepath=path) == {"FINISHED"}
+    stl = riffler.Mesh.read(support.out("result.stl"))
+    assert abs(stl.bounds[0][0] - 7) < 1e-4
+    import zipfile
+    from xml.etree import ElementTree
+
+    with zipfile.ZipFile(support.out("result.3mf")) as archive:
+        model = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+    core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+    x = [float(v.get("x")) for v in model.iter(core + "vertex")]
+    assert abs(min(x) - 7) < 1e-6 and len(list(model.iter(core + "triangle"))) == len(stl.triangles)
+    support.refused(lambda: bpy.ops.riffler.export_3mf(filepath=support.out("none/result.3mf")), "none")
+
+
+def test_deviation_is_an_attribute_in_mm_with_colours():
+    ob = sculpt()
+    bpy.ops.mesh.primitive_cube_add(size=1)
+    reference = bpy.context.object
+    reference.dimensions = (40, 30, 19.9)
+    reference.location = (20, 15, 9.95)
+    bpy.context.view_layer.update()
+    support.select(ob)
+    assert bpy.ops.riffler.show_deviation(reference=reference.name, scale=0.2) == {"FINISHED"}
+    distance, z = values(ob.data, "riffler_deviation"), support.coordinates(ob.data)[:, 2]
+    inside = (np.abs(support.coordinates(ob.data)[:, 1] - 15) > 4) & (z > 19.99)
+    assert np.allclose(distance[inside], 0.1, atol=1e-3)
+    assert distance.min() < -1.5  # the groove
+    colour = values(ob.data, "riffler_deviation_colour", "color", 4)
+    assert colour[np.argmin(distance), 0] > colour[np.argmin(distance), 2]
+    assert ob.data.color_attributes.active_color.name == "riffler_deviation_colour"
+    assert bpy.ops.riffler.hide_deviation() == {"FINISHED"}
+    assert "riffler_deviation" not in ob.data.attributes and not bpy.ops.riffler.hide_deviation.poll()
+    support.refused(lambda: bpy.ops.riffler.show_deviation(reference="Nothing"), "there is no object")
+    support.refused(lambda: bpy.ops.riffler.show_deviation(reference=ob.name), "itself")
+
+
+def test_stock_from_a_sculpt_is_its_volume():
+    ob = sculpt()
+    before = support.content(ob).volume.to_bytes()
+    support.select(ob)
+    assert bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz") == {"FINISHED"}
+    copy = bpy.context.object
+    assert copy != ob and ob.hide_get() and support.content(copy).volume.to_bytes() == before
+    support.select(copy)
+    assert bpy.ops.riffler.new_stock(source="OBJECT", pitch=1.0, directions="z") == {"FINISHED"}
+    coarse = support.content(bpy.context.object).volume
+    assert coarse.pitch == 1.0 and abs(coarse.volume - support.content(ob).volume.volume) < 0.005 * coarse.volume
+
+
+def test_a_reference_without_a_surface_is_refused():
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.collection.objects.link(bpy.data.objects.new("Nothing", None))
+    support.refused(lambda: bpy.ops.riffler.show_deviation(reference="Nothing"), "Nothing", "has no surface")

@@ -1,0 +1,288 @@
+"""Scenes as artists have them: collections that are excluded or linked, objects scaled to nothing, shape keys, many
+objects. What cannot be done is said, nothing is left half done, and nothing is looked for again and again."""
+
+from types import SimpleNamespace
+
+import bpy
+import keyed
+import numpy as np
+import plans
+import programs
+import riffler
+import sculpting
+from sculpting import live
+
+import support
+
+
+def datablocks():
+    """How many there are of what the add-on makes."""
+    places = (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.collections, bpy.data.materials)
+    return tuple(map(len, places))
+
+
+def exclude(ob):
+    """Puts an object into a collection of its own that the view layer leaves out."""
+    home = bpy.data.collections.new("Away")
+    bpy.context.scene.collection.children.link(home)
+    for collection in ob.users_collection:
+        collection.objects.unlink(ob)
+    home.objects.link(ob)
+    bpy.context.view_layer.layer_collection.children["Away"].exclude = True
+
+
+def linked(name="Elsewhere"):
+    """A collection of another file, with a cube, in this scene."""
+    path = support.out("elsewhere.blend")
+    bpy.ops.wm.read_homefile(use_empty=False)
+    home = bpy.data.collections.new(name)
+    home.objects.link(bpy.data.objects.new("Far Cube", bpy.data.objects["Cube"].data))
+    bpy.context.scene.collection.children.link(home)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=False)
+    with bpy.data.libraries.load(path, link=True) as (_, into):
+        into.collections = [name]
+    bpy.context.scene.collection.children.link(bpy.data.collections[name])
+    return bpy.data.collections[name]
+
+
+def activate(name):
+    layer = bpy.context.view_layer.layer_collection.children[name]
+    bpy.context.view_layer.active_layer_collection = layer
+    return layer
+
+
+# ------------------------------------------------------------------ collections
+def test_a_stock_in_an_excluded_collection_is_not_simulated_and_nothing_is_left():
+    programs.resolved()
+    stock = programs.stock()
+    exclude(stock)
+    before = datablocks()
+    support.refused(lambda: bpy.ops.riffler.simulate(source="PLAN"), "Stock is in no collection", "Outliner")
+    assert support.part("bl.simulating").active() is None and datablocks() == before
+
+
+def test_a_stock_in_an_excluded_collection_is_verified_all_the_same():
+    programs.resolved()
+    stock = programs.stock()
+    exclude(stock)
+    for coloured in ("PART", "LEFT"):
+        assert bpy.ops.riffler.verify(source="PLAN", coloured=coloured) == {"FINISHED"}
+    assert programs.settings().hidden == "Step"
+    assert bpy.ops.riffler.verify_clear() == {"FINISHED"} and not bpy.data.objects["Step"].hide_get()
+
+
+def test_new_stock_is_seen_whatever_collection_is_active():
+    linked()
+    activate("Elsewhere")
+    assert support.stock().users_collection == (bpy.context.scene.collection,)
+    home = bpy.data.collections.new("Excluded")
+    bpy.context.scene.collection.children.link(home)
+    activate("Excluded").exclude = True
+    ob = support.stock()
+    bpy.context.view_layer.update()
+    assert bpy.context.object == ob and ob.visible_get()
+
+
+def test_fixtures_of_another_file_are_not_changed():
+    bpy.context.scene.riffler.plan.fixtures = linked()
+    for name, operator in (("Cube", "plan_fixtures_add"), ("Far Cube", "plan_fixtures_remove")):
+        support.select(bpy.data.objects[name])
+        support.refused(getattr(bpy.ops.riffler, operator), "Elsewhere is linked", "choose another collection")
+
+
+def test_a_mesh_of_another_file_is_not_coloured():
+    linked()
+    support.select(bpy.data.objects["Far Cube"])
+    support.refused(lambda: bpy.ops.riffler.show_deviation(reference="Cube"), "Far Cube is linked", "make it local")
+
+
+# ------------------------------------------------------------------ objects
+def test_a_sculpt_that_is_scaled_to_nothing_says_what_helps():
+    ob = bpy.data.objects[sculpting.sculpt()]
+    support.curve("Line", [(-15, 0, 8), (15, 0, 8)], mm_per_unit=1.0)
+    before = support.content(ob).volume.to_bytes()
+    calls = {
+        "cut_curve": {"curve": "Line"},
+        "crop": {"normal": (0, 0, 1)},
+        "mask_form": {"form": "Cube"},
+        "take_edits": {},
+        "pen_sculpt": {"seconds": 0.1, "device": "simulated", "start": "CURSOR"},
+    }
+    for scale in ((0, 0, 0), (1, 1, 0)):
+        ob.scale = scale
+        support.select(ob)
+        bpy.context.view_layer.update()
+        for name, settings in calls.items():
+            call = getattr(bpy.ops.riffler, name)
+            support.refused(lambda c=call, s=settings: c(**s), "scaled to nothing", "Clear > Scale")
+    assert support.content(ob).volume.to_bytes() == before and not live().lives
+
+
+def test_the_cursor_over_a_live_sculpt_that_is_scaled_to_nothing_is_quiet():
+    name = sculpting.sculpt()
+    run = sculpting.work(name)
+    pointer, tool = support.part("drawing.pointer"), bpy.context.scene.riffler.tool.dictionary()
+    space = SimpleNamespace(perspective_matrix=np.diag([1 / 60, 1 / 60, -1 / 60, 1]))
+    context = SimpleNamespace(region=SimpleNamespace(width=600, height=600), region_data=space, scene=bpy.context.scene)
+    assert pointer._on_surface(context, "remove", run, tool, (500, 500))  # from above, over the stock
+    bpy.data.objects[name].scale = (1, 1, 0)
+    bpy.context.view_layer.update()
+    assert pointer._on_surface(context, "remove", run, tool, (500, 500)) is None
+    live().end_all()
+
+
+def test_a_plane_that_is_flat_crops_and_one_that_is_a_line_is_refused():
+    ob = bpy.data.objects[sculpting.sculpt()]
+    plane = bpy.data.objects.new("Plane", None)
+    bpy.context.collection.objects.link(plane)
+    plane.location = ob.location
+    volumes = []
+    for scale in ((1, 1, 1), (1, 1, 0), (2, 3, 0)):  # somebody pressed S Z 0
+        plane.location.z = ob.matrix_world.translation.z + 12
+        plane.scale = scale
+        bpy.context.view_layer.update()
+        support.select(ob)
+        support.push("crop")
+        assert bpy.ops.riffler.crop("EXEC_DEFAULT", True, plane="Plane") == {"FINISHED"}
+        volumes.append(support.content(ob).volume.volume)
+        bpy.ops.ed.undo()
+        ob, plane = bpy.data.objects[ob.name], bpy.data.objects["Plane"]
+    assert np.ptp(volumes) < 1e-9 * volumes[0]
+    plane.scale = (0, 1, 1)
+    bpy.context.view_layer.update()
+    support.select(ob)
+    support.refused(lambda: bpy.ops.riffler.crop(plane="Plane"), "Plane is scaled to nothing", "Clear > Scale")
+    bpy.data.images.new("Picture", 8, 8)
+    call = lambda: bpy.ops.riffler.relief(image="Picture", place="Plane")  # noqa: E731
+    support.refused(call, "Plane is scaled to nothing")
+
+
+def test_shape_keys_go_with_the_vertices_that_they_were_of():
+    ob = bpy.data.objects[sculpting.sculpt()]
+    support.curve("Line", [(-15, 0, 18), (15, 0, 18)], mm_per_unit=1.0)
+    support.select(ob)
+    ob.shape_key_add(name="Basis")
+    ob.shape_key_add(name="Key").value = 1.0
+    edited = support.part("bl.sculpts").edited
+    assert edited(ob.data)  # so the panel says that they go, and offers to take them over
+    assert bpy.ops.riffler.cut_curve(curve="Line", tool=support.FLAT, depth=2.0) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    seen = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    assert np.array_equal(support.coordinates(seen), support.coordinates(ob.data))
+    assert not edited(ob.data)
+    sculpting.matches_its_volume(ob.name)
+
+
+def test_shape_keys_are_taken_over_as_edits():
+    ob = bpy.data.objects[sculpting.sculpt()]
+    volume = support.content(ob).volume.volume
+    support.select(ob)
+    ob.shape_key_add(name="Basis")
+    key = ob.shape_key_add(name="Longer")
+    co = np.empty((len(key.data), 3), np.float32)
+    key.data.foreach_get("co", co.ravel())
+    co[:, 0] *= 1.5
+    key.data.foreach_set("co", co.ravel())
+    key.value = 1.0
+    bpy.context.view_layer.update()
+    assert bpy.ops.riffler.take_edits() == {"FINISHED"}
+    assert abs(support.content(ob).volume.volume - 1.5 * volume) < 1e-3 * volume
+    sculpting.matches_its_volume(ob.name)
+
+
+# ------------------------------------------------------------------ failures
+def test_one_sculpt_that_cannot_be_ended_keeps_no_other_from_being_saved():
+    first, second = sculpting.sculpt("First"), sculpting.sculpt("Second")
+    sculpting.stroke(first, 1)
+    made = sculpting.stroke(second, 2)
+    run = live().of(bpy.data.objects[first])
+    original = run.end
+
+    def end():
+        raise MemoryError
+
+    run.end = end
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=support.out("one.blend"), copy=True)
+        assert support.content(bpy.data.objects[second]).volume.to_bytes() == made
+        assert "First: there is not enough memory" in bpy.context.window_manager.riffler.notice
+        assert [r.name for r in live().awake()] == [first]
+        bpy.context.window_manager.riffler.notice = ""
+        bpy.ops.wm.save_as_mainfile(filepath=support.out("one.blend"), copy=True)
+        assert not bpy.context.window_manager.riffler.notice  # the same again is not told again
+        support.select(bpy.data.objects[second])
+        support.refused(bpy.ops.riffler.rebuild, "not enough memory")
+    finally:
+        run.end = original
+        live().end_all()
+    sculpting.nothing_is_left()
+
+
+def test_pieces_are_not_lost_where_one_of_them_cannot_be_made():
+    support.scale(1)
+    ob = support.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
+    volume = support.content(ob).volume.copy()
+    for x in (13.0, 26.0):  # two slots through the block: three pieces
+        volume.carve(riffler.Tool.flat(4, 40), np.array([[x, -4, -1, 0, 0, 1], [x, 34, -1, 0, 0, 1]]))
+    sculpts = support.part("bl.sculpts")
+    sculpts.commit(ob.data, support.part("core.cache").Content(volume, []), 1.0)
+    before, count, commit, calls = support.content(ob).volume.to_bytes(), datablocks(), sculpts.commit, []
+
+    def failing(*arguments):
+        calls.append(arguments)
+        if len(calls) == 2:
+            raise MemoryError
+        return commit(*arguments)
+
+    sculpts.commit = failing
+    try:
+        support.refused(bpy.ops.riffler.split, "not enough memory")
+    finally:
+        sculpts.commit = commit
+    assert support.content(ob).volume.to_bytes() == before and len(calls) == 2
+    assert datablocks()[:2] == count[:2]
+    assert bpy.ops.riffler.split() == {"FINISHED"} and len(bpy.data.objects) == count[0] + 2
+
+
+def test_a_linked_duplicate_of_what_is_left_is_kept():
+    programs.resolved()
+    programs.stock()
+    bpy.ops.riffler.verify(source="PLAN", coloured="LEFT")
+    support.select(programs.settings().left)
+    bpy.ops.object.duplicate(linked=True)
+    name = bpy.context.object.name
+    bpy.ops.riffler.verify_clear()
+    assert "Stock Left" not in bpy.data.objects and len(bpy.data.objects[name].data.polygons)
+
+
+# ------------------------------------------------------------------ many objects
+def test_plans_are_looked_for_once_among_many_objects():
+    ob = plans.on_timeline()
+    store = support.part("bl.plan_store")
+    for _ in range(200):
+        bpy.context.scene.collection.objects.link(bpy.data.objects.new("Other", None))
+    bpy.context.view_layer.objects.active = bpy.data.objects["Other"]
+    keyed.update()
+    before = store.searches
+    for _ in range(50):
+        assert store.active(bpy.context) == ob and bpy.ops.riffler.plan_resolve.poll() is False
+    assert store.searches == before + 1
+    bpy.data.objects["Other"].location.x = 1
+    keyed.update()
+    assert store.active(bpy.context) == ob and store.searches == before + 1
+    # whatever makes it another list is seen at once
+    twin = store.new(bpy.context, store.plan(ob), "Twin")
+    assert store.in_scene(bpy.context.scene) == [ob, twin]
+    bpy.data.objects.remove(twin)
+    assert store.in_scene(bpy.context.scene) == [ob]
+    ob.name = "Renamed"
+    assert store.in_scene(bpy.context.scene) == [ob]
+    assert store.in_scene(bpy.data.scenes.new("Empty")) == []
+    (home,) = ob.users_collection
+    home.objects.unlink(ob)  # no more and no fewer objects
+    keyed.update()
+    assert store.in_scene(bpy.context.scene) == []
+    home.objects.link(ob)
+    keyed.update()
+    assert store.in_scene(bpy.context.scene) == [ob]

@@ -1,0 +1,199 @@
+"""What becomes of a plan on the timeline: undo, files, another speed, cutter locations, copies, several plans."""
+
+import bpy
+import numpy as np
+import plans
+import riffler
+from keyed import close, curves, indices, insert, pair, paths, seen, state, tracks, update
+
+import support
+
+
+def test_a_key_and_what_it_did_are_one_step_of_undo():
+    ob = plans.on_timeline()
+    name = ob.name
+    support.push("timeline")
+    before = [p.axes for p in paths(ob)]
+    insert(pair(ob)[0], 73, (0, -0.3, 1))
+    support.push("key")
+    with_key = [p.axes for p in paths(ob)]
+    insert(pair(bpy.data.objects[name])[0], 20, (0, -0.2, 1))
+    support.push("another")
+    both = [p.axes for p in paths(bpy.data.objects[name])]
+
+    def check(wanted, count):
+        update()
+        ob = bpy.data.objects[name]
+        assert all(np.allclose(p.axes, a, atol=1e-7) for p, a in zip(paths(ob), wanted, strict=True))
+        assert len(curves(pair(ob)[0])[0].keyframe_points) == 5 + count
+        axis = seen(ob, 73)[1]
+        assert close(axis, wanted[0][72], 1e-5), "the animation is not that of the plan"
+
+    check(both, 2)
+    for _ in range(2):
+        bpy.ops.ed.undo()
+        check(with_key, 1)
+        bpy.ops.ed.undo()
+        check(before, 0)
+        bpy.ops.ed.redo()
+        check(with_key, 1)
+        bpy.ops.ed.redo()
+        check(both, 2)
+
+
+def test_undo_where_the_consequence_came_after_the_step():
+    """As in a window: Blender's step is made when the key is set, the plan follows a moment later."""
+    ob = plans.on_timeline()
+    name, replan = ob.name, support.part("bl.replan")
+    support.push("timeline")
+    before = paths(ob)[0].axes
+    with_held(replan, lambda: (insert(pair(ob)[0], 73, (0, -0.3, 1)), support.push("key")))
+    assert np.array_equal(paths(bpy.data.objects[name])[0].axes, before)
+    replan.flush()
+    after = paths(bpy.data.objects[name])[0].axes
+    assert not np.allclose(after, before)
+    for _ in range(2):
+        bpy.ops.ed.undo()
+        update()
+        ob = bpy.data.objects[name]
+        assert np.allclose(paths(ob)[0].axes, before, atol=1e-7) and close(seen(ob, 73)[1], before[72])
+        bpy.ops.ed.redo()
+        update()
+        ob = bpy.data.objects[name]
+        assert np.allclose(paths(ob)[0].axes, after, atol=1e-7) and close(seen(ob, 73)[1], after[72])
+
+
+def with_held(replan, action):
+    """Runs it while nothing follows from keyframes."""
+    soon, replan._soon = replan._soon, lambda: None
+    try:
+        action()
+    finally:
+        replan._soon = soon
+
+
+def test_save_and_reopen():
+    ob = plans.on_timeline()
+    insert(pair(ob)[0], 73, (0, -0.3, 1))
+    name, axes, where = ob.name, [p.axes for p in paths(ob)], seen(ob, 60.5)
+    path = support.out("timeline.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    ob = bpy.data.objects[name]
+    assert all(np.array_equal(p.axes, a) for p, a in zip(paths(ob), axes, strict=True))
+    assert all(close(a, b, 1e-6) for a, b in zip(seen(ob, 60.5), where, strict=True))
+    insert(pair(ob)[0], 100, (0.1, 0, 1))
+    assert indices(ob)[0] == [0, 72, 99, 144] and not state(ob).problems
+
+
+def test_a_file_whose_keys_were_edited_without_the_add_on():
+    ob = plans.on_timeline()
+    name, replan = ob.name, support.part("bl.replan")
+    path = support.out("edited.blend")
+    with_held(replan, lambda: (insert(pair(ob)[0], 73, (0, -0.3, 1)), bpy.ops.wm.save_as_mainfile(filepath=path)))
+    bpy.ops.wm.read_homefile()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    update()
+    assert indices(bpy.data.objects[name])[0] == [0, 72, 144]
+
+
+def test_another_speed_keeps_keys_and_orientations():
+    ob = plans.on_timeline()
+    insert(pair(ob)[0], 73, (0, -0.3, 1))
+    before = paths(ob)
+    places = [[tuple(p.centres[k]) for k in p.keys] for p in before]
+    bpy.ops.riffler.plan_to_timeline(frames_per_mm=10, first=100)
+    assert (tracks(ob)[0].first, tracks(ob)[0].last) == (100, 700)
+    after = paths(ob)
+    assert [[tuple(p.centres[k]) for k in p.keys] for p in after] == places
+    assert len(after[0]) == 721, len(after[0])
+    assert close(after[0].axes[::5], before[0].axes, 1e-6)
+    assert close(seen(ob, 400)[1], before[0].axes[72], 1e-6)
+    images = len(bpy.data.images)
+    bpy.ops.riffler.plan_to_timeline(frames_per_mm=10, first=100)
+    assert len(bpy.data.objects) == len(set(bpy.data.objects)) and len(bpy.data.images) == images
+    assert [len(p) for p in paths(ob)] == [len(p) for p in after]
+
+
+def test_cutter_locations_are_played_until_a_key_changes():
+    """Rows that were lifted 5 mm, one was inserted, two are blocked."""
+    ob = plans.on_timeline()
+    store = support.part("bl.plan_store")
+    plan = store.plan(ob)
+    path = plan.paths[0]
+    rows = np.hstack([path.centres + 2 * path.axes, path.axes])
+    rows = np.vstack([rows[:50], (rows[50] + rows[51]) / 2, rows[53:]])
+    rows[:, 3:] /= np.linalg.norm(rows[:, 3:], axis=1)[:, None]
+    ring = plan.paths[1]
+    store.write(ob, riffler.plan.Plan(plan.paths, plan.tool, cl=[rows, None], tolerance=0.01))
+    support.part("bl.replan").sync(bpy.context.scene, ob)
+    for frame in (1, 30, 49, 90, 145):
+        tip, axis = seen(ob, frame)
+        assert close(tip, path.centres[frame - 1] + 2 * path.axes[frame - 1], 2e-4)
+    assert state(ob).difference.small
+    insert(pair(ob)[0], 200, (0, 0.1, 1))  # the other path
+    assert np.array_equal(store.plan(ob).cl[0], rows) and store.plan(ob).paths[1] is not ring
+    insert(pair(ob)[0], 73, (0, -0.3, 1))
+    assert store.plan(ob).cl[0] is None
+    tip, axis = seen(ob, 30)
+    assert close(tip + 3 * axis, path.centres[29], 2e-4)
+
+
+def test_two_plans_do_not_mix():
+    a = plans.on_timeline()
+    b = plans.on_timeline()
+    assert pair(a)[0] != pair(b)[0] and pair(a)[1] != pair(b)[1]
+    insert(pair(b)[0], 73, (0, -0.3, 1))
+    assert indices(a)[0] == [0, 144] and indices(b)[0] == [0, 72, 144]
+    bpy.context.view_layer.objects.active = pair(a)[0]
+    bpy.context.scene.frame_set(30)
+    bpy.ops.riffler.plan_key(axis=(0, 0, 1))
+    assert indices(a)[0] == [0, 29, 144] and indices(b)[0] == [0, 72, 144]
+
+
+def test_a_copy_of_the_tool_is_nobody_s_and_a_deleted_tool_is_made_again():
+    ob = plans.on_timeline()
+    tool, ghost = pair(ob)
+    copy = tool.copy()
+    bpy.context.collection.objects.link(copy)
+    update()
+    assert support.part("bl.timeline").plan_of(copy) is None and support.part("bl.timeline").plan_of(tool) == ob
+    tool.name, ghost.name, ob.name = "Cutter", "Way", "Mine"
+    insert(tool, 73, (0, -0.3, 1))
+    assert indices(ob)[0] == [0, 72, 144]
+    bpy.data.objects.remove(tool)
+    bpy.data.objects.remove(copy)
+    update()
+    assert pair(ob) is None and indices(ob)[0] == [0, 72, 144]
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.riffler.plan_to_timeline()
+    assert pair(ob)[1] == ghost and close(seen(ob, 73)[1], np.array((0, -0.3, 1)) / np.sqrt(1.09))
+
+
+def test_other_paths_are_not_given_keys_that_were_not_meant_for_them():
+    ob = plans.on_timeline()
+    store = support.part("bl.plan_store")
+    other = plans.ring(radius=30)
+    store.write(ob, riffler.plan.Plan([other], plans.TOOL))
+    insert(pair(ob)[0], 73, (0, -0.3, 1))
+    assert "other paths" in state(ob).problems[0] and len(paths(ob)[0].axes) == 0
+    support.refused(bpy.ops.riffler.plan_key, "other paths")
+    bpy.ops.riffler.plan_to_timeline()
+    assert not state(ob).problems and indices(ob) == [[]]
+
+
+def test_a_scene_without_a_plan_has_no_work():
+    replan = support.part("bl.replan")
+    calls, pair_of = [], support.part("bl.timeline").pair
+    ob = bpy.data.objects["Cube"]
+    replan.on_timeline()
+    support.part("bl.timeline").pair = lambda p: calls.append(p) or pair_of(p)
+    try:
+        for frame in range(1, 20):
+            bpy.context.scene.frame_set(frame)
+            ob.keyframe_insert("location", frame=frame)
+            update()
+    finally:
+        support.part("bl.timeline").pair = pair_of
+    assert calls == [] and replan._states == {}

@@ -1,0 +1,225 @@
+"""The sculpt tools without a window: in the toolbar, strokes from scripts, fixtures, what is refused."""
+
+import json
+from pathlib import Path
+
+import bpy
+import leftovers
+import numpy as np
+
+import support
+
+SIZE = (400, 300)
+PIXEL = 0.1  # mm
+
+
+def tools():
+    return support.part("ui.tools").TOOLS
+
+
+def volume_of(ob):
+    return support.part("bl.live").content(ob).volume
+
+
+def view(middle):
+    """From the stock's +Z, ten pixels a millimetre, `middle` (mm) in the middle."""
+    matrix = np.diag([2 / (SIZE[0] * PIXEL), 2 / (SIZE[1] * PIXEL), -0.01, 1.0])
+    matrix[:3, 3] = -(matrix[:3, :3] @ np.append(middle, 0))
+    return {"matrix": matrix.ravel().tolist(), "size": list(SIZE)}
+
+
+def stroke(*places, middle=(20, 15), **more):
+    """A stroke through places on the top (mm), as a script makes one."""
+    rows = [[0.5 * SIZE[0] + (x - middle[0]) / PIXEL, 0.5 * SIZE[1] + (y - middle[1]) / PIXEL] for x, y in places]
+    text = json.dumps({"view": view(middle), "rows": rows})
+    return bpy.ops.riffler.stroke(stroke=text, tool=more.pop("tool", support.BALL), **more)
+
+
+def groove(length, depth, radius=3.0):
+    """Closed form: a segment of the circle along the way, and two halves of a cap of the ball."""
+    half = np.arccos((radius - depth) / radius)
+    segment = radius**2 * (half - np.sin(half) * np.cos(half))
+    return length * segment + np.pi * depth**2 * (3 * radius - depth) / 3
+
+
+def settings(**chosen):
+    found = bpy.context.scene.riffler.sculpt
+    for key, value in chosen.items():
+        setattr(found, key, value)
+    return found
+
+
+def test_the_toolbar_has_the_tools_in_one_group_with_icons_that_are_there():
+    from bl_ui.space_toolsystem_toolbar import VIEW3D_PT_tools_active as toolbar
+
+    groups = [g for g in toolbar._tools["OBJECT"] if isinstance(g, tuple) and g[0] is not None]
+    ours = [g for g in groups if getattr(g[0], "idname", "").startswith("riffler.")]
+    assert [t.idname for t in ours[0]] == [t.bl_idname for t in tools()] and len(ours) == 1
+    (plan,) = [t for t in toolbar._tools["OBJECT"] if getattr(t, "idname", "") == "riffler.plan"]
+    for tool in (*ours[0], plan):
+        data = Path(tool.icon + ".dat").read_bytes()
+        assert data[:4] == b"VCO\0" and len(data) > 500 and (len(data) - 8) % 18 == 0
+        assert tool.draw_cursor and tool.draw_settings and tool.widget
+    keys = [line for line in leftovers.keymaps() if "riffler.stroke" in line]
+    assert len(keys) == 3 * len(tools())
+
+
+def test_the_paths_that_blenders_radial_control_is_given_lead_somewhere():
+    scene = bpy.context.scene
+    for tool in tools():
+        for name, _, more in tool.bl_keymap:
+            if name == "wm.radial_control":
+                for _, path in more["properties"]:
+                    assert path.startswith("scene.") and scene.path_resolve(path.removeprefix("scene.")) is not None
+    sculpt = settings(radius=4.0)
+    assert scene.riffler.tool.diameter == 8.0 and sculpt.radius == 4.0 and len(sculpt.zoom) == 2
+
+
+def test_a_stroke_from_a_script_is_the_groove_of_the_formula_in_any_scene():
+    for unit in (1000.0, 1.0):
+        bpy.ops.wm.read_homefile()
+        support.scale(unit)
+        ob = support.stock(pitch=0.25, directions="xyz")
+        settings(depth=0.8)
+        before = volume_of(ob).volume
+        assert stroke((10, 15), (30, 15)) == {"FINISHED"}
+        removed = before - volume_of(ob).volume
+        assert abs(removed / groove(20, 0.8) - 1) < 0.01, (unit, removed)
+
+
+def test_material_is_put_on_within_the_stocks_box():
+    support.scale(1)
+    ob = support.stock(pitch=0.25, directions="xyz")
+    settings(depth=2.0)
+    stroke((10, 15), (30, 15))
+    hollow = volume_of(ob).volume
+    settings(depth=0.5)
+    stroke((10, 15), (30, 15), mode="ADD")
+    assert hollow < volume_of(ob).volume < 24000
+
+
+def test_every_copy_of_a_stroke_is_made():
+    support.scale(1)
+    ob = support.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
+    for chosen, count in (({"mirror": {"X", "Y"}}, 4), ({"radial": 3, "radial_axis": "Z"}, 3), ({}, 1)):
+        settings(**{"mirror": set(), "radial": 1, "depth": 0.8, **chosen})
+        before = volume_of(ob).volume
+        stroke((28, 27), (32, 27), middle=(20, 20))
+        removed = before - volume_of(ob).volume
+        assert abs(removed / (count * groove(4, 0.8)) - 1) < 0.02, (chosen, removed)
+        bpy.ops.wm.read_homefile()
+        support.scale(1)
+        ob = support.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
+
+
+def test_a_mask_keeps_what_it_covers():
+    support.scale(1)
+    ob = support.stock(pitch=0.25, directions="xyz")
+    settings(depth=2.0)
+    assert stroke((20, 15), mode="MASK") == {"FINISHED"}
+    whole = volume_of(ob).volume
+    settings(depth=0.5)
+    assert stroke((20, 15)) == {"CANCELLED"} and volume_of(ob).volume == whole
+    settings(depth=2.5)
+    stroke((20, 15), mode="UNMASK")
+    settings(depth=0.5)
+    assert stroke((20, 15)) == {"FINISHED"} and volume_of(ob).volume < whole
+
+
+def test_fixtures_keep_the_tool_out():
+    support.scale(1)
+    ob = support.stock(pitch=0.25, directions="xyz")
+    clamps = bpy.data.collections.new("Clamps")
+    bpy.context.scene.collection.children.link(clamps)
+    bpy.ops.mesh.primitive_cube_add(size=4, location=(25, 15, 20))  # up to 2 mm above the stock's top
+    cube = bpy.context.object
+    for collection in list(cube.users_collection):
+        collection.objects.unlink(cube)
+    clamps.objects.link(cube)
+    bpy.context.view_layer.objects.active = ob
+    settings(depth=1.0, fixtures=clamps, axis="UP")
+    stroke((10, 15), (25, 15))
+    counts, spans = volume_of(ob).intervals("z")
+    top = np.full(counts.shape, np.nan)
+    top[counts > 0] = spans[np.cumsum(counts.ravel()[counts.ravel() > 0]) - 1, 1]
+    x = 0.125 + 0.25 * np.arange(counts.shape[0])
+    row = top[:, 59]  # y = 14.875
+    assert abs(row[np.searchsorted(x, 12)] - 19) < 0.01
+    assert row[(x > 23.1) & (x < 26.9)].min() == 20, "it went through the clamp"
+
+
+def test_undo_takes_a_stroke_back():
+    support.scale(1)
+    name = support.stock(pitch=0.5).name
+    support.push("stock")
+    before = volume_of(bpy.data.objects[name]).volume
+    shown = []
+    for x in (10, 20, 30):
+        stroke((x, 15), mode="REMOVE")
+        support.push("stroke")
+        shown.append(volume_of(bpy.data.objects[name]).volume)
+    assert before > shown[0] > shown[1] > shown[2]
+    bpy.ops.ed.undo()
+    assert volume_of(bpy.data.objects[name]).volume == shown[1]
+    bpy.ops.ed.redo()
+    assert volume_of(bpy.data.objects[name]).volume == shown[2]
+
+
+def test_what_cannot_be_stroked_is_refused_and_nothing_changes():
+    support.scale(1)
+    ob = support.stock()
+    before = volume_of(ob).volume
+    good = json.dumps({"view": view((20, 15)), "rows": [[200, 150]]})
+    support.refused(lambda: bpy.ops.riffler.stroke(), "stroke", "no pointer")
+    support.refused(lambda: bpy.ops.riffler.stroke(stroke="{"), "JSON")
+    support.refused(lambda: bpy.ops.riffler.stroke(stroke=json.dumps({"view": view((0, 0)), "rows": [[1]]})), "row 0")
+    support.refused(lambda: bpy.ops.riffler.stroke(stroke=good, tool='{"kind": "ball"}'), "")
+    assert stroke((200, 200)) == {"CANCELLED"}
+    assert volume_of(ob).volume == before
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = None
+    assert not bpy.ops.riffler.stroke.poll()
+
+
+def test_an_events_pressure_and_tilt_count_only_where_a_tablet_made_it():
+    from types import SimpleNamespace as Names
+
+    sample = support.part("operators.stroke").RIFFLER_OT_stroke._sample
+    begun = Names(_region=(100, 50), _begin=0.0)
+    pen = Names(mouse_x=130, mouse_y=90, is_tablet=True, pressure=0.25, tilt=(0.5, -0.125))
+    made = sample(begun, pen)
+    assert made[:5] == (30, 40, 0.25, 0.5, 0.125) and made.time > 0
+    pen.is_tablet = False
+    assert sample(begun, pen)[:5] == (30, 40, 1.0, 0.0, 0.0)
+
+
+def test_a_view_of_blenders_own_gives_the_rays_that_blender_gives():
+    from bpy_extras import view3d_utils
+    from mathutils import Matrix
+
+    sight = support.part("core.sight").Sight
+    for perspective in (True, False):
+        size = (640, 480)
+        camera = bpy.data.objects["Camera"]
+        camera.data.type = "PERSP" if perspective else "ORTHO"
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        window = camera.calc_matrix_camera(depsgraph, x=size[0], y=size[1])
+        total = window @ camera.matrix_world.inverted()
+
+        class Region:
+            width, height = size
+
+        class Space:
+            perspective_matrix, view_matrix = Matrix(total), camera.matrix_world.inverted()
+            is_perspective = perspective
+            view_perspective = "PERSP"
+
+        ours = sight(np.array(total), size)
+        for pixel in ((3, 5), (320, 240), (600, 100)):
+            origin, direction = ours.ray(*pixel)
+            theirs = np.array(view3d_utils.region_2d_to_vector_3d(Region, Space, pixel))
+            start = np.array(view3d_utils.region_2d_to_origin_3d(Region, Space, pixel))
+            assert np.abs(direction - theirs).max() < 1e-4, (perspective, pixel, direction, theirs)
+            away = start - origin
+            assert np.linalg.norm(away - (away @ direction) * direction) < 1e-3 * max(1, np.linalg.norm(away))

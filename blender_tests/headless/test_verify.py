@@ -1,0 +1,243 @@
+"""A program is verified: what is wrong with it is found, and the way leads to the frame, the place and the line."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import numpy as np
+import plans
+import programs
+import riffler
+
+import support
+
+SLIP = 0.8  # mm
+
+
+def findings():
+    return programs.listed(programs.settings().findings)
+
+
+def kinds():
+    return sorted({e["kind"] for e in findings()})
+
+
+def nc(slip=None, name="verify.ngc"):
+    """The resolved plan as NC text; with a slip of ten moves into the part, SLIP mm along the tool's axis."""
+    ob = bpy.data.objects["Riffler Plan"]
+    plan = support.part("bl.plan_store").plan(ob)
+    rows = np.array(plan.cl[0])
+    if slip is not None:
+        rows[slip : slip + 10, :3] -= SLIP * rows[slip : slip + 10, 3:]
+    program = riffler.Program.from_cl([rows], tools=[plan.tool], feed=600, spindle=9000, safe_height=60)
+    path = support.out(name)
+    program.write(path, post="tcp")
+    return path, rows
+
+
+def prepared(**more):
+    programs.resolved()
+    stock = programs.stock(**more)
+    bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
+    return stock
+
+
+def test_a_good_plan_passes():
+    stock = prepared()
+    identity = support.part("bl.store").identity(stock.data)
+    assert bpy.ops.riffler.verify(source="PLAN") == {"FINISHED"}
+    assert findings() == [] and "nothing was found" in programs.settings().said
+    part = bpy.data.objects["Step"]
+    distance = values(part)
+    assert len(distance) == len(part.data.vertices)
+    # the half millimetre of material stands on what the pencil cut does not reach: all of the part's corners but those
+    # of the valley, which the ball cleans to its radius (√2 − 1) · 3 mm from the edge
+    co = support.coordinates(part.data)
+    inner = (co[:, 1] == 20) & (co[:, 2] == 8)
+    assert np.all(distance >= 0) and np.all(distance[~inner] <= 0.5 + 1e-6) and distance[~inner].max() > 0.4
+    assert support.part("bl.store").identity(stock.data) == identity and stock.hide_get()
+    bpy.ops.riffler.verify_clear()
+    assert not stock.hide_get() and "riffler_deviation" not in part.data.attributes
+    assert programs.settings().said == ""
+
+
+def values(ob):
+    out = np.empty(len(ob.data.vertices), np.float32)
+    ob.data.attributes["riffler_deviation"].data.foreach_get("value", out)
+    return out
+
+
+def test_a_slip_of_ten_moves_is_found_and_the_jump_sets_frame_view_and_line():
+    stock = prepared()
+    path, rows = nc(slip=60)
+    assert bpy.ops.riffler.verify(source="FILE", filepath=path, gouge=0.05) == {"FINISHED"}
+    (found,) = [e for e in findings() if e["kind"] == "gouge"]
+    # the ball's bottom went SLIP under the floor
+    lines = Path(path).read_text().splitlines()
+    read = riffler.Program.read(path)
+    slipped = [int(np.linalg.norm(read.poses - row, axis=1).argmin()) for row in rows[60:70]]
+    assert slipped[0] <= found["row"] <= slipped[-1] and found["line"] == read.line[found["row"]]
+    assert np.linalg.norm(rows[60:70, :3] - found["place"], axis=1).min() < 5
+    screen = bpy.context.window_manager.windows[0].screen
+    area = next(a for a in screen.areas if a.type == "VIEW_3D")
+    other = next(a for a in screen.areas if a.type not in ("VIEW_3D", "TOPBAR", "STATUSBAR"))
+    other.type = "TEXT_EDITOR"
+    bpy.context.scene.frame_set(1)
+    index = findings().index(found)
+    assert bpy.ops.riffler.finding_go(of="VERIFY", index=index) == {"FINISHED"}
+    assert bpy.context.scene.frame_current_final == found["frame"] > 1
+    text = programs.settings().text
+    assert (
+        text.current_line_index == found["line"] - 1 and text.lines[found["line"] - 1].body == lines[found["line"] - 1]
+    )
+    space = other.spaces.active
+    assert space.text == text and space.top <= found["line"] - 1 <= space.top + 30
+    text.clear()  # somebody has edited it: the rest of the way is shown all the same
+    bpy.context.scene.frame_set(1)
+    bpy.ops.riffler.finding_go(of="VERIFY", index=index)
+    assert bpy.context.scene.frame_current_final == found["frame"]
+    view = area.spaces.active.region_3d
+    assert np.allclose(view.view_location, found["place"], atol=1e-4)
+    # at that frame the simulated stock has the row that was found
+    bpy.ops.riffler.verify_clear()
+    bpy.ops.riffler.simulate(source="FILE", filepath=path)
+    assert support.part("bl.simulating").active().prefix.row >= found["row"]
+    bpy.ops.riffler.simulate_stop()
+    assert not stock.hide_get()
+
+
+def test_a_plan_s_findings_have_the_lines_of_its_nc_code():
+    """A stock with a block above the wall, which approach and retract do not reach, and the plan's rows do."""
+    ob = programs.resolved()
+    plan = programs.content(ob)
+    rows = np.array(plan.cl[0])
+    rows[40:50, :3] -= SLIP * rows[40:50, 3:]
+    support.part("bl.plan_store").write(ob, replace(plan, cl=[rows]))
+    programs.stock()
+    bpy.ops.riffler.verify(source="PLAN")
+    (found,) = [e for e in findings() if e["kind"] == "gouge"]
+    body = programs.settings().text.lines[found["line"] - 1].body
+    path = support.out("again.ngc")
+    bpy.ops.riffler.plan_nc(filepath=path)
+    assert Path(path).read_text().splitlines()[found["line"] - 1] == body
+    read = riffler.Program.read(path)
+    row = int(np.flatnonzero(np.asarray(read.line) == found["line"])[0])
+    near = np.linalg.norm(rows[40:50] - read.poses[row], axis=1).min()
+    assert near < 1e-3 and found["row"] >= 40
+    track = support.part("bl.replan").layout_of(ob, plan).tracks[0]
+    assert track.first < found["frame"] < track.last
+
+
+def test_the_same_is_found_wherever_the_stock_stands():
+    prepared()
+    path, _ = nc(slip=60)
+    bpy.ops.riffler.verify(source="FILE", filepath=path)
+    first = findings()
+    bpy.data.objects.remove(bpy.data.objects["Stock"])
+    programs.stock(location=(30, -12, 7), turn=0.4)
+    bpy.ops.riffler.verify(source="FILE", filepath=path)
+    second = findings()
+    assert [e["kind"] for e in first] == [e["kind"] for e in second]
+    assert np.allclose(first[0]["place"], second[0]["place"], atol=1.0)
+    assert abs(first[0]["row"] - second[0]["row"]) <= 2
+
+
+def test_what_is_left_is_shown_with_its_distances():
+    """Where the pencil cut was, the ball's surface; elsewhere half a millimetre over the part."""
+    stock = prepared()
+    bpy.ops.riffler.verify(source="PLAN", coloured="LEFT")
+    left = programs.settings().left
+    part = bpy.data.objects["Step"]
+    assert left.matrix_world == stock.matrix_world and not left.hide_get()
+    assert stock.hide_get() and part.hide_get()  # it would stand in its own gouges
+    co, distance = support.coordinates(left.data).astype(float), values(left)
+    floor = (np.abs(co[:, 0] - 30) < 20) & (co[:, 1] > 1) & (co[:, 1] < 13) & (co[:, 2] > 6)
+    assert floor.sum() > 100 and np.abs(distance[floor] - 0.5).max() < 0.01
+    # the ball's centre runs 3 mm off floor and wall
+    off = np.hypot(co[:, 1] - 17, co[:, 2] - 11)
+    cut = (np.abs(co[:, 0] - 30) < 20) & (off < 3.01)
+    wanted = np.minimum(co[cut, 2] - 8, 20 - co[cut, 1])
+    assert cut.sum() > 100 and np.abs(distance[cut] - wanted).max() < 0.01
+    bpy.ops.riffler.verify(source="PLAN", coloured="LEFT")
+    assert [ob.name for ob in bpy.data.objects if ob.name.startswith("Stock")] == ["Stock", "Stock Left"]
+    bpy.ops.riffler.verify(source="PLAN", coloured="NONE")
+    assert "Stock Left" not in bpy.data.objects and not stock.hide_get() and not part.hide_get()
+
+
+def test_fixtures_are_hit():
+    prepared()
+    path, _ = nc()
+    mesh = bpy.data.meshes.new("Vise")
+    x, y, z = np.meshgrid((20, 40), (14, 18), (9, 40), indexing="ij")
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    mesh.from_pydata(np.c_[x.ravel(), y.ravel(), z.ravel()].tolist(), [], faces)
+    vise = bpy.data.objects.new("Vise", mesh)
+    collection = bpy.data.collections.new("Fixtures")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(vise)
+    bpy.context.scene.riffler.plan.fixtures = collection
+    bpy.context.view_layer.update()
+    bpy.ops.riffler.verify(source="FILE", filepath=path)
+    assert "fixture" in kinds()
+
+
+def test_a_program_that_was_edited_is_verified_only_where_it_differs():
+    prepared()
+    good, _ = nc(name="good.ngc")
+    bad, _ = nc(slip=60, name="bad.ngc")
+    bpy.ops.riffler.verify(source="FILE", filepath=bad)
+    kept = support.part("operators.verify")._last.verification
+    whole = findings()
+    bpy.ops.riffler.verify(source="FILE", filepath=good)
+    assert support.part("operators.verify")._last.verification is kept and findings() == []
+    bpy.ops.riffler.verify(source="FILE", filepath=bad)
+    assert findings() == whole and whole
+    bpy.ops.riffler.verify(source="FILE", filepath=bad, gouge=2.0)
+    assert support.part("operators.verify")._last.verification is not kept and kinds() == []
+
+
+def test_every_machine_s_program_is_verified():
+    """Also of one whose language is not read: it has no lines then."""
+    prepared()
+    for machine in riffler.machines():
+        if machine == "3-axis":
+            continue  # the tool leans
+        bpy.context.scene.riffler.plan.post = machine
+        assert bpy.ops.riffler.verify(source="PLAN") == {"FINISHED"}
+        assert kinds() == [] and (programs.settings().text is None) == (machine == "heidenhain"), machine
+
+
+def test_one_step_of_undo():
+    prepared()
+    path, _ = nc(slip=60)
+    support.push("before")
+    bpy.ops.riffler.verify("EXEC_DEFAULT", True, source="FILE", filepath=path)
+    assert findings()
+    bpy.ops.ed.undo()
+    assert findings() == [] and "riffler_deviation" not in bpy.data.objects["Step"].data.attributes
+    assert not bpy.data.objects["Stock"].hide_get()
+
+
+def test_what_is_missing_is_said():
+    support.refused(bpy.ops.riffler.finding_go, "Nothing was found")
+    support.refused(bpy.ops.riffler.verify_clear, "Nothing was verified")
+    bpy.context.view_layer.objects.active = None
+    support.refused(bpy.ops.riffler.verify, "There is no stock")
+    prepared()
+    path, _ = nc(slip=60)
+    bpy.ops.riffler.verify(source="FILE", filepath=path)
+    support.refused(lambda: bpy.ops.riffler.finding_go(index=99), "no finding 99")
+
+
+def test_the_legend_is_of_the_mesh_that_is_coloured():
+    prepared()
+    legend = support.part("drawing.legend")
+    assert legend.mesh_of(bpy.context) is None
+    bpy.ops.riffler.verify(source="PLAN", scale=0.4)
+    mesh = legend.mesh_of(bpy.context)
+    assert mesh == bpy.data.objects["Step"].data
+    bar = legend.bar(mesh)
+    assert (bar.low, bar.high, bar.at(0.4), bar.at(-0.4)) == (-0.4, 0.4, bar.height, 0)
+    # the colours at its ends are those of the mesh
+    of = support.part("core.colours").of_distance(np.array([-0.4, 0.0, 0.4]), 0.4)
+    assert np.allclose([bar.colours[k][1] for k in (0, 8, 16)], of[:, :3])

@@ -1,0 +1,50 @@
+"""What is in Blender that an operator which says it did nothing must leave alone."""
+
+import hashlib
+from dataclasses import dataclass
+
+import bpy
+
+import support
+
+
+@dataclass(frozen=True)
+class World:
+    sculpts: dict  # name → hash of volume and mask, count of cuts
+    meshes: dict  # name of a sculpt → that of its mesh: linked copies have one
+    objects: tuple
+    collections: tuple
+    selected: tuple
+    active: str
+
+    def volumes(self):
+        return dict(sorted(self.sculpts.items()))
+
+
+def ours(thing):
+    """True of what stands for a live sculpt only."""
+    chunks = support.part("bl.chunks")
+    return chunks.MARK in thing or (getattr(thing, "data", None) is not None and chunks.MARK in thing.data)
+
+
+def look():
+    live, chunks, sculpts = (support.part(f"bl.{name}") for name in ("live", "chunks", "sculpts"))
+    selected = {ob.name for ob in bpy.context.view_layer.objects if ob.select_get() and not ours(ob)}
+    for ob in bpy.data.objects:  # hidden while it is worked at, and given back after it
+        if live.of(ob) is not None and chunks.collection_of(ob.riffler.mark)["selected"]:
+            selected.add(ob.name)
+    found = [ob for ob in bpy.data.objects if sculpts.is_sculpt(ob)]
+    active = bpy.context.view_layer.objects.active
+    return World(
+        {ob.name: _content(live.content(ob)) for ob in found},
+        {ob.name: ob.data.name for ob in found},
+        tuple(sorted(ob.name for ob in bpy.data.objects if not ours(ob))),
+        tuple(sorted(c.name for c in bpy.data.collections if not ours(c))),
+        tuple(sorted(selected)),
+        active.name if active is not None else "",
+    )
+
+
+def _content(content):
+    mask = content.mask.to_bytes() if content.mask is not None else b""
+    return hashlib.sha256(content.volume.to_bytes() + b"/" + mask).hexdigest()[:16], len(content.cuts)

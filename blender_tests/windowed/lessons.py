@@ -1,0 +1,219 @@
+"""What the tutorials' scripts share: buttons are found by pointing at them, and pictures are cropped and made small.
+
+A tutorial_*.py does what its page in docs/ says, in the same order, and its pictures are those of the page: `make
+tutorials` puts them there.
+"""
+
+import itertools
+import subprocess
+from pathlib import Path
+
+import bpy
+import harness
+import numpy as np
+import riffler
+
+import support
+
+HERE = Path(__file__).resolve().parent
+cut = harness.load(HERE / "window_cut.py")
+COLOURS = 128  # of a picture's palette: at most 250 kB for a whole window
+PIE = {"riffler.carve": (-1, 0), "riffler.add": (1, 0), "riffler.smooth": (0, -1), "riffler.mask": (0, 1)}
+STEP = 12  # pixels from one look at a panel's buttons to the next: less than a button is high
+
+
+def module(name):
+    return support.part(name)
+
+
+def plain_window():
+    """As a person has it, but for what would be in a picture's way."""
+    preferences = bpy.context.preferences
+    preferences.view.show_tooltips = False
+    preferences.view.show_splash = False
+    preferences.view.show_developer_ui = True  # buttons say which operator they are
+    preferences.system.viewport_aa = "FXAA"  # one pass of drawing
+    preferences.view.smooth_view = 0
+
+
+def picture(screen, name, box=None):
+    """<out>/tutorials/<name>.png, of the whole window or of a box (left, below, right, above) of window pixels."""
+    folder = screen.out / "tutorials"
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{name}.png"
+    yield 0.4
+    command = ["import", "-window", "root"]
+    if box is not None:
+        left, below, right, above = (int(x) for x in box)
+        crop = f"{right - left}x{above - below}+{left}+{screen.window.height - above}"
+        command += ["-crop", crop, "+repage"]
+    subprocess.run([*command, "-strip", "+dither", "-colors", str(COLOURS), f"PNG8:{path}"], check=True)
+    size = path.stat().st_size
+    assert 2_000 < size < 250_000, f"{path}: {size} bytes"
+
+
+def view_box(screen):
+    """The 3D view with its sidebar."""
+    a = screen.area
+    return a.x, a.y, a.x + a.width, a.y + a.height
+
+
+def found(screen, region, words, share):
+    """Steps: the mouse goes down a region, at a share of its width, until the button under it has all `words` in the
+    command that it gives; what lies below is scrolled to."""
+    x, middle = region.x + int(region.width * share), region.y + region.height // 2
+    for turns in (-60, 12, 12, 12):
+        for _ in range(abs(turns)):
+            event(screen, "WHEELDOWNMOUSE" if turns > 0 else "WHEELUPMOUSE", "PRESS", (x, middle))
+        yield 0.3
+        for y in range(region.y + region.height - 8, region.y + 8, -STEP):
+            screen.move(x, y)
+            yield 0.01
+            if all(word in pointed_at(screen, region) for word in words):
+                return
+    raise AssertionError(f"no button has {words}")
+
+
+def pointed_at(screen, region):
+    """The command of the button under the mouse, or nothing."""
+    wm = bpy.context.window_manager
+    wm.clipboard = ""
+    with bpy.context.temp_override(window=screen.window, area=screen.area, region=region):
+        if bpy.ops.ui.copy_python_command_button.poll():
+            bpy.ops.ui.copy_python_command_button()
+    return wm.clipboard
+
+
+def press(screen, *words, region="UI", share=0.6):
+    """Clicks the button of an operator in the sidebar; `share`: how far to the right it is, of several in a row."""
+    yield from found(screen, screen.region(region), words, share)
+    screen.click(*screen.at)
+    yield 0.3
+
+
+def begin(screen, millimetres=True):
+    """A new file as Blender opens it: our tab opened, all deleted, millimetres chosen; by hand unless the button is
+    in a panel that is folded."""
+    plain_window()
+    yield from cut.open_tab(screen)
+    screen.to_view()
+    yield 0.3
+    screen.key("A")
+    yield 0.2
+    screen.key("DEL")
+    yield lambda: not bpy.data.objects
+    if millimetres:
+        yield from press(screen, "riffler.millimetres")
+    else:
+        with screen.override():
+            bpy.ops.riffler.millimetres()
+    assert np.isclose(bpy.context.scene.unit_settings.scale_length, 0.001)
+    screen.to_view()
+    yield 0.5
+
+
+def tool(screen, name):
+    """Clicks a tool's button in the toolbar."""
+    yield from press(screen, "tool_set_by_id", f'"{name}"', region="TOOLS")
+    active = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
+    assert active.idname == name, active.idname
+
+
+def pie(screen, name):
+    """W over the view, and one of the four tools that open about the pointer."""
+    x, y = (PIE[name][k] * 70 for k in (0, 1))
+    screen.to_view()
+    at = np.array(screen.at)
+    event(screen, "W", "PRESS", at)
+    event(screen, "W", "RELEASE", at)
+    yield 0.8
+    for share in (0.5, 0.9, 1.0):
+        screen.move(*map(int, at + share * np.array((x, y))))
+        yield 0.3
+    screen.button("PRESS")
+    screen.button("RELEASE")
+    yield lambda: bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False).idname == name
+
+
+def pixel(screen, ob, place):
+    """In the window, of a place (mm) in an object's frame."""
+    region, space = screen.region(), screen.area.spaces.active.region_3d
+    matrix = np.array(space.perspective_matrix) @ np.array(ob.matrix_world)
+    sight = module("core.sight").Sight(matrix, (region.width, region.height))
+    return (sight.project([place])[0] + (region.x, region.y)).round().astype(int)
+
+
+def event(screen, kind, value, at, **modifiers):
+    screen.window.event_simulate(kind, value, x=int(at[0]), y=int(at[1]), **modifiers)
+
+
+def brushed(screen, ob, places, steps=6, hold="", **modifiers):
+    """A stroke with the left button through places (mm, the object's frame); `hold`: a picture before it ends."""
+    way = [pixel(screen, ob, p) for p in places]
+    screen.move(*map(int, way[0]))
+    yield 0.15
+    event(screen, "LEFTMOUSE", "PRESS", way[0], **modifiers)
+    yield 0.05
+    for a, b in itertools.pairwise(way):
+        for share in np.linspace(0, 1, steps + 1)[1:]:
+            screen.move(*map(int, a + share * (b - a)))
+            yield 0.01
+    if hold:
+        yield 1.0
+        yield from picture(screen, hold, view_box(screen))
+    event(screen, "LEFTMOUSE", "RELEASE", way[-1], **modifiers)
+    yield lambda: module("drawing.pointer").held is None
+    yield 0.1
+
+
+def volume(ob):
+    return module("bl.live").content(ob).volume
+
+
+def only_open(*names):
+    """The tab with these panels open and all others folded; before it is seen for the first time."""
+    harness.load(HERE / "window_pen.py").only_open(*names)
+
+
+def cutter(name):
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        assert bpy.ops.riffler.tool_preset(name=name) == {"FINISHED"}
+
+
+def idle():
+    return not bpy.context.window_manager.riffler.running
+
+
+def closed(path, expected, within):
+    """An STL's surface: closed, and of the volume (mm³) that is expected within a share."""
+    surface = riffler.Mesh.read(str(path))
+    audit = surface.audit()
+    assert audit["open_edges"] == 0, audit
+    assert abs(surface.volume / expected - 1) < within, (surface.volume, expected)
+    return surface
+
+
+def block(screen, size, pitch=0.25):
+    """New Stock with its zero in the middle of its top."""
+    with screen.override():
+        bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, source="BLOCK", size=size, origin="TOP", pitch=pitch)
+    screen.area.spaces.active.region_3d.view_distance *= 1.25
+    return bpy.context.object
+
+
+def activate(ob):
+    """As a click on it in the outliner."""
+    for other in bpy.context.view_layer.objects:
+        other.select_set(False)
+    ob.select_set(True)
+    bpy.context.view_layer.objects.active = ob
+
+
+def interpreted(path):
+    """LinuxCNC's interpreter accepts the program; where there is none that is said."""
+    judge = harness.load(HERE.parent / "headless" / "test_plan_nc.py")
+    try:
+        return judge.interpreted(Path(path))
+    except support.Skip as reason:
+        harness.say(note=f"{Path(path).name} was not judged: {reason}")
+        return None

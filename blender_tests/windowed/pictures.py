@@ -1,0 +1,138 @@
+"""Pictures of a window, compared loosely: a grid of mean luminance and one of edge strength, by kind of area.
+
+Fonts, anti-aliasing and a mouse that stands elsewhere must not fail a test; a panel that is not drawn, an empty view
+or an error over everything must. References are kept per version of Blender, as text: references/4.3.json. A run writes
+what it found to <out>/pictures-4.3.json; once somebody has looked at the pictures beside it,
+
+    python blender_tests/windowed/pictures.py out/blender/pictures-3.4.json [name …]
+
+makes them (or those that are named) the references.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+COLUMNS, ROWS = 32, 20
+REFERENCES = Path(__file__).resolve().parent / "references"
+# A cell differs if its luminance (of 0 to 1) does by more than LUMINANCE, or its edge strength by more than EDGES and
+# PART of the stronger one. Runs on one machine differ in no cell; a spiral cut into a block differs from the block in
+# 11 % of the view's cells, from one cut further in 3 to 5 %.
+LUMINANCE, EDGES, PART = 0.03, 0.006, 0.4
+# Share of an area's cells that may differ, by its kind. The bars of menus and status, with versions and times, are no
+# areas of a screen and not compared.
+SHARE = {"VIEW_3D": 0.03, "SIDEBAR": 0.4}
+OTHERS = 0.15
+
+
+def gray(path):
+    """A picture's luminance, (height, width) of 0 to 1."""
+    command = ["convert", str(path), "-colorspace", "Gray", "-depth", "8", "pgm:-"]
+    data = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True).stdout
+    magic, width, height, deepest = data.split(maxsplit=4)[:4]
+    assert magic == b"P5" and deepest == b"255", f"{path}: {data[:20]!r}"
+    width, height = int(width), int(height)
+    return np.frombuffer(data[-width * height :], np.uint8).reshape(height, width) / 255
+
+
+def cells(image):
+    """Mean of each cell, (ROWS, COLUMNS)."""
+    rows, columns = (
+        np.linspace(0, n, m, endpoint=False).astype(int) for n, m in zip(image.shape, (ROWS, COLUMNS), strict=True)
+    )
+    sums = np.add.reduceat(np.add.reduceat(image, rows, axis=0), columns, axis=1)
+    counts = np.outer(np.diff(rows, append=image.shape[0]), np.diff(columns, append=image.shape[1]))
+    return sums / counts
+
+
+def grids(image):
+    """Luminance and edge strength (mean size of the steps to the next pixels), each (ROWS, COLUMNS) of 0 to 1."""
+    steps = np.abs(np.diff(image, axis=0, append=image[-1:])) + np.abs(np.diff(image, axis=1, append=image[:, -1:]))
+    return {"luminance": cells(image), "edges": cells(steps) / 2}
+
+
+def to_text(grid):
+    """Two hexadecimal digits a cell, a row a string."""
+    return [bytes(row).hex() for row in np.rint(grid * 255).astype(np.uint8)]
+
+
+def from_text(rows):
+    return np.array([list(bytes.fromhex(row)) for row in rows]) / 255
+
+
+def differing(found, kept):
+    """Which cells do not look alike, (ROWS, COLUMNS) of bool."""
+    edges = np.abs(found["edges"] - kept["edges"])
+    stronger = np.maximum(found["edges"], kept["edges"])
+    return (np.abs(found["luminance"] - kept["luminance"]) > LUMINANCE) | (edges > EDGES) & (edges > stronger * PART)
+
+
+def covered(box):
+    """Cells whose centres lie in (left, top, right, bottom), as parts of the picture."""
+    left, top, right, bottom = box
+    x, y = (np.arange(COLUMNS) + 0.5) / COLUMNS, (np.arange(ROWS) + 0.5) / ROWS
+    return np.outer((y >= top) & (y < bottom), (x >= left) & (x < right))
+
+
+def judge(found, kept, areas, vary=()):
+    """What is too different, a text for each area; nothing if the pictures are alike.
+
+    areas: (kind, box) of what the window consists of, what lies on top of others after them; box as in `covered`.
+    vary: kinds, and boxes, that may differ.
+    """
+    off = differing(found, kept)
+    for box in vary:
+        if not isinstance(box, str):
+            off &= ~covered(box)
+    owner = np.full((ROWS, COLUMNS), -1)
+    for i, (_, box) in enumerate(areas):
+        owner[covered(box)] = i
+    complaints = []
+    for i, (kind, _) in enumerate(areas):
+        inside = owner == i
+        allowed = 1.0 if kind in vary else SHARE.get(kind, OTHERS)
+        if inside.any() and (share := off[inside].mean()) > allowed:
+            complaints.append(f"{kind}: {share:.0%} of its cells differ, {allowed:.0%} may")
+    return complaints
+
+
+def load(path):
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
+def store(path, pictures):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(dict(sorted(pictures.items())), indent=0) + "\n")
+
+
+def check(out, name, version, areas, vary=()):
+    """Notes the grids of the picture <out>/<name>.png and compares them with their reference: a text on what differs,
+    "" if nothing does, None if there is no reference."""
+    out = Path(out)
+    text = {kind: to_text(grid) for kind, grid in grids(gray(out / f"{name}.png")).items()}
+    notes = out / f"pictures-{version}.json"
+    store(notes, load(notes) | {name: text})
+    kept = load(REFERENCES / f"{version}.json").get(name)
+    if kept is None:
+        return None
+    found, kept = ({kind: from_text(rows) for kind, rows in t.items()} for t in (text, kept))
+    return "; ".join(judge(found, kept, areas, vary))
+
+
+def main():
+    source, *names = sys.argv[1:]
+    version = Path(source).stem.removeprefix("pictures-")
+    found = load(Path(source))
+    taken = {name: found[name] for name in names or found}
+    target = REFERENCES / f"{version}.json"
+    store(target, load(target) | taken)
+    print(f"{target}: {', '.join(taken)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,75 @@
+"""docs/connect-a-pen.md: preferences with limits and doctor, then a session with the simulated pen, undo and Esc."""
+
+from pathlib import Path
+
+import bpy
+import harness
+import numpy as np
+
+import support
+
+lessons = harness.load(Path(__file__).with_name("lessons.py"))
+SIZE = (60.0, 60.0, 20.0)
+
+
+def steps(screen):
+    lessons.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_pen")
+    yield from lessons.begin(screen, millimetres=False)
+    yield from preferences(screen)
+    name = lessons.block(screen, SIZE).name
+    bpy.context.scene.riffler.tool.diameter = 8
+    with screen.override():
+        bpy.ops.ed.undo_push(message="Stock")
+    yield from session(screen, name)
+    path = support.out("pen.stl")
+    with screen.override():
+        assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
+    lessons.closed(path, lessons.volume(bpy.data.objects[name]).volume, within=2e-3)
+
+
+def preferences(screen):
+    """Edit > Preferences > Add-ons, with Riffler unfolded, in the place of the view; its doctor is asked."""
+    area = screen.area
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "Riffler"
+    area.type = "PREFERENCES"
+    yield 1.0  # it has to be drawn once
+    bpy.ops.preferences.addon_expand(module=support.MODULE)
+    area.tag_redraw()
+    yield 1.0
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    # Above lies the add-on's file, below are folders: of a computer, not of the page.
+    top = area.y + area.height
+    yield from lessons.picture(screen, "connect-a-pen-1", (area.x + 172, top - 472, area.x + 1147, top - 254))
+    with bpy.context.temp_override(window=screen.window, area=area, region=region):
+        assert bpy.ops.riffler.doctor("INVOKE_DEFAULT") == {"FINISHED"}
+    report = bpy.data.texts["Riffler Doctor"].as_string()
+    assert "Riffler in Blender" in report and bpy.app.version_string in report, report
+    bpy.context.window_manager.addon_search = ""
+    area.type = "VIEW_3D"
+    yield 1.0
+
+
+def session(screen, name):
+    state, settings = bpy.context.window_manager.riffler, bpy.context.scene.riffler.pen
+    settings.device, settings.removal_constant = "simulated", 0.02
+    yield 0.3
+    yield from lessons.press(screen, "riffler.pen_sculpt")
+    yield lambda: state.sculpting
+    screen.to_view()
+    yield 5.0  # the simulated hand cuts for four seconds of eight
+    yield from lessons.picture(screen, "connect-a-pen-2", lessons.view_box(screen))
+    assert state.sculpting and state.force, "the session was over before it could be looked at"
+    screen.key("ESC")
+    yield lambda: not state.sculpting
+    yield 1.0
+    removed = np.prod(SIZE) - lessons.volume(bpy.data.objects[name]).volume
+    assert removed > 100, removed
+    screen.to_view()
+    yield from lessons.picture(screen, "connect-a-pen-3", lessons.view_box(screen))
+    less = lessons.volume(bpy.data.objects[name]).volume
+    screen.key("Z", ctrl=True)  # one stroke
+    yield lambda: lessons.volume(bpy.data.objects[name]).volume > less
+    yield 0.5
+    screen.key("Z", ctrl=True, shift=True)
+    yield lambda: np.isclose(lessons.volume(bpy.data.objects[name]).volume, less)

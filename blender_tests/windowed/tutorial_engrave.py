@@ -1,0 +1,95 @@
+"""docs/engrave.md: a name from Blender's text, cut with a pointed tool, and again with a ball on another block."""
+
+from pathlib import Path
+
+import bpy
+import harness
+import numpy as np
+
+import support
+
+lessons = harness.load(Path(__file__).with_name("lessons.py"))
+SIZE = (90.0, 34.0, 10.0)
+DEPTH = 0.6
+
+
+def steps(screen):
+    lessons.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_cut", "RIFFLER_PT_export")
+    yield from lessons.begin(screen, millimetres=False)
+    first = lessons.block(screen, SIZE)
+    curve = yield from written(screen)
+    yield from engraved(screen, first, curve)
+    recording = support.out("name.rjournal")
+    with screen.override():
+        assert bpy.ops.riffler.export_recording(filepath=recording) == {"FINISHED"}
+        assert bpy.ops.riffler.export_nc(filepath=support.out("name.ngc"), post="3-axis") == {"FINISHED"}
+    lessons.interpreted(support.out("name.ngc"))
+    yield from replayed(screen, first, curve, recording)
+
+
+def written(screen):
+    """A text becomes a curve."""
+    with screen.override():
+        bpy.ops.object.text_add("INVOKE_DEFAULT", True)
+        text = bpy.context.object
+        text.data.body, text.data.size = "Riffler", 24
+        text.data.align_x, text.data.align_y = "CENTER", "CENTER"
+        bpy.ops.view3d.view_axis(type="TOP")
+    screen.area.spaces.active.region_3d.view_distance *= 0.6
+    yield 0.5
+    yield from lessons.picture(screen, "engrave-1", lessons.view_box(screen))
+    with screen.override():
+        bpy.ops.object.convert("EXEC_DEFAULT", True, target="CURVE")
+    assert bpy.context.object.type == "CURVE"
+    return bpy.context.object
+
+
+def engraved(screen, stock, curve):
+    lessons.activate(stock)
+    lessons.cutter("Engraver 60°, ball R0.1")
+    settings = bpy.context.scene.riffler.cut
+    settings.curve, settings.depth = curve, DEPTH
+    yield 0.3
+    yield from lessons.press(screen, "riffler.cut_curve")
+    yield lambda: lessons.idle() and lessons.volume(stock).volume < np.prod(SIZE)
+    curve.hide_set(True)
+    screen.to_view()
+    # a groove of the cone's section along all outlines; corners and crossings are cut once
+    radius, half = 0.1, np.radians(30)
+    section = np.tan(half) * (DEPTH + radius / np.sin(half) - radius) ** 2 - radius**2 * (
+        1 / np.tan(half) - (np.pi / 2 - half)
+    )
+    way = sum(s.calc_length() for s in curve.data.splines)
+    removed = np.prod(SIZE) - lessons.volume(stock).volume
+    assert 0.9 < removed / (section * way) < 1.02, (removed, section * way)
+    yield from lessons.picture(screen, "engrave-2", lessons.view_box(screen))
+
+
+def replayed(screen, first, curve, recording):
+    """The same strokes, with the tool that the panel has now, on a new block."""
+    first.location.y = 42
+    second = lessons.block(screen, SIZE)
+    lessons.cutter("Ball 3 mm")
+    yield 0.3
+    with screen.override():
+        done = bpy.ops.riffler.cut_recording("INVOKE_DEFAULT", True, filepath=recording, other=True)
+        assert done == {"RUNNING_MODAL"}
+    yield lambda: lessons.idle() and lessons.volume(second).volume < np.prod(SIZE)
+    cuts = support.content(second).cuts
+    assert {c.tool["name"] for c in cuts} == {"Ball 3 mm"}
+    before = support.content(first).cuts
+    assert all(np.array_equal(a.poses, b.poses) for a, b in zip(before, cuts, strict=True))
+    removed = [np.prod(SIZE) - lessons.volume(ob).volume for ob in (first, second)]
+    assert removed[1] > 2 * removed[0]  # the ball's groove is 2.4 mm wide, the engraver's 0.8
+    with screen.override():
+        first.select_set(True)
+        bpy.ops.view3d.view_selected()
+        bpy.ops.view3d.view_orbit(type="ORBITDOWN", angle=0.5)
+        first.select_set(False)
+    screen.area.spaces.active.region_3d.view_distance *= 1.15
+    screen.to_view()
+    yield from lessons.picture(screen, "engrave-3", lessons.view_box(screen))
+    path = support.out("name.stl")
+    with screen.override():
+        assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
+    lessons.closed(path, lessons.volume(second).volume, within=2e-3)

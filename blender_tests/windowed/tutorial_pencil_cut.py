@@ -1,0 +1,194 @@
+"""docs/pencil-cut.md: part, clamp, tool; path, keys by click and by dial; resolved, written, simulated, verified."""
+
+from pathlib import Path
+
+import bpy
+import harness
+import numpy as np
+
+import support
+
+HERE = Path(__file__)
+lessons = harness.load(HERE.with_name("lessons.py"))
+gizmo = harness.load(HERE.with_name("window_gizmo.py"))
+line = gizmo.line
+CENTRES = np.array([17.0, 11.0])  # y and z of the ball along the valley: 3 mm off wall and plate
+
+
+def steps(screen):
+    yield from lessons.begin(screen)
+    part = made_part()
+    stock = made_stock(screen, part)
+    clamp = cube("Clamp", (8, 4, 20), (10, 10, 24))
+    with screen.override():
+        bpy.ops.view3d.view_all()
+    screen.area.spaces.active.region_3d.view_rotation = gizmo.Vector((1.0, -0.5, 0.6)).to_track_quat("Z", "Y")
+    screen.area.spaces.active.region_3d.view_distance = 140
+    screen.area.spaces.active.region_3d.view_location = (30, 2, 24)
+    yield from lessons.cut.open_tab(screen, "RIFFLER_PT_plan")
+    yield from set_up(screen, part, clamp)
+    ob = yield from searched(screen)
+    yield from keyed(screen, ob)
+    yield from turned(screen)
+    yield from to_code(screen, ob)
+    yield from simulated(screen, stock)
+    yield from verified(screen, stock)
+
+
+def cube(name, middle, size):
+    bpy.ops.mesh.primitive_cube_add(size=1, location=middle)
+    ob = bpy.context.object
+    ob.name, ob.scale = name, size
+    return ob
+
+
+def made_part():
+    """A plate and a wall, joined: their inner edge is the valley."""
+    plate = cube("Part", (30, 20, 4), (60, 40, 8))
+    wall = cube("Wall", (30, 30, 13), (60, 20, 22))
+    wall.select_set(True)
+    bpy.context.view_layer.objects.active = plate
+    plate.select_set(True)
+    bpy.ops.object.join()
+    bpy.ops.object.transform_apply(location=True, rotation=True, scale=True)
+    return bpy.context.object
+
+
+def made_stock(screen, part):
+    """What roughing has left: the part with half a millimetre more or so."""
+    lessons.activate(part)
+    bpy.ops.object.duplicate()
+    rough = bpy.context.object
+    rough.name = "Rough"
+    rough.modifiers.new("Displace", "DISPLACE").strength = 0.9
+    bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz")
+    stock = bpy.context.object
+    stock.hide_set(True)
+    bpy.context.scene.riffler.verify.stock = stock
+    return stock
+
+
+def set_up(screen, part, clamp):
+    settings = bpy.context.scene.riffler.plan
+    lessons.activate(part)
+    yield from lessons.press(screen, "riffler.plan_part", share=0.785)
+    assert settings.part == part
+    lessons.activate(clamp)
+    yield from lessons.press(screen, "riffler.plan_fixtures_add", share=0.7)
+    assert clamp.name in settings.fixtures.objects
+    with screen.override():
+        assert bpy.ops.riffler.plan_tool(name="Ball 6 mm") == {"FINISHED"}
+        done = bpy.ops.riffler.plan_assembly("EXEC_DEFAULT", True, shank=6, reach=40, holder=28, upper=32, height=30)
+        assert done == {"FINISHED"}
+    lessons.activate(part)
+    screen.to_view()
+    yield 0.5
+    yield from lessons.picture(screen, "pencil-cut-1", lessons.view_box(screen))
+
+
+def searched(screen):
+    yield from lessons.press(screen, "riffler.plan_find")
+    yield lambda: lessons.idle() and len(lessons.module("bl.plan_store").in_scene(bpy.context.scene)) == 1
+    (ob,) = lessons.module("bl.plan_store").in_scene(bpy.context.scene)
+    paths = line.paths()
+    inner = min(paths, key=lambda p: np.abs(p.centres[:, 1:] - CENTRES).max())
+    assert np.abs(inner.centres[:, 1:] - CENTRES).max() < 0.01 and 55 < inner.length < 62, inner.length
+    assert len(paths) == 1, [p.length for p in paths]
+    screen.to_view()
+    yield 0.5
+    yield from lessons.picture(screen, "pencil-cut-2", lessons.view_box(screen))
+    return ob
+
+
+def keyed(screen, ob):
+    """Ctrl-click near the far end, and then by the clamp, sets the free orientation that leans least."""
+    bpy.context.scene.riffler.plan.feed = 600
+    yield from lessons.press(screen, "riffler.plan_to_timeline")
+    yield lambda: lessons.module("bl.timeline").pair(ob) is not None
+    lessons.activate(bpy.data.objects["Riffler Tool"])  # the timeline has the keys of what is selected
+    yield from lessons.tool(screen, "riffler.plan")
+    last = len(line.paths()[0]) - 1
+    for index in (round(0.93 * last), round(0.13 * last)):
+        count = len(line.indices())
+        at = gizmo.pixel(screen, line.paths()[0].contacts[index, lower(line.paths()[0])])
+        screen.move(*map(int, at))
+        yield 0.5
+        gizmo.press(screen, at, "PRESS", ctrl=True)
+        gizmo.press(screen, at, "RELEASE", ctrl=True)
+        yield lambda count=count: len(line.indices()) == count + 1
+        yield gizmo.quiet
+    screen.to_view()
+    yield 0.5
+    yield from lessons.picture(screen, "pencil-cut-3", lessons.view_box(screen))
+
+
+def lower(path):
+    """Which of the two contacts is on the plate, where it is seen."""
+    return int(path.contacts[0, 1, 2] < path.contacts[0, 0, 2])
+
+
+def turned(screen):
+    """In the middle the tool is turned by its dial; the map shows what is free."""
+    scene = bpy.context.scene
+    frames = line.key_frames()
+    scene.frame_set(round((frames[0] + frames[-1]) / 2))
+    yield gizmo.quiet
+    yield 0.5
+    keys, before, turn = len(line.indices()), gizmo.lean(), gizmo.module("core.turn")
+    begin = gizmo.facing(screen, turn.TILT, 0.85)
+    way = gizmo.on_dial(screen, turn.TILT, begin + np.radians(np.linspace(0, 15, 3)), 0.85)
+    yield from gizmo.drag(screen, way, release=False)
+    yield 0.5
+    yield from lessons.picture(screen, "pencil-cut-4", (0, 0, *lessons.view_box(screen)[2:]))
+    gizmo.press(screen, way[-1], "RELEASE")
+    yield lambda: len(line.indices()) == keys + 1
+    yield gizmo.quiet
+    assert abs((gizmo.lean() - before)[1] - 15) < 1, (before, gizmo.lean())
+
+
+def to_code(screen, ob):
+    yield from lessons.press(screen, "riffler.plan_check")
+    yield lessons.idle
+    yield from lessons.press(screen, "riffler.plan_resolve")
+    yield lambda: lessons.idle() and len(lessons.module("bl.plan_store").plan(ob).cl) > 0
+    assert lessons.module("bl.plan_store").plan(ob).cl[0] is not None, "the paths still collide"
+    screen.to_view()
+    yield 0.5
+    yield from lessons.picture(screen, "pencil-cut-5", (0, 0, *lessons.view_box(screen)[2:]))
+    path = support.out("pencil.ngc")
+    with screen.override():
+        assert bpy.ops.riffler.plan_nc(filepath=path, post="linuxcnc-xyzac") == {"FINISHED"}
+    feeds = lessons.interpreted(path)
+    assert feeds is None or len(feeds) >= len(lessons.module("bl.plan_store").plan(ob).cl[0])
+
+
+def simulated(screen, stock):
+    stock.hide_set(False)
+    for name in ("Part", "Clamp"):
+        bpy.data.objects[name].hide_set(True)
+    yield from lessons.tool(screen, "builtin.select_box")
+    yield from lessons.press(screen, "riffler.simulate")
+    now = lessons.module("bl.simulating").active()
+    assert now is not None
+    frames = line.key_frames()
+    bpy.context.scene.frame_set(round(0.35 * frames[0] + 0.65 * frames[-1]))
+    yield lambda: not bpy.app.timers.is_registered(lessons.module("bl.simulating")._tick)
+    whole = lessons.volume(stock).volume
+    assert 5 < whole - now.prefix.volume.volume < 200
+    screen.to_view()
+    yield 1.0
+    yield from lessons.picture(screen, "pencil-cut-6", (0, 0, *lessons.view_box(screen)[2:]))
+    screen.key("ESC")
+    yield lambda: lessons.module("bl.simulating").active() is None
+
+
+def verified(screen, stock):
+    settings = bpy.context.scene.riffler.verify
+    settings.coloured = "LEFT"
+    yield from lessons.press(screen, "riffler.verify")
+    yield lambda: lessons.idle() and settings.said != ""
+    kinds = [f.kind for f in settings.findings]
+    assert "gouge" not in kinds, settings.said
+    screen.to_view()
+    yield 1.0
+    yield from lessons.picture(screen, "pencil-cut-7", lessons.view_box(screen))

@@ -1,0 +1,134 @@
+"""Long work in a window: seen in panel and status bar, Esc, errors, a lost object, a disabled add-on, another file."""
+
+from pathlib import Path
+
+import bpy
+import harness
+import work
+
+import support
+
+cut = harness.load(Path(__file__).with_name("window_cut.py"))
+
+
+def progress():
+    return bpy.context.window_manager.riffler
+
+
+def begin(screen):
+    with screen.override():
+        assert bpy.ops.riffler.test_work("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    assert progress().running == "Testing the shell"
+
+
+def ended():
+    return progress().running == ""
+
+
+def steps(screen):
+    yield from cut.open_tab(screen)
+    screen.to_view()
+    with work.Stage() as stage:
+        yield from watched(screen, stage)
+        yield from cancelled(screen, stage)
+        yield from failed(screen, stage)
+        yield from lost(screen, stage)
+    yield from disabled(screen)
+    yield from another_file(screen)
+
+
+def watched(screen, stage):
+    """The work's share is seen while others have to wait; Blender goes on; then the result is one undo step."""
+    with screen.override():
+        bpy.ops.ed.undo_push(message="Before")
+    begin(screen)
+    stage.task.share = 0.4
+    yield lambda: abs(progress().percent - 40) < 1e-3
+    assert progress().text == "Looking" and not bpy.ops.riffler.new_stock.poll()
+    yield lambda: "show" in stage.log
+    yield from screen.picture("10-long-work")
+    stage.task.finished = True
+    yield ended
+    assert stage.log[-1] == "made" and "restore" not in stage.log and bpy.ops.riffler.new_stock.poll()
+    screen.key("Z", ctrl=True)
+    yield lambda: "made" not in bpy.context.scene
+    screen.key("Z", ctrl=True, shift=True)
+    yield lambda: "made" in bpy.context.scene
+
+
+def fresh(stage, **more):
+    stage.task, stage.log[:] = work.Task(**more), []
+
+
+def cancelled(screen, stage):
+    """Esc reaches the task; what was shown is taken back."""
+    fresh(stage)
+    begin(screen)
+    yield lambda: "show" in stage.log
+    screen.key("ESC")
+    yield ended
+    assert stage.task.cancelled and stage.log[-1] == "restore"
+
+
+def failed(screen, stage):
+    """What the task raises ends the work, a message or a fault of ours."""
+    for error in (ValueError("no path was found"), KeyError("a fault")):
+        fresh(stage, outcome=error)
+        begin(screen)
+        yield 0.3
+        stage.task.finished = True
+        yield ended
+        assert "made" not in stage.log
+
+
+def lost(screen, stage):
+    """What the work was begun for is gone: it ends, and nothing of it is touched."""
+    fresh(stage)
+    begin(screen)
+    yield lambda: "show" in stage.log
+    stage.gone = "Test cancelled: gone"
+    yield ended
+    assert stage.task.cancelled and "restore" not in stage.log
+
+
+def long_cut(screen):
+    """A cut that is under way and can be seen, of a new stock; returns the stock's state before it."""
+    with screen.override():
+        bpy.ops.riffler.millimetres()
+        bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, size=(100, 60, 30), pitch=0.25, directions="xyz")
+    name, before = cut.spiral(6, 250_000, "Long"), cut.state()
+    bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
+    faces = len(bpy.data.objects["Stock"].data.polygons)
+    with screen.override():
+        assert bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve=name, depth=6) == {"RUNNING_MODAL"}
+    yield lambda: len(bpy.data.objects["Stock"].data.polygons) != faces or ended()
+    assert progress().running == "Cutting"
+    return before
+
+
+def disabled(screen):
+    """The add-on is disabled in mid-cut: the cut is cancelled, the mesh shows the volume; enabled, it cuts again."""
+    before = yield from long_cut(screen)
+    bpy.ops.preferences.addon_disable(module=support.MODULE)
+    yield 1.0
+    bpy.ops.preferences.addon_enable(module=support.MODULE)
+    yield 1.0
+    assert ended() and cut.same(cut.state(), before)
+    with screen.override():
+        name = cut.spiral(1, 50, "Short")
+        assert bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve=name, depth=6) == {"RUNNING_MODAL"}
+    yield ended
+    assert cut.state()[0] < before[0]
+
+
+def another_file(screen):
+    """Another file is opened in mid-cut."""
+    bpy.data.objects.remove(bpy.data.objects["Stock"])
+    yield from long_cut(screen)
+    with screen.override():
+        bpy.ops.wm.read_homefile()
+    yield 1.0
+    assert ended() and "Stock" not in bpy.data.objects and support.part("operators.long")._running is None
+    yield from long_cut(screen)
+    screen.key("ESC")
+    yield ended

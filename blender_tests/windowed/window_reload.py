@@ -1,0 +1,156 @@
+"""The add-on goes and comes back three times in a window, each time in the midst of something: a stroke whose button is
+still held, a long cut, a pen's session. Nothing of it stays, and what was carved by then is kept."""
+
+import subprocess
+from pathlib import Path
+
+import bpy
+import harness
+import leftovers
+
+import support
+
+cut = harness.load(Path(__file__).with_name("window_cut.py"))
+strokes = harness.load(Path(__file__).with_name("window_stroke.py"))
+
+
+class RIFFLERTEST_OT_count(bpy.types.Operator):
+    """Count the events of timers; it has none of its own, so there are as many as somebody left behind"""
+
+    bl_idname = "rifflertest.count"
+    bl_label = "Count Timers"
+    seen = 0
+
+    def invoke(self, context, event):
+        type(self).seen = 0
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            return {"CANCELLED"}
+        if event.type.startswith("TIMER"):
+            type(self).seen += 1
+        return {"PASS_THROUGH"}
+
+
+def disable():
+    bpy.ops.preferences.addon_disable(module=support.MODULE)
+
+
+def enable():
+    bpy.ops.preferences.addon_enable(module=support.MODULE)
+
+
+def whole(before):
+    """The sculpt is shown itself again, as it was."""
+    ob = bpy.data.objects["Stock"]
+    assert not ob.hide_get() and ob.visible_get()
+    left = [c.name for c in (*bpy.data.collections, *bpy.data.objects, *bpy.data.meshes) if "Riffler" in c.name]
+    assert not left, left
+    assert cut.same(cut.state(), before), "the sculpt is not what it was"
+
+
+def timers(screen):
+    """How often timers of the window tick in a second."""
+    yield 0.5  # for what waits in the window's queue
+    bpy.utils.register_class(RIFFLERTEST_OT_count)
+    with screen.override():
+        bpy.ops.rifflertest.count("INVOKE_DEFAULT")
+    yield 1.0
+    screen.key("ESC")
+    yield 0.5
+    bpy.utils.unregister_class(RIFFLERTEST_OT_count)
+
+
+def stroke_held(screen):
+    strokes.tool(screen, "riffler.carve")
+    yield 0.5
+    before = cut.state()
+    yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)], release=False)
+    assert support.part("drawing.pointer").held is not None
+    assert strokes.volume().volume < before[0]
+    return before
+
+
+def long_cut(screen):
+    strokes.tool(screen, "riffler.carve")
+    before = cut.state()
+    name = cut.spiral(6, 250_000, "Long")
+    bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
+    with screen.override():
+        assert bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve=name, depth=6) == {"RUNNING_MODAL"}
+    # as soon as something is cut: how much is left a second later depends on how long the window takes to be drawn
+    yield lambda: bpy.context.window_manager.riffler.percent > 0 or not cut.running()
+    assert cut.running() == "Cutting", "the cut was over before it could be looked at"
+    return before
+
+
+def pen_session(screen):
+    strokes.tool(screen, "riffler.mask")
+    before = cut.state()
+    with screen.override():
+        # far above the stock: what it carves would be kept, and this asks whether all is as it was
+        assert bpy.ops.riffler.pen_sculpt("INVOKE_DEFAULT", True, device="simulated", gap=500) == {"FINISHED"}
+    yield 1.0
+    assert bpy.context.window_manager.riffler.sculpting
+    return before
+
+
+def preferences(screen):
+    """As they look, in the place of the 3D view."""
+    if bpy.app.version >= (4, 2, 0):  # extensions are listed in another way there
+        return
+    import addon_utils
+
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "Riffler"
+    listed = next(m for m in addon_utils.modules() if m.__name__ == support.MODULE)
+    addon_utils.module_bl_info(listed)["show_expanded"] = True
+    with screen.override():
+        bpy.ops.riffler.doctor()
+    area = screen.area
+    area.type = "PREFERENCES"
+    yield 2.0
+    path = screen.out / screen.script / "preferences.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    subprocess.run(["import", "-window", "root", str(path)], check=True)
+    area.type = "VIEW_3D"
+    yield 1.0
+
+
+def steps(screen):
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    disable()
+    with leftovers.Watch(support.MODULE) as watch:
+        assert watch.left() == []
+        enable()
+        first = watch.left()
+        yield from preferences(screen)
+        yield from cut.open_tab(screen)
+        with screen.override():
+            bpy.ops.riffler.millimetres()
+            bpy.ops.riffler.new_stock(
+                "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, 20), pitch=0.5
+            )
+            bpy.ops.ed.undo_push(message="Stock")
+        yield 1.0
+        for begin in (stroke_held, long_cut, pen_session):
+            before = yield from begin(screen)
+            disable()
+            assert watch.left() == [], (begin.__name__, watch.left())
+            yield from timers(screen)
+            assert RIFFLERTEST_OT_count.seen == 0, f"{begin.__name__}: {RIFFLERTEST_OT_count.seen} ticks of a timer"
+            assert not bpy.context.workspace.tools.from_space_view3d_mode("OBJECT").idname.startswith("riffler.")
+            strokes.press(screen, screen.region().x + 200, screen.region().y + 200, "RELEASE")
+            yield 0.5
+            enable()
+            whole(before)
+            new = [line for line in watch.left() if line not in first]
+            assert [line for line in first if line not in watch.left()] == [] and not new, new
+            yield 1.0
+        # and it works
+        whole_volume = cut.state()[0]
+        strokes.tool(screen, "riffler.carve")
+        yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)])
+        assert strokes.volume().volume < whole_volume
