@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender stress scenes bench bench-docs lint format sanitize docs gallery package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender test-blenders soak stress scenes bench bench-docs lint format sanitize docs stubs gallery tutorials package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -40,6 +40,15 @@ test-blender:  ## Run the Blender tests only
 	@$(ready) test
 	@$(python) tools/test.py blender
 
+test-blenders:  ## Build wheels for newer Blenders in chroots of Debian, test one zip of all in their windows (SUITES="trixie" for some)
+	@$(ready)
+	@$(python) tools/blenders.py $(SUITES)
+
+soak:  ## Make STROKES strokes and UNDOS steps of undo, call operators at random in EXAMPLES runs, from SEED, in Blender
+	@$(ready) test
+	$(python) blender_tests/run.py --soak --seed $(or $(SEED),1) $(if $(STROKES),--strokes $(STROKES)) \
+	  $(if $(UNDOS),--undos $(UNDOS)) $(if $(EXAMPLES),--examples $(EXAMPLES))
+
 stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, hold tools at POSES, from SEED, and check each
 	@$(ready) cpp-tests
 	$(python) tools/preset.py release riffler_stress riffler_mesh_stress riffler_contact_stress
@@ -60,7 +69,8 @@ bench:  ## Measure run time and error, of rivals too: out/bench (JOBS="b5x force
 	RIFFLER_THREADS=1 build/bench/native/bench/riffler_bench --benchmark_filter='whole|follow' \
 	  --benchmark_out=out/bench/native.json
 	.venv/bin/riffler bench $(JOBS) --out out/bench $(if $(RIFFLER_MODELS),--models $(RIFFLER_MODELS)) \
-	  --programs build/bench/native/bench --rivals .envs/rivals/bin/python --blender .envs/bpy-4.5/bin/python
+	  --programs build/bench/native/bench --rivals .envs/rivals/bin/python \
+	  $(foreach v,4.5 4.2 5.0,--blender .envs/bpy-$(v)/bin/python) --blender blender
 
 bench-docs:  ## Put figures and plots of the last `make bench` into the documents
 	@$(ready)
@@ -85,16 +95,24 @@ sanitize:  ## Run the C++ tests under the address and undefined-behaviour saniti
 	@$(ready) cpp-tests
 	$(python) tools/preset.py asan --test
 
-docs:  ## Check links and examples, collect the documents and the API reference: out/docs
+docs:  ## Check links and examples, make the site of the documents and the API reference: out/site
 	@$(ready)
 	$(python) tools/check_docs.py
-	$(python) tools/collect_docs.py
+	$(python) tools/docs.py
+
+stubs:  ## Write native/python/riffler/_core.pyi anew from the built module: after a change of the bindings
+	@$(ready)
+	$(python) tools/stubs.py
 
 gallery:  ## Plan, measure and draw the pictures of planning, stability and the pen: docs/images
 	@$(ready) demo
 	@$(ready) cpp-tests
 	$(python) tools/preset.py release riffler_stability
-	for script in mouse mouse_fixtures sole verify_map stability pen_states pen_frames; do $(python) docs/gallery/$$script.py || exit 1; done
+	for script in mouse mouse_fixtures sole figure relief characters concepts verify_map stability pen_states pen_frames; do $(python) docs/gallery/$$script.py || exit 1; done
+
+tutorials:  ## Do the tutorials in Blender's window and take their pictures: docs/images/tutorials (NAMES="relief" for some)
+	@$(ready) test
+	$(python) tools/tutorials.py $(NAMES)
 
 package:  ## Make the wheel and the Blender extension: dist
 	@$(ready)

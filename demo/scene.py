@@ -47,7 +47,9 @@ def grain(material):
     return both.outputs["Result"]
 
 
-def new_material(name: str, light: tuple, dark: tuple, stain: tuple, roughness: float, wood: bool):
+def new_material(
+    name: str, light: tuple, dark: tuple, stain: tuple, roughness: float, wood: bool, hollows: float = 3.0
+):
     """A dull finish with a darker stain where the surface hollows: what wax leaves in a carved line."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
@@ -61,7 +63,7 @@ def new_material(name: str, light: tuple, dark: tuple, stain: tuple, roughness: 
     figure = ramp(material, 0.0, dark, 1.0, light)
     if wood:
         link(grain(material), figure.inputs["Fac"])
-    hollow = node(material, "ShaderNodeAmbientOcclusion", distance=3.0)
+    hollow = node(material, "ShaderNodeAmbientOcclusion", distance=hollows)
     hollow.samples, hollow.only_local = 2, True
     open_sky = ramp(material, 0.52, (0.0, 0.0, 0.0), 0.985, (1.0, 1.0, 1.0))
     stained = node(material, "ShaderNodeMixRGB", color1=(*stain, 1.0), color2=(*light, 1.0))
@@ -125,11 +127,11 @@ def light(name: str, place: tuple, target: Vector, size: float, watts: float, co
     bpy.context.scene.collection.objects.link(holder)
 
 
-def backdrop(material) -> None:
+def backdrop(material, floor: float = FLOOR) -> None:
     """A floor that bends up into a wall."""
     bend = [(220.0 + 260.0 * sin(k * pi / 48), 260.0 - 260.0 * cos(k * pi / 48)) for k in range(25)]
     profile = [(-900.0, 0.0), *bend, (480.0, 1200.0)]
-    vertices = [(x, y, FLOOR + z) for y, z in profile for x in (-1500.0, 1500.0)]
+    vertices = [(x, y, floor + z) for y, z in profile for x in (-1500.0, 1500.0)]
     faces = [(2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2) for k in range(len(profile) - 1)]
     mesh = bpy.data.meshes.new("Backdrop")
     mesh.from_pydata(vertices, [], faces)

@@ -1,4 +1,5 @@
-"""Python environments with pinned packages: ./.venv for the work, ./.envs/bpy-X.Y for each Blender, ./.envs/rivals."""
+"""Python environments with pinned packages: ./.venv for the work, ./.envs/bpy-X.Y for each Blender, ./.envs/rivals,
+./.envs/docs for the documents' site."""
 
 from __future__ import annotations
 
@@ -43,6 +44,13 @@ def rivals_environment() -> None:
         make_environment(ROOT / ".envs" / "rivals", REQUIREMENTS / "rivals.txt")
     except StepError as failure:
         say(f"{failure}: the benchmarks will leave these rivals out")
+
+
+def docs_environment() -> Path:
+    """./.envs/docs, which makes the documents' site, made or brought up to date."""
+    path = ROOT / ".envs" / "docs"
+    make_environment(path, REQUIREMENTS / "docs.txt")
+    return path
 
 
 def make_environment(path: Path, requirements: Path, fallback: list[str] | None = None) -> None:

@@ -1,51 +1,51 @@
-"""What goes out, in ./dist: the wheel with the shared libraries it needs inside, and the Blender extension and the
-legacy add-on made from it."""
+"""What goes out, in ./dist: the wheels with the shared libraries they need inside, and the Blender extension and the
+legacy add-on made from them.
+
+One wheel is of this Python; others lie in build/wheels, where `make test-blenders` puts those of newer Blenders.
+"""
 
 from __future__ import annotations
 
-import subprocess
-import tempfile
-import zipfile
+import shutil
 from pathlib import Path
 
-from shell import PYTHON, ROOT, StepError, main, run, say
-from wheel import build_wheel
+import wheel
+from shell import PYTHON, ROOT, digest, is_stamped, main, run, say
 
 DIST = ROOT / "dist"
-# Every Linux has these; anything else that the module links must lie inside the wheel.
-SYSTEM_LIBRARIES = ("linux-vdso.so", "libstdc++.so", "libgcc_s.so", "libc.so", "libm.so", "libz.so", "/lib64/ld-linux",
-                    "libpthread.so", "libdl.so", "librt.so")  # fmt: skip
+OTHERS = ROOT / "build" / "wheels"
+STAMP = ".stamp"
 
 
-def repaired_wheel(wheel: Path) -> Path:
-    """The wheel as auditwheel leaves it: libraries that a system may lack are inside and found there."""
-    with tempfile.TemporaryDirectory(dir=wheel.parent) as folder:
-        run(PYTHON, "-m", "auditwheel", "repair", "--wheel-dir", folder, wheel)
-        repaired = next(Path(folder).glob("riffler-*.whl"))
-        check_self_contained(repaired)
-        for old in DIST.glob("riffler-*.whl"):
-            old.unlink()
-        return repaired.rename(DIST / repaired.name)
+def key() -> str:
+    """What a wheel in build/wheels must be stamped with to be of the present sources."""
+    return digest(wheel.sources())
 
 
-def check_self_contained(wheel: Path) -> None:
-    """StepError if a module in the wheel takes a library from outside that a system may lack."""
-    with tempfile.TemporaryDirectory() as folder:
-        zipfile.ZipFile(wheel).extractall(folder)
-        for module in Path(folder).rglob("*.so*"):
-            listing = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
-            for line in listing.splitlines():
-                name, _, found = (part.strip() for part in line.partition("=>"))
-                if not (name.startswith(SYSTEM_LIBRARIES) or found.startswith(str(Path(folder).resolve()))):
-                    raise StepError(f"{wheel.name}: {module.name} needs {name}, which is not inside ({found})")
+def other_wheels() -> list[Path]:
+    """Those of other Pythons, of the present sources; older ones are named and left out."""
+    found = []
+    for path in sorted(OTHERS.glob("*/riffler-*.whl")):
+        if is_stamped(path.parent / STAMP, key()):
+            found.append(path)
+        else:
+            say(f"{path.relative_to(ROOT)} is of other sources, left out: `make test-blenders` builds it anew")
+    return found
+
+
+def package() -> list[Path]:
+    """Everything in ./dist, and nothing else of ours."""
+    others = other_wheels()
+    wheels = [wheel.repaired_wheel(wheel.build_wheel()[0], DIST)]
+    wheels += [Path(shutil.copy(other, DIST)) for other in others if other.name != wheels[0].name]
+    run(PYTHON, "addon/package.py", *(word for w in wheels for word in ("--wheel", w)), "--out", DIST)
+    return sorted(path for path in DIST.iterdir() if path.is_file())
 
 
 def entry() -> None:
-    DIST.mkdir(exist_ok=True)
-    wheel = repaired_wheel(build_wheel()[0])
-    run(PYTHON, "addon/package.py", "--wheel", wheel, "--out", DIST)
+    made = package()
     say("packages")
-    for path in sorted(DIST.iterdir()):
+    for path in made:
         print(f"{path.stat().st_size:>12,} bytes  dist/{path.name}")
 
 

@@ -14,7 +14,14 @@ import fcntl
 import sys
 
 import system
-from environments import blender_environment, blender_versions, install_wheel, make_environment, rivals_environment
+from environments import (
+    blender_environment,
+    blender_versions,
+    docs_environment,
+    install_wheel,
+    make_environment,
+    rivals_environment,
+)
 from linuxcnc import linuxcnc
 from shell import ROOT, VENV, StepError, main, run, say
 from wheel import build_wheel
@@ -38,6 +45,8 @@ def setup(purpose: str) -> None:
     install_wheel(VENV, wheel, key)
     for version in {"demo": [DEMO_BLENDER], "test": blender_versions()}.get(purpose, []):
         install_wheel(blender_environment(version), wheel, key)
+    if purpose == "test":
+        docs_environment()
     if purpose in ("test", "demo"):
         linuxcnc()
     if purpose == "bench":

@@ -128,7 +128,9 @@ BLENDER_WINDOW = [
     Need("OpenGL in software", "libgl1-mesa-dri", "https://mesa3d.org", library("libGLX_mesa.so.0")),
     Need("EGL", "libegl1", "https://mesa3d.org", library("libEGL.so.1")),
     Need("ImageMagick's import", "imagemagick", "https://imagemagick.org", program("import")),
+    Need("xdotool", "xdotool", "https://github.com/jordansissel/xdotool", program("xdotool")),
 ]
+CHROOTS = [Need("debootstrap", "debootstrap", "https://wiki.debian.org/Debootstrap", program("debootstrap"))]
 
 # What LinuxCNC's interpreter links beside what is unpacked with it (tools/linuxcnc.py).
 LINUXCNC = [

@@ -22,6 +22,7 @@ def python() -> None:
 
 def docs() -> None:
     run(PYTHON, "tools/check_docs.py")
+    run(PYTHON, "tools/docs.py")
 
 
 def blender() -> None:

@@ -1,16 +1,25 @@
-"""Our own wheel, built in place by scikit-build-core in a kept directory: a second build compiles only what changed."""
+"""Our own wheel, built in place by scikit-build-core in a kept directory: a second build compiles only what changed.
+
+python tools/wheel.py FOLDER        the wheel with the shared libraries it needs inside, alone in FOLDER
+"""
 
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
+import tempfile
+import zipfile
 from pathlib import Path
 
-from shell import PYTHON, ROOT, StepError, digest, is_stamped, run, say, tool_environment, write_stamp
+from shell import PYTHON, ROOT, StepError, digest, is_stamped, main, run, say, tool_environment, write_stamp
 
 FOLDER = ROOT / "build" / "wheel"
 # Folders of native/ that do not go into the wheel.
 NOT_SHIPPED = {"tests", "fuzz"}
+# Every Linux has these; anything else that the module links must lie inside the wheel.
+SYSTEM_LIBRARIES = ("linux-vdso.so", "libstdc++.so", "libgcc_s.so", "libc.so", "libm.so", "libz.so", "/lib64/ld-linux",
+                    "libpthread.so", "libdl.so", "librt.so")  # fmt: skip
 
 
 def sources() -> list[Path]:
@@ -49,3 +58,37 @@ def build_wheel() -> tuple[Path, str]:
         raise StepError(f"expected one wheel in {FOLDER.relative_to(ROOT)}, found {len(wheels)}")
     write_stamp(stamp, key)
     return wheels[0], key
+
+
+def repaired_wheel(wheel: Path, folder: Path) -> Path:
+    """The wheel as auditwheel leaves it, alone in `folder`: libraries that a system may lack are inside."""
+    with tempfile.TemporaryDirectory(dir=wheel.parent) as place:
+        run(PYTHON, "-m", "auditwheel", "repair", "--wheel-dir", place, wheel)
+        repaired = next(Path(place).glob("riffler-*.whl"))
+        check_self_contained(repaired)
+        folder.mkdir(parents=True, exist_ok=True)
+        for old in folder.glob("riffler-*.whl"):
+            old.unlink()
+        return repaired.rename(folder / repaired.name)
+
+
+def check_self_contained(wheel: Path) -> None:
+    """StepError if a module in the wheel takes a library from outside that a system may lack."""
+    with tempfile.TemporaryDirectory() as folder:
+        zipfile.ZipFile(wheel).extractall(folder)
+        for module in Path(folder).rglob("*.so*"):
+            listing = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
+            for line in listing.splitlines():
+                name, _, found = (part.strip() for part in line.partition("=>"))
+                if not (name.startswith(SYSTEM_LIBRARIES) or found.startswith(str(Path(folder).resolve()))):
+                    raise StepError(f"{wheel.name}: {module.name} needs {name}, which is not inside ({found})")
+
+
+def entry() -> None:
+    if len(sys.argv) != 2:
+        raise StepError("usage: wheel.py FOLDER")
+    print(repaired_wheel(build_wheel()[0], Path(sys.argv[1])))
+
+
+if __name__ == "__main__":
+    main(entry)

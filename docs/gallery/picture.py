@@ -19,6 +19,7 @@ FIXTURE, PATH, KEY, BETWEEN, BAD = (
     (0.03, 0.12, 0.75),
     (0.8, 0.03, 0.02),
 )
+CLAY, PLASTER = (0.55, 0.29, 0.18), (0.60, 0.56, 0.49)
 PART_COLOURS = {"cutter": STEEL, "shank": SHANK, "holder": HOLDER}
 
 
@@ -97,13 +98,22 @@ class Picture:
 
     def render(self, out: Path, blender: Path, *, target, direction, width: float, size=(1200, 800)) -> None:
         """Looks along −direction at the target; `width` mm of it fill the picture's width."""
+        self._run(out, blender, "blender_scene.py", view=[*target, *direction, width, *size])
+
+    def photograph(
+        self, out: Path, blender: Path, *, eye, target, floor: float, width: float, size=(1000, 750)
+    ) -> None:
+        """Stands on a table at height `floor`, in a studio's light, seen from `eye`; `width` mm at the target fill the
+        picture's width."""
+        self._run(out, blender, "studio.py", view=[*target, *eye, width, *size, floor])
+
+    def _run(self, out: Path, blender: Path, script: str, **more) -> None:
         out.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory() as folder:
             scene = Path(folder) / "scene.npz"
             arrays = {f"{name}_{k}": value for k, thing in enumerate(self.things) for name, value in thing.items()}
-            view = np.array([*target, *direction, width, *size], np.float64)
-            np.savez(scene, count=len(self.things), view=view, **arrays)
-            command = [blender, HERE / "blender_scene.py", scene, out]
+            np.savez(scene, count=len(self.things), **arrays, **{name: np.array(v, float) for name, v in more.items()})
+            command = [blender, HERE / script, scene, out]
             done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=1200)
         if done.returncode:
             raise SystemExit(f"the picture failed ({done.returncode}):\n{done.stdout[-1500:]}\n{done.stderr[-3000:]}")

@@ -41,6 +41,8 @@ PLOTS = {
     *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "rendered", "session", "force", "pitch", "mesh"),
     *("col", "col-budgets", "col-slide", "pencil", "pencil-tolerance", "gouge", "nc", "verify"),
 }
+ROOT = Path(__file__).resolve().parents[3]
+BPY = ROOT / ".envs" / "bpy-4.5" / "bin" / "python"
 
 
 def bench(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
@@ -399,6 +401,30 @@ def test_waves_are_the_same_in_pieces_and_their_part_is_closed():
     audit = waves.part(40).audit()
     assert audit["components"] == 1 and audit["volume"] > 0
     assert not any(audit[name] for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds"))
+
+
+@pytest.mark.skipif(not BPY.exists(), reason="no .envs/bpy-4.5 (make envs)")
+def test_the_add_on_is_measured_in_blender(tmp_path):
+    out = tmp_path / "out"
+    done = bench("blender", "--quick", "--json", "--out", out, "--blender", BPY, cwd=ROOT)  # the add-on is there
+    assert done.returncode == 0, done.stderr
+    (stroke,) = rows(out, "blender", "stroke")
+    # 1.2 mm of a ball's way touch as many tiles whatever the size of the sculpt.
+    assert stroke["events"] == 20 and 1 <= stroke["bricks"] < 12 and 0 < stroke["moved"] < stroke["triangles"] / 5
+    assert abs(stroke["removed_over"]) < 0.01 and 0 < stroke["p50_s"] <= stroke["p95_s"]
+    brushes = rows(out, "blender", "sculpt")
+    assert [row["brush"] for row in brushes] == ["draw brush", "draw brush, dyntopo"]
+    assert all(row["reached_mm"] > 10 and row["ratio"] > 0 for row in brushes)
+    mine, *solvers = rows(out, "blender", "boolean")
+    assert mine["engine"] == "Riffler" and abs(mine["removed_over"]) < 0.01
+    assert len(solvers) >= 2 and all(abs(row["removed_over"]) < 0.01 for row in solvers)
+    ours, theirs = rows(out, "blender", "export")
+    assert ours["bytes"] == theirs["bytes"] == 84 + 50 * ours["triangles"]
+    assert (out / "blender.png").stat().st_size > 10_000
+
+
+def test_without_a_blender_the_job_says_so(quick):
+    assert "none was named" in rows(quick, "blender", "stroke")[0]["where"]
 
 
 def test_haptic_work_does_not_follow_the_grid(quick):

@@ -29,7 +29,7 @@ class Settings:
 
     quick: bool = False
     models: Path | None = None
-    blender: Path | None = None
+    blenders: tuple[Path, ...] = ()
     rivals: Path | None = None
     programs: Path | None = None
 

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from . import contact_plots, gouge_plots, haptic_plots, nc_plots, pencil_plots, verify_plots
+from . import contact_plots, gouge_plots, haptic_plots, latency_plots, nc_plots, pencil_plots, verify_plots
 from .plotting import (
     COLOURS,
     INK,
@@ -360,6 +360,7 @@ PLOTS: dict[str, dict[str, Callable[[Data], Figure | None]]] = {
     "col": {"col": contact_plots.col, "col-budgets": contact_plots.budgets, "col-slide": contact_plots.slide},
     "gouge": {"gouge": gouge_plots.entries},
     "nc": {"nc": nc_plots.between},
+    "blender": {"blender": latency_plots.stages},
     "verify": {"verify": verify_plots.against_pitch},
     "pencil": {"pencil": pencil_plots.valleys, "pencil-tolerance": pencil_plots.tolerance},
 }

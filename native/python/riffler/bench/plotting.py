@@ -55,9 +55,9 @@ def colours(names: Iterable[Any]) -> dict[Any, tuple[str, str]]:
     return {name: (COLOURS[k % len(COLOURS)], MARKS[k % len(MARKS)]) for k, name in enumerate(names)}
 
 
-def title(figure: Figure, data: Data, text: str) -> None:
+def title(figure: Figure, data: Data, text: str, threads: str = "one thread") -> None:
     figure.suptitle(text, x=0.01, ha="left", fontsize=12)
-    source = f"{data['processor']}, one thread; riffler {data['riffler']}, {data['date']}"
+    source = f"{data['processor']}, {threads}; riffler {data['riffler']}, {data['date']}"
     figure.text(0.01, 0.005, source + ("; --quick" if data["quick"] else ""), fontsize=7, color="#777777")
 
 

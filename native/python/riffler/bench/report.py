@@ -110,17 +110,25 @@ def describe(about: Mapping[str, Any]) -> str:
     return f"{version}, {machine}, Python {about['python']}, {about['date']}"
 
 
-def commit() -> str | None:
-    """The commit of the checkout that holds this package or the working directory; None elsewhere."""
+def checkout() -> Path | None:
+    """The checkout that holds this package or the working directory."""
     for folder in (Path(__file__).resolve().parents[4], Path.cwd()):
-        if (folder / "native" / "bench").is_dir() and (folder / ".git").exists():
-            command = ["git", "-C", str(folder), "describe", "--always", "--dirty", "--exclude=*"]
-            try:
-                done = subprocess.run(command, capture_output=True, text=True, check=False)
-            except OSError:
-                return None
-            return done.stdout.strip() or None
+        if (folder / "native" / "bench").is_dir() and (folder / "addon").is_dir():
+            return folder
     return None
+
+
+def commit() -> str | None:
+    """That of the checkout; None elsewhere."""
+    folder = checkout()
+    if folder is None or not (folder / ".git").exists():
+        return None
+    command = ["git", "-C", str(folder), "describe", "--always", "--dirty", "--exclude=*"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError:
+        return None
+    return done.stdout.strip() or None
 
 
 # ---- how figures are written

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from .console import Console
 HELP = "measure run time, error and memory"
 NAMES = (
     *("b200", "b5x", "s500k", "haptic", "force", "pitch", "mesh", "follow", "random", "stl", "decimate"),
-    *("col", "pencil", "drop", "gouge", "nc", "threads", "verify", "cluster"),
+    *("col", "pencil", "drop", "gouge", "nc", "threads", "verify", "cluster", "blender"),
 )
 
 
@@ -31,7 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-plots", action="store_true", help="figures only; plots need matplotlib")
     parser.add_argument("--redraw", action="store_true", help="measure nothing, draw the plots of --out again")
     parser.add_argument("--models", metavar="DIR", help=".stl files for the jobs stl, pencil, drop and gouge")
-    parser.add_argument("--blender", metavar="PYTHON", help="a Python with bpy, as a rival")
+    what = "a Python with bpy, or a blender, to measure the add-on in and as a rival; may be given again"
+    parser.add_argument("--blender", metavar="PROGRAM", action="append", default=[], help=what)
     parser.add_argument("--rivals", metavar="PYTHON", help="a Python with the libraries of requirements/rivals.txt")
     parser.add_argument(
         "--programs", metavar="DIR", help="the folder of the built native/bench: OpenVDB, FCL and Coal as rivals"
@@ -51,9 +53,9 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     out = Path(arguments.out)
     if arguments.redraw:
         return redraw(out, names, drawing, console)
-    given = {
-        key: Path(value) for key in ("models", "blender", "rivals", "programs") if (value := getattr(arguments, key))
-    }
+    given = {key: Path(value) for key in ("models", "rivals", "programs") if (value := getattr(arguments, key))}
+    # Not resolved: an environment's Python is a link.
+    given["blenders"] = tuple(Path(shutil.which(word) or word).absolute() for word in arguments.blender)
     settings, about = Settings(quick=arguments.quick, **given), report.about()
     out.mkdir(parents=True, exist_ok=True)
     if not console.json_output:

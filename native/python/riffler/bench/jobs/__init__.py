@@ -3,6 +3,7 @@
 from . import (
     b5x,
     b200,
+    blender,
     cluster,
     col,
     decimate,
@@ -42,4 +43,5 @@ JOBS = {
     "threads": threads,
     "verify": verify,
     "cluster": cluster,
+    "blender": blender,
 }

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -41,12 +42,26 @@ def program(settings: Settings, name: str, *arguments: Any) -> dict[str, Any]:
     return spoken([path, *map(str, arguments)], dict(os.environ))
 
 
-def spoken(command: list[Any], environment: dict[str, str]) -> dict[str, Any]:
+def run(command: list[Any], environment: dict[str, str], seconds: float) -> subprocess.CompletedProcess[str]:
+    """A process and those that it starts, none of which outlives the time."""
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True
+    )
+    try:
+        out, err = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        raise
+    return subprocess.CompletedProcess(command, process.returncode, out, err)
+
+
+def spoken(command: list[Any], environment: dict[str, str], seconds: float = 900) -> dict[str, Any]:
     """The last line of JSON that a process prints."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=900, env=environment, check=False)
+        done = run(command, environment, seconds)
     except subprocess.TimeoutExpired:
-        raise LeftOutError("not finished within 15 min") from None
+        raise LeftOutError(f"not finished within {seconds / 60:.0f} min") from None
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if lines:
         return json.loads(lines[-1])

@@ -131,9 +131,10 @@ def blender(settings: Settings) -> Iterator[dict[str, Any]]:
     environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")}
     for solver, moves in (("FLOAT", 60), ("MANIFOLD", 60), ("EXACT", 20)):
         try:
-            if settings.blender is None or not settings.blender.exists():
+            python = next((p for p in settings.blenders if p.name.startswith("python") and p.exists()), None)
+            if python is None:
                 raise LeftOutError("there is no Python with bpy (--blender)")
-            r = spoken([settings.blender, BLENDER_SCRIPT, solver, str(moves)], environment)
+            r = spoken([python, BLENDER_SCRIPT, solver, str(moves)], environment)
         except LeftOutError as why:
             yield left_out(f"Blender {solver}", why)
             continue

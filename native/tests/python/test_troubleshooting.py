@@ -1,0 +1,43 @@
+"""docs/troubleshooting.md quotes what the sources say."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+ROWS = re.findall(r"^\| `([^`]+)` \|", (ROOT / "docs" / "troubleshooting.md").read_text(), re.MULTILINE)
+ENDS = {".py", ".cpp", ".hpp"}
+
+
+def spoken(text):
+    """A source's text with literals joined that lie side by side, over ends of lines too, in Python and in C++."""
+    return re.sub(r'"\s*(?:\n\s*)?f?"', "", text)
+
+
+def sources():
+    for folder in ("addon", "native"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in ENDS and "tests" not in path.parts:
+                yield spoken(path.read_text())
+
+
+@pytest.fixture(scope="module")
+def texts():
+    return list(sources())
+
+
+def test_the_page_has_messages():
+    assert len(ROWS) > 40
+    assert len(set(ROWS)) == len(ROWS)
+
+
+@pytest.mark.parametrize("message", ROWS)
+def test_a_quoted_message_is_still_said(message, texts):
+    words = [part for part in message.split("…") if re.search(r"\w", part)]
+    pattern = re.compile(r"[^\n]{0,200}?(?:\n[^\n]{0,200}?){0,3}".join(map(re.escape, words)))
+    assert any(pattern.search(text) for text in texts), f"no source says {message!r}"
+
+
+def test_a_message_that_nobody_says_is_found(texts):
+    assert not any("the sculpt has gone to lunch" in text for text in texts)

@@ -1,0 +1,113 @@
+"""Draws the icons of the add-on's tools: triangles in Blender's own format, addon/icons/*.dat.
+
+    python tools/icons.py
+
+The file: "VCO" and a zero, four bytes of size and start, then for each triangle three corners of two bytes (y upwards),
+then for each corner four bytes of colour.
+"""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+
+from shell import ROOT, main
+
+FOLDER = ROOT / "addon" / "icons"
+TOOL, SHADE, STOCK, EDGE = (232, 232, 232, 255), (186, 186, 186, 255), (120, 120, 120, 255), (160, 160, 160, 255)
+AWAY, ON, SOFT, SAFE = (240, 120, 60, 255), (90, 160, 245, 255), (135, 205, 120, 255), (60, 60, 60, 255)
+FLOOR, CENTRE, RADIUS = 100.0, 128.0, 46.0
+
+
+def convex(points, colour):
+    """A fan of triangles."""
+    points = [tuple(p) for p in points]
+    return [((points[0], points[k], points[k + 1]), colour) for k in range(1, len(points) - 1)]
+
+
+def band(lower, upper, colour):
+    """Between two lines with as many points."""
+    out = []
+    for a, b, c, d in zip(lower, lower[1:], upper[1:], upper, strict=False):
+        out += convex([a, b, c, d], colour)
+    return out
+
+
+def arc(x, y, radius, start, end, count=14):
+    angle = np.radians(np.linspace(start, end, count))
+    return list(zip(x + radius * np.cos(angle), y + radius * np.sin(angle), strict=True))
+
+
+def surface(height):
+    """Stock below height(x), with a lighter edge."""
+    x = np.linspace(14, 241, 40)
+    top = [(a, height(a)) for a in x]
+    under = [(a, b - 14) for a, b in top]
+    return band([(a, 20) for a in x], under, STOCK) + band(under, top, EDGE)
+
+
+def cutter(tip):
+    """A ball end mill, its tip at a height; the right half in the shade."""
+    y = tip + RADIUS
+    parts = convex([*arc(CENTRE, y, RADIUS, 180, 270), (CENTRE, y)], TOOL)
+    parts += convex([*arc(CENTRE, y, RADIUS, 270, 360), (CENTRE, y)], SHADE)
+    parts += convex([(CENTRE - RADIUS, y), (CENTRE, y), (CENTRE, 244), (CENTRE - RADIUS, 244)], TOOL)
+    return parts + convex([(CENTRE, y), (CENTRE + RADIUS, y), (CENTRE + RADIUS, 244), (CENTRE, 244)], SHADE)
+
+
+def turned(triangles, degrees, x, y):
+    """About a point, counter-clockwise."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    turn = np.array([(c, s), (-s, c)])
+    return [(tuple(map(tuple, (np.array(t) - (x, y)) @ turn + (x, y))), colour) for t, colour in triangles]
+
+
+def dome(x, size, way):
+    """Half a circle of the cutter's radius, as high as `size` at its top: what is cut away or put on."""
+    y = size - RADIUS
+    rest = RADIUS**2 - (x - CENTRE) ** 2
+    return way * max(0.0, y + np.sqrt(max(rest, 0.0))) if rest > 0 else 0.0
+
+
+def icons():
+    groove = surface(lambda x: FLOOR + 6 + dome(x, 40, -1))
+    bead = surface(lambda x: FLOOR - 30)
+    put = convex(arc(CENTRE, FLOOR - 30, RADIUS, 0, 180, 20), ON)
+    x = np.linspace(14, 241, 60)
+    rough = FLOOR + 22 * np.sin((x - 14) / 12) * np.clip((150 - x) / 80, 0, 1)
+    wave = band([(a, 20) for a in x], list(zip(x, rough, strict=True)), STOCK)
+    wave += band(list(zip(x, rough - 12, strict=True)), list(zip(x, rough, strict=True)), SOFT)
+    kept = surface(lambda x: FLOOR + 6)
+    kept += band([(a, 20) for a in (128, 241)], [(a, FLOOR + 6) for a in (128, 241)], SAFE)
+    chip = convex(arc(206, FLOOR + 34, 18, 0, 360, 18), AWAY)
+    low, slim = 30, [((np.array(t) - (CENTRE, 0)) * (0.62, 0.8) + (CENTRE, 0), c) for t, c in cutter(0)]
+    stand = [(np.add(t, (0, low + 26)), c) for t, c in slim]
+    valley = band([(14, 14), (CENTRE, 14), (241, 14)], [(14, 118), (CENTRE, low), (241, 118)], STOCK)
+    valley += band([(14, 104), (CENTRE, low - 14), (241, 104)], [(14, 118), (CENTRE, low), (241, 118)], EDGE)
+    ring = band(arc(CENTRE, low + 54, 150, 55, 105, 40), arc(CENTRE, low + 54, 168, 55, 105, 40), ON)
+    return {
+        "riffler.plan": valley + turned(stand, 18, CENTRE, low + 54) + ring,
+        "riffler.carve": groove + cutter(FLOOR - 34) + chip,
+        "riffler.add": bead + put + cutter(FLOOR + 24),
+        "riffler.smooth": wave + cutter(FLOOR + 4),
+        "riffler.mask": kept + cutter(FLOOR + 10),
+    }
+
+
+def encode(triangles) -> bytes:
+    corners = np.array([t for t, _ in triangles]).round().clip(0, 255).astype(np.uint8)
+    colours = np.repeat(np.array([c for _, c in triangles], np.uint8), 3, axis=0)
+    return struct.pack("<4s4B", b"VCO\0", 255, 255, 0, 0) + corners.tobytes() + colours.tobytes()
+
+
+def run() -> int:
+    FOLDER.mkdir(exist_ok=True)
+    for name, triangles in icons().items():
+        (FOLDER / f"{name}.dat").write_bytes(encode(triangles))
+        print(f"{name}: {len(triangles)} triangles")
+    return 0
+
+
+if __name__ == "__main__":
+    main(run)

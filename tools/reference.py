@@ -1,0 +1,137 @@
+"""The Python interface as Markdown, one page a topic, from the docstrings of what is public."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import re
+from pathlib import Path
+from types import ModuleType
+
+from shell import StepError
+
+# Page: title, and what is on it. Every public name of riffler stands on exactly one, which `write` checks.
+PAGES = {
+    "volumes": ("Volumes", ["Volume", "Cut", "Softened", "Snapshot"]),
+    "tools": ("Tools", ["Tool"]),
+    "meshes": ("Meshes", ["Mesh", "Mesher", "FrozenSurface", "riffler.shape"]),
+    "contact": ("Contact", ["Collider", "Contact"]),
+    "planning": ("Planning", ["plan"]),
+    "programs": ("Programs and verification", ["Program", "machines", "verify", "Verification", "VerifyReport",
+                                               "Finding", "Material", "cluster"]),
+    "sessions": ("Sessions and journals", ["Session", "SessionFrame", "Journal", "JournalStroke", "JournalWriter"]),
+    "pens": ("Pens", ["pen"]),
+    "calls": ("Tasks, threads, errors", ["tasks", "Task", "threads", "set_threads", "Cancelled", "FormatError"]),
+}  # fmt: skip
+
+# What pybind11 writes for arguments that Python converts, in the words of who calls.
+PLAIN = [
+    (r"typing\.Annotated\[numpy\.typing\.ArrayLike, [\w.]+(, \"[^\"]*\")?\]", "array"),
+    (r"typing\.Supports(Float|Int|Index)( \| typing\.Supports(Float|Int|Index))*", lambda m: m[1].lower()),
+    (r"\bindex\b(?= [=|,)])", "int"),
+    (r"numpy\.typing\.NDArray\[[\w.]+\]", "array"),
+    (r"collections\.abc\.", ""),
+    (r"riffler\._core\.", ""),
+    (r"typing_extensions\.", ""),
+    (r"typing\.", ""),
+    (r"\(self: \w+(, )?", "("),
+]
+
+
+def signature(name: str, thing: object) -> tuple[str, str]:
+    """Signature and text of a function. pybind11 writes the signature as the docstring's first line."""
+    text = inspect.getdoc(thing) or ""
+    first, _, rest = text.partition("\n")
+    if first.startswith(f"{name}("):
+        for pattern, plain in PLAIN:
+            first = re.sub(pattern, plain, first)
+        return first, rest.strip()
+    try:
+        return f"{name}{inspect.signature(thing)}", text
+    except (TypeError, ValueError):
+        return f"{name}(…)", text
+
+
+def folded(head: str) -> str:
+    """A long signature with an argument a line; commas within brackets do not end one."""
+    if len(head) <= 100:
+        return head
+    opening, depth, lines = head.index("(") + 1, 0, [""]
+    closing = head.rindex(")", 0, head.rfind(" -> ") if " -> " in head else len(head))
+    for letter in head[opening:closing]:
+        depth += (letter in "([{") - (letter in ")]}")
+        if letter == "," and depth == 0:
+            lines.append("")
+        else:
+            lines[-1] += letter
+    return "\n".join([head[:opening], *(f"    {line.strip()}," for line in lines), head[closing:]])
+
+
+def prose(text: str) -> list[str]:
+    """A docstring's text as Markdown: what ``::`` opens is indented as code is, an interpreter's lines are made so."""
+    out: list[str] = []
+    for line in text.splitlines():
+        if line.startswith((">>>", "...")):
+            out += [] if out and out[-1].startswith("    ") else [""]
+            out.append(f"    {line}")
+        else:
+            out.append(re.sub(r"::$", ":", line))
+    return [*out, ""]
+
+
+def members_of(thing: type | ModuleType) -> list[str]:
+    """A module without ``__all__`` has what it defines itself, not what it imports."""
+    public = [name for name in vars(thing) if not name.startswith("_")]
+    if isinstance(thing, ModuleType):
+        own = [name for name in public if getattr(vars(thing)[name], "__module__", None) == thing.__name__]
+        return list(getattr(thing, "__all__", own))
+    return public
+
+
+def entry_of(name: str, thing: object, level: int, within: str = "") -> list[str]:
+    """The Markdown lines of one class, function, module or value."""
+    heading = f"{'#' * min(level, 5)} {within}{name}"
+    if inspect.isclass(thing) or isinstance(thing, ModuleType):
+        lines = [heading, "", *prose(inspect.getdoc(thing) or "")]
+        prefix = f"{name}." if inspect.isclass(thing) else ""
+        plain = []
+        for member in members_of(thing):
+            found = inspect.getattr_static(thing, member, None)
+            found = getattr(thing, member) if found is None else found
+            if isinstance(found, property) and not inspect.getdoc(found):
+                plain.append(f"`{member}`")
+            else:
+                lines += entry_of(member, found, level + 1, prefix)
+        return [*lines, *([f"What speaks for itself: {', '.join(plain)}.", ""] if plain else [])]
+    if isinstance(thing, staticmethod | classmethod):
+        thing = thing.__func__
+    if isinstance(thing, property):
+        return [heading, "", *prose(inspect.getdoc(thing) or "")]
+    if callable(thing):
+        head, text = signature(name, thing)
+        return [heading, "", "```python", folded(head), "```", "", *prose(text)]
+    return [heading, "", f"`{thing!r}`", ""]
+
+
+def write(folder: Path) -> int:
+    """Writes the pages and their index; the number of names on them."""
+    import riffler
+
+    public = {name for name in riffler.__all__ if not name.startswith("__")}
+    placed = [name for _, names in PAGES.values() for name in names if not name.startswith("riffler.")]
+    if sorted(placed) != sorted(public):
+        odd = sorted(set(placed) ^ public) or sorted({n for n in placed if placed.count(n) > 1})
+        raise StepError(f"tools/reference.py: {odd[0]!r} must stand on exactly one page, and be public")
+    folder.mkdir(parents=True)
+    index = ["# Reference", "", *prose(inspect.getdoc(riffler) or ""), "| page | names |", "|---|---|"]
+    for page, (title, names) in PAGES.items():
+        lines = [f"# {title}", ""]
+        for name in names:
+            thing = importlib.import_module(name) if name.startswith("riffler.") else getattr(riffler, name)
+            shown = thing.__name__ if isinstance(thing, ModuleType) else name
+            lines += entry_of(shown, thing, 2)
+        (folder / f"{page}.md").write_text("\n".join(lines))
+        listed = ", ".join(f"`{name.removeprefix('riffler.')}`" for name in names)
+        index.append(f"| [{title}]({page}.md) | {listed} |")
+    (folder / "index.md").write_text("\n".join([*index, ""]))
+    return len(placed)

@@ -1,0 +1,31 @@
+"""Does the tutorials in Blender's window, and puts the pictures that they take into docs/images/tutorials.
+
+tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py)
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+
+from shell import PYTHON, ROOT, StepError, main, run, say
+
+TAKEN = ROOT / "out" / "blender" / "tutorials"
+PLACE = ROOT / "docs" / "images" / "tutorials"
+
+
+def entry() -> None:
+    shutil.rmtree(TAKEN, ignore_errors=True)
+    for name in sys.argv[1:] or [""]:
+        run(PYTHON, "blender_tests/run.py", "--mode", "source", "--no-headless", "--only", f"tutorial_{name}")
+    taken = sorted(TAKEN.glob("*.png"))
+    if not taken:
+        raise StepError("no picture was taken: is there a Blender with a window here?")
+    PLACE.mkdir(parents=True, exist_ok=True)
+    for picture in taken:
+        shutil.copy(picture, PLACE)
+    say(f"{len(taken)} pictures in {PLACE.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    main(entry)
