@@ -23,7 +23,8 @@ class FloatGrid {
  public:
   explicit FloatGrid(const Lattice& lattice);
 
-  /// Nearest place strictly inside cell `cell` to the point `p` (cell units: the cell is [0, 1]³).
+  /// Nearest place strictly inside cell `cell`, and in the volume's box, to the point `p` (cell units: the cell is [0,
+  /// 1]³).
   Vec3 inside(const Vec3i& cell, const Vec3& p) const {
     const Range &x = range_[0][cell.x], &y = range_[1][cell.y], &z = range_[2][cell.z];
     const Vec3 q{2 * round_to_integer((x.base + p.x * steps_per_cell_) / 2),
@@ -51,6 +52,16 @@ class FloatGrid {
   /// How far vertices may leave their cell, in cells: 0 where the float32 steps are too coarse for it.
   double opening() const { return opening_; }
   double step() const { return step_; }
+  /// The point of the volume's box nearest to `p`, in cell units: no material lies beyond, wherever tangent planes
+  /// meet.
+  Vec3 in_box(const Vec3i& cell, const Vec3& p) const {
+    Vec3 out;
+    for (int a = 0; a < 3; ++a) {
+      const double base = range_[a][cell[a]].base;
+      out[a] = std::clamp(p[a], (box_.lower[a] - base) / steps_per_cell_, (box_.upper[a] - base) / steps_per_cell_);
+    }
+    return out;
+  }
   /// `v` (world units) in cell units of `cell`.
   Vec3 to_cell(const Vec3i& cell, const Vec3& v) const;
   /// The cell that contains a vertex made by `inside`.
@@ -58,9 +69,10 @@ class FloatGrid {
 
  private:
   struct Range {
-    double base, low, high;  // lower wall, least and greatest place in the open cell, in steps
+    double base, low, high;  // lower wall, least and greatest place in the open cell and the box, in steps
   };
   std::array<std::vector<Range>, 3> range_;
+  Box3 box_;  // in steps
   double step_, steps_per_cell_, opening_;
 };
 

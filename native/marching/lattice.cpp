@@ -22,6 +22,8 @@ void check_reach(double reach, double pitch) {
 
 Lattice::Lattice(const Volume& volume) : axis_(volume.reference().axis()), pitch_(volume.frame().pitch) {
   const Box3 box = to_local(axis_, volume.frame().box);
+  const bool tri_dexel = volume.grids().size() == 3;
+  box_ = box;
   double reach = 0;
   for (int a = 0; a < 3; ++a) {
     reach = std::max({reach, std::abs(box.lower[a]), std::abs(box.upper[a])});
@@ -29,8 +31,10 @@ Lattice::Lattice(const Volume& volume) : axis_(volume.reference().axis()), pitch
     origin_[a] = box.lower[a];
     // A lone ray may stand outside a box that is thinner than half a pitch. Its plane is moved to the middle of the
     // box (tri-dexel, or along the rays, where nothing stands there), so that both faces lie on the lattice's edges.
-    const bool movable = volume.grids().size() == 3 || a == 2;
+    const bool movable = tri_dexel || a == 2;
     if (rays_[a] == 1 && movable) origin_[a] = (box.lower[a] + box.upper[a] - pitch_) / 2;
+    // The walls of one direction stand half a pitch from their rays.
+    if (!tri_dexel && a != 2) box_.lower[a] -= pitch_ / 2, box_.upper[a] += pitch_ / 2;
   }
   check_reach(reach, pitch_);
   for (int a = 0; a < 3; ++a) reach = std::max({reach, std::abs(at(a, 0)), std::abs(at(a, points(a) - 1))});

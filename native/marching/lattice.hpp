@@ -23,6 +23,8 @@ class Lattice {
   int points(int axis) const { return rays_[axis] + 2; }
   int cells(int axis) const { return rays_[axis] + 1; }
   double pitch() const { return pitch_; }
+  /// Nothing of the surface lies outside: the volume's box, and across the rays of one direction half a pitch more.
+  const Box3& box() const { return box_; }
   /// Coordinate of lattice plane `index`; for planes that carry rays it is bit for bit what Grid::u and Grid::v say.
   double at(int axis, int index) const { return origin_[axis] + (index - 0.5) * pitch_; }
   /// The distance u between neighbouring float32 values where the lattice reaches furthest out, a power of two: every
@@ -33,6 +35,7 @@ class Lattice {
   Axis axis_;
   std::array<int, 3> rays_;
   std::array<double, 3> origin_;
+  Box3 box_;
   double pitch_, step_;
 };
 

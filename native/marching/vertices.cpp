@@ -42,7 +42,8 @@ Vec3 fit_in(const Qef& qef, const Vec3& x, Box3 box, double inset) {
 
 /// A cell's place for `p`: inside, or outside where `opened` lets it. Inside it is safe whatever the neighbours do.
 Vec3 place(const FloatGrid& grid, const Vec3i& cell, const Vec3& p, int opened) {
-  return FloatGrid::in_cell(p) ? grid.inside(cell, p) : grid.outside(cell, p, opened);
+  const Vec3 in_box = grid.in_box(cell, p);
+  return FloatGrid::in_cell(in_box) ? grid.inside(cell, in_box) : grid.outside(cell, in_box, opened);
 }
 
 /// Mean of the edges' middles: it depends on signs only, and siblings' differ.

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include "stress/float_audit.hpp"
 #include "stress/mesh_scenes.hpp"
 #include "stress/random.hpp"
 #include "stress/solids.hpp"
+#include "sweep/carve.hpp"
+#include "tool/cutters.hpp"
 
 namespace riffler {
 namespace {
@@ -76,6 +79,23 @@ TEST(ToMesh, KeepsTheFacesOfASheetThinnerThanThePitch) {
       const Mesh mesh = to_mesh(Volume::block(frame));
       EXPECT_TRUE(float_audit(mesh).clean()) << axis << ' ' << thin;
       expect_box(box_of(mesh), frame.box, 2e-5);
+    }
+}
+
+TEST(ToMesh, StaysInTheBoxWhereFlanksOfARidgeWouldMeetAboveIt) {
+  const Tool engraver = cutters::taper(0.1, glm::radians(30.0), 3.175, 12);
+  for (const double h : {0.2, 0.25, 0.3, 0.4})
+    for (const double turn : {0.0, 0.05, 0.3, 0.7}) {
+      const Vec3 along(std::cos(turn), std::sin(turn), 0), across(-along.y, along.x, 0), up(0, 0, 1);
+      Volume volume = Volume::block(frame_at(Vec3(0.0), {60, 60, 9.93}, h, "xyz"));
+      for (const double gap : {0.0, 1.0}) {  // two grooves that run into each other
+        const Vec3 a = Vec3(10, 8, 9.3) + 2.6 * gap * across, b = Vec3(10, 8, 9.3) + 40.0 * along;
+        const Pose poses[] = {{a, up}, {b, up}};
+        carve(volume, engraver, poses);
+      }
+      const Mesh mesh = to_mesh(volume);
+      EXPECT_TRUE(float_audit(mesh).clean()) << h << ' ' << turn;
+      expect_box(box_of(mesh), volume.frame().box, 2e-5);
     }
 }
 
