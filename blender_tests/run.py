@@ -4,7 +4,8 @@
     python blender_tests/run.py --only test_cut       tests whose name contains the text
     python blender_tests/run.py --blender 4.5 --mode source --no-window
 
-Each (Blender, way of installing) is one process with a time limit. Ways of installing: the source folder, and the zips
+Each (Blender, way of installing) is one process with a time limit; those without a window run two at a time, those with
+one alone. Ways of installing: the source folder, and the zips
 that users get (extension from 4.2 on, legacy before), built here from the wheel. Ends with the number of tests that
 passed, failed and were skipped, with reasons; exit code 1 if one failed.
 """
@@ -16,8 +17,12 @@ import json
 import subprocess
 import sys
 import tempfile
+import threading
 import zipfile
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import soaking
@@ -30,6 +35,7 @@ MARK = "RIFFLER_TEST "
 sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
+AT_ONCE = 2  # processes without a window; each has a core or two to itself, and a gigabyte
 END = 8  # lines of a message that are said again at the end, where they are read first
 
 
@@ -78,7 +84,7 @@ class Bench:
         """One process; every result it prints counts, and a test that was begun and never ended has failed."""
         where = f"{environment.name}, {mode}"
         timeout = max(timeout, self.timeout)
-        print(where, flush=True)
+        self.begin(where)
         with tempfile.TemporaryDirectory() as resources:
             job = {
                 "mode": mode,
@@ -101,7 +107,16 @@ class Bench:
             done = environment.run(HERE / "harness.py", variables, timeout)
         self.judge(where, done, timeout)
 
+    def begin(self, where: str) -> None:
+        with self.printing:
+            print(f"running  {where}", flush=True)
+
     def judge(self, where: str, done: subprocess.CompletedProcess, timeout: float = 0) -> None:
+        with self.printing:
+            print(where, flush=True)
+            self._count(where, done, timeout)
+
+    def _count(self, where: str, done: subprocess.CompletedProcess, timeout: float) -> None:
         begun, fine = None, True
         for line in done.stdout.splitlines():
             # Blender may leave an unfinished line of its own before ours
@@ -132,6 +147,7 @@ class Bench:
             )
 
     figures: list[dict] = field(default_factory=list)
+    printing: threading.Lock = field(default_factory=threading.Lock)  # what one process says stays together
 
 
 def native_paths(wheel: Path | None, folder: Path) -> list[str]:
@@ -214,16 +230,19 @@ def main() -> int:
             zips = made_zips(Path(folder) / "zips")
         bench = Bench(native_paths(wheel, Path(folder) / "native"), zips, out, arguments.only, arguments.timeout, tally)
         if arguments.soak:
-            soaking.run(bench, arguments)
+            for run in soaking.runs(bench, arguments):
+                run()
             return close(tally)
         if not arguments.blender and not arguments.mode:
             core_tests(tally, arguments.only)
         if arguments.mode in (None, "extension") and not arguments.only:
             validate(bench)
         if not arguments.no_headless:
-            headless(bench, arguments)
+            runs = headless(bench, arguments)
             if arguments.mode in (None, "source"):
-                soaking.run(bench, arguments)
+                runs += soaking.runs(bench, arguments)
+            with ThreadPoolExecutor(1 if arguments.figures else AT_ONCE) as pool:
+                list(pool.map(lambda run: run(), runs))
         if not arguments.no_window and arguments.mode in (None, "source"):
             windowed(bench, arguments)
     if bench.figures:
@@ -231,9 +250,10 @@ def main() -> int:
     return close(tally)
 
 
-def headless(bench: Bench, arguments) -> None:
+def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
+    """The processes to be run, in any order."""
     files = sorted((HERE / "headless").glob("test_*.py"))
-    usable = []
+    usable, runs = [], []
     for environment in environments.find():
         if arguments.blender not in environment.name:
             continue
@@ -247,15 +267,21 @@ def headless(bench: Bench, arguments) -> None:
             if mode != "source" and mode not in bench.zips:
                 bench.tally.skip(f"{environment.name}, {mode}", "no wheel in build/wheel or dist to make the zip from")
                 continue
-            bench.run(environment, mode, files)
+            runs.append(partial(bench.run, environment, mode, files))
         if arguments.mode in (None, "source"):
-            bench.run(environment, "none", [HERE / "broken" / "test_fallback.py"])
+            runs.append(partial(bench.run, environment, "none", [HERE / "broken" / "test_fallback.py"]))
             if arguments.figures:
-                bench.run(environment, "source", [HERE / "figures.py"], {"only": ""})
+                runs.append(partial(bench.run, environment, "source", [HERE / "figures.py"], {"only": ""}))
     if len(usable) > 1 and arguments.mode in (None, "source"):
-        with tempfile.TemporaryDirectory() as chain:
-            for environment in usable:
-                bench.run(environment, "source", [HERE / "chain" / "test_chain.py"], {"chain": chain})
+        runs.append(partial(chain, bench, usable))
+    return runs
+
+
+def chain(bench: Bench, usable: list[Environment]) -> None:
+    """What one Blender wrote the next one opens."""
+    with tempfile.TemporaryDirectory() as folder:
+        for environment in usable:
+            bench.run(environment, "source", [HERE / "chain" / "test_chain.py"], {"chain": folder})
 
 
 def windowed(bench: Bench, arguments) -> None:

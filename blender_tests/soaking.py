@@ -7,6 +7,8 @@ Blender does, not by os._exit: one that crashes at exit has failed.
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 
@@ -30,15 +32,18 @@ def add_arguments(parser) -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the strokes, and of a long run's examples")
 
 
-def run(bench, arguments) -> None:
+def runs(bench, arguments) -> list[Callable[[], None]]:
+    """The processes to be run, in any order."""
     chosen = dict(LONG if arguments.soak else SHORT)
     chosen |= {key: value for key in chosen if (value := getattr(arguments, key)) is not None}
     chosen |= {"seed": arguments.seed, "long": arguments.soak}
-    for environment in environments.find():
-        if arguments.blender in environment.name and not environment.missing:
-            for name in _files(environment):
-                if arguments.only in f"soak {name}":
-                    _run(bench, environment, name, chosen)
+    return [
+        partial(_run, bench, environment, name, chosen)
+        for environment in environments.find()
+        if arguments.blender in environment.name and not environment.missing
+        for name in _files(environment)
+        if arguments.only in f"soak {name}"
+    ]
 
 
 def _run(bench, environment, name, chosen) -> None:

@@ -25,7 +25,7 @@ def run(bench, application, script: Path) -> None:
     """The add-on as users get it where Blender has extensions, which is what a newer one's window is for."""
     mode = "extension" if application.extensions and "extension" in bench.zips else "source"
     where = f"{application.name}, window, {script.stem}"
-    print(where, flush=True)
+    bench.begin(where)
     with tempfile.TemporaryDirectory() as resources:
         job = {
             "mode": mode,
