@@ -5,7 +5,7 @@ import numpy as np
 
 from ..bl import looking, turning
 from ..core import cspace, glyphs, turn
-from . import batches
+from . import batches, views
 
 CLASSES = ()
 CELL = 8.0  # pixels at a scale of 1
@@ -16,7 +16,7 @@ TEXT, ALARM = (0.92, 0.92, 0.92, 1.0), (1.0, 0.5, 0.4, 1.0)
 NOW, BEST = (1.0, 1.0, 1.0, 1.0), (0.55, 0.95, 0.65, 0.9)
 
 kept = batches.Batches()
-_handlers = []
+_in_views = views.InViews()
 
 
 def grid_of(found, zoom):
@@ -142,10 +142,9 @@ def _write(said, zoom):
 
 
 def attach():
-    _handlers.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL"))
+    _in_views.add(_draw)
 
 
 def detach():
-    while _handlers:
-        bpy.types.SpaceView3D.draw_handler_remove(_handlers.pop(), "WINDOW")
+    _in_views.clear()
     kept.clear()

@@ -11,14 +11,14 @@ import bpy
 import numpy as np
 
 from ..core import glyphs, scale, units
-from . import bars, batches
+from . import bars, batches, views
 
 FORCE, TORQUE, BEYOND = (0.98, 0.62, 0.12), (0.25, 0.62, 0.98), (0.95, 0.15, 0.12)
 LENGTH, WIDTH = 140.0, 6.0  # pixels: an arrow at the limit, its shaft
 CORNER = (24.0, 60.0)  # pixels from the region's lower left, beside the toolbar
 
 kept = batches.Batches()
-_handlers = []
+_in_views = views.InViews()
 _shown = None
 
 
@@ -44,15 +44,14 @@ def begin(limit, lever, to_world):
     end()
     _shown = Shown(limit, lever, to_world=np.asarray(to_world, float))
     for draw, when in ((_draw_arrows, "POST_VIEW"), (_draw_gauge, "POST_PIXEL")):
-        _handlers.append(bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", when))
+        _in_views.add(draw, when)
     return _shown
 
 
 def end():
     global _shown
     _shown = None
-    while _handlers:
-        bpy.types.SpaceView3D.draw_handler_remove(_handlers.pop(), "WINDOW")
+    _in_views.clear()
 
 
 def arrows(shown, pixel):

@@ -4,13 +4,13 @@ import bpy
 
 from ..bl import attributes
 from ..core import colours
-from . import bars, batches
+from . import bars, batches, views
 
 CORNER = (90.0, 40.0)  # pixels from the view's lower right, the sidebar not counted
 
 CLASSES = ()
 kept = batches.Batches()
-_handler = None
+_in_views = views.InViews()
 
 
 def mesh_of(context):
@@ -42,13 +42,9 @@ def _draw():
 
 
 def attach():
-    global _handler
-    _handler = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")
+    _in_views.add(_draw)
 
 
 def detach():
-    global _handler
-    if _handler is not None:
-        bpy.types.SpaceView3D.draw_handler_remove(_handler, "WINDOW")
-        _handler = None
+    _in_views.clear()
     kept.clear()

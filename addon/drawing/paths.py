@@ -8,7 +8,7 @@ import numpy as np
 
 from ..bl import plan_store, turning, units
 from ..core import glyphs
-from . import batches
+from . import batches, views
 
 CLASSES = ()
 NEAR = 24.0  # pixels from the pointer to a contact that it points at
@@ -24,7 +24,7 @@ MARK, SHADOW = (1.0, 0.9, 0.3, 1.0), (0.0, 0.0, 0.0, 0.55)
 TEXT = (0.95, 0.95, 0.95, 1.0)
 
 kept = batches.Batches()
-_handlers = []
+_in_views = views.InViews()
 
 
 # ------------------------------------------------------------------ lines, as ends of pieces (n, 3) in mm
@@ -152,10 +152,9 @@ def _label(text, place, zoom):
 
 
 def attach():
-    _handlers.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
+    _in_views.add(_draw, "POST_VIEW")
 
 
 def detach():
-    while _handlers:
-        bpy.types.SpaceView3D.draw_handler_remove(_handlers.pop(), "WINDOW")
+    _in_views.clear()
     kept.clear()

@@ -5,19 +5,12 @@ import math
 import numpy as np
 import pytest
 import riffler
+from valleys import valley
 
 from addon.core import tilting
 
 BALL = riffler.Tool.ball(6, 25).with_shank([(25, 3, 60, 3)])
 UP = np.array([0.0, 0, 1])
-
-
-def valley(count=61):
-    """Along x where the floor z = 0 meets the wall y = 0, the ball of 6 mm on the side of y < 0."""
-    centres = np.c_[np.linspace(0, 60, count), np.full(count, -3.0), np.full(count, 3.0)]
-    contacts = np.stack([np.add(centres, (0, 3, 0)), np.subtract(centres, (0, 0, 3))], axis=1)
-    normals = np.tile([(0.0, -1, 0), (0, 0, 1)], (count, 1, 1))
-    return riffler.plan.PencilPath(3.0, centres, contacts, normals)
 
 
 def box(lower, upper):
@@ -61,7 +54,7 @@ def found(path, collider, **more):
 
 
 def test_an_open_valley_is_keyed_at_its_ends_in_the_middle_between_the_walls():
-    answer = found(valley(), solid(FLOOR, WALL))
+    answer = found(valley(61, 60), solid(FLOOR, WALL))
     assert list(answer.path.keys) == [0, 60]
     assert np.allclose(answer.path.axes, (0, -math.sqrt(0.5), math.sqrt(0.5)), atol=1e-9)
 
@@ -70,7 +63,7 @@ def test_a_roof_over_the_middle_takes_further_keys_and_the_way_is_free_by_distan
     """A beam across the valley, from 22 to 38 in x: held against the distance from axis to beam."""
     beam = ((22, -40, 12), (38, -8, 16))
     collider = solid(FLOOR, WALL, beam)
-    answer = found(valley(), collider)
+    answer = found(valley(61, 60), collider)
     assert answer.path is not None and 2 < len(answer.path.keys) < 20
     path = answer.path
     lean = np.arccos(np.clip(path.axes @ (0, -math.sqrt(0.5), math.sqrt(0.5)), -1, 1))
@@ -85,21 +78,21 @@ def test_a_roof_over_the_middle_takes_further_keys_and_the_way_is_free_by_distan
 
 def test_where_nothing_is_free_the_point_is_named():
     lid = ((20, -60, 6.5), (40, 20, 30))  # lower than the cutter is long
-    answer = found(valley(), solid(FLOOR, WALL, lid, ((20, -60, -5), (40, -8, 30))), count=3)
+    answer = found(valley(61, 60), solid(FLOOR, WALL, lid, ((20, -60, -5), (40, -8, 30))), count=3)
     assert answer.path is None and 20 <= answer.point <= 40 and "no orientation is free" in answer.reason
     assert "point" not in answer.reason  # that of the few points, which mean nothing to anybody
 
 
 def test_the_machine_s_cone_is_kept():
-    limited = found(valley(), solid(FLOOR, WALL), limit=(UP, math.radians(30)))
+    limited = found(valley(61, 60), solid(FLOOR, WALL), limit=(UP, math.radians(30)))
     angles = np.arccos(limited.path.axes @ UP)
     assert angles.max() <= math.radians(30) + 1e-9 and angles.min() > math.radians(15)
-    none = found(valley(), solid(FLOOR, WALL), limit=((0.0, 1, 0), math.radians(20)))
+    none = found(valley(61, 60), solid(FLOOR, WALL), limit=((0.0, 1, 0), math.radians(20)))
     assert none.path is None and none.reason
 
 
 def test_first_keys():
-    path = valley(61)
+    path = valley(61, 60)
     assert (
         tilting.begun(path, 1) == [30] and tilting.begun(path, 2) == [0, 60] and tilting.begun(path, 3) == [0, 30, 60]
     )

@@ -5,18 +5,11 @@ import math
 import numpy as np
 import pytest
 import riffler
+from valleys import valley
 
 from addon.core import turn
 
 EAST = np.array([1.0, 0, 0])
-
-
-def corner(count=5):
-    """Along x on the edge of a floor and a wall, both touched by a ball of 6 mm."""
-    centres = np.c_[np.linspace(0, 20, count), np.full(count, -3.0), np.full(count, 3.0)]
-    contacts = np.stack([np.add(centres, (0, 3, 0)), np.subtract(centres, (0, 0, 3))], axis=1)
-    normals = np.tile([(0.0, -1, 0), (0, 0, 1)], (count, 1, 1))
-    return riffler.plan.PencilPath(3.0, centres, contacts, normals)
 
 
 def rotation(axis, angle):
@@ -42,7 +35,7 @@ def on_dial(path, handle, angles, turned, radius=20.0):
 @pytest.mark.parametrize("handle", [turn.INCLINATION, turn.TILT])
 @pytest.mark.parametrize("turned", [0.5, -0.5, 1e-6, 0.0])
 def test_around_a_dial_the_angle_of_its_name_changes_by_the_pointer_s_own(handle, turned):
-    path, angles = corner(), (0.3, -0.2)
+    path, angles = valley(5, 20), (0.3, -0.2)
     axis = path.axis(2, *angles)
     eye = path.centres[2] + 120 * turn.dial_axis(path.frames[2], angles[0], handle) + (20, -30, 10)
     made = turn.Turn(path, 2, axis, handle, ray_to(on_dial(path, handle, angles, 1.0), eye), 20.0)
@@ -54,7 +47,7 @@ def test_around_a_dial_the_angle_of_its_name_changes_by_the_pointer_s_own(handle
 
 
 def test_the_inclination_is_about_y_of_the_frame():
-    path = corner()
+    path = valley(5, 20)
     x, y, z = path.frames[2]
     assert np.allclose(rotation(turn.dial_axis((x, y, z), 0.7, turn.INCLINATION), 0.4) @ z, path.axis(2, 0.4, 0))
     before = path.axis(2, 0.7, 0)
@@ -83,7 +76,7 @@ def test_a_dial_that_is_seen_from_the_side_goes_with_the_pointer_along_it():
 
 
 def test_the_tool_s_end_goes_where_the_pointer_goes():
-    path, axis = corner(), np.array([0.0, -0.6, 0.8])
+    path, axis = valley(5, 20), np.array([0.0, -0.6, 0.8])
     centre, radius = path.centres[2], 25.0
     made = turn.Turn(path, 2, axis, turn.FREE, ray_to(centre + radius * axis), radius)
     assert np.allclose(made.axis, axis, atol=1e-7)
@@ -103,7 +96,7 @@ def test_a_ball_is_held_on_the_side_that_the_axis_is_on():
 
 
 def test_typed_numbers_are_how_far_it_is_turned():
-    path = corner()
+    path = valley(5, 20)
     made = turn.Turn(path, 2, path.axis(2, 0.1, 0.2), turn.TILT, ray_to((0, 0, 0)), 20.0)
     for character in "12.5":
         assert made.type("", character)
@@ -121,7 +114,7 @@ def test_typed_numbers_are_how_far_it_is_turned():
 
 
 def test_angles_snap_and_stay_where_they_name_an_axis():
-    path = corner()
+    path = valley(5, 20)
     made = turn.Turn(path, 2, path.axis(2, 0.11, 0.0), turn.INCLINATION, ray_to((0, 0, 0), (5, -80, 5)), 20.0)
     made.move(ray_to((0, 0, 0), (5, -80, 5)), snap=True)
     assert made.angles[0] == math.radians(5)
@@ -135,6 +128,6 @@ def test_single_precision_angles_are_the_degrees_that_were_meant():
 
 
 def test_a_ball_stands_with_its_middle_on_the_point_whatever_its_axis():
-    path, tool = corner(), riffler.Tool.ball(6, 25)
+    path, tool = valley(5, 20), riffler.Tool.ball(6, 25)
     for axis in ((0.6, -0.48, 0.64), (0, 0, 1), (-0.8, -0.6, 0)):
         assert np.allclose(turn.stand(path, 2, axis, tool), [*(path.centres[2] - 3 * np.array(axis)), *axis])

@@ -136,7 +136,7 @@ def dial(screen):
     yield quiet
     turned = lean() - before
     assert abs(turned[0] - 40) < 1 and abs(turned[1]) < 1e-3, turned
-    assert module("bl.turning").held is None and not module("drawing.force")._handlers
+    assert module("bl.turning").held is None and not len(module("drawing.force")._in_views)
     yield 0.5
     tip, shown = line.shown()[0] - 3 * line.shown()[1], line.shown()[1]
     assert np.abs(shown - axis()).max() < 1e-4 and np.abs(tip + 3 * shown - spot().centre).max() < 1e-3
