@@ -1,5 +1,8 @@
-"""Few keys along a path with which the tool is free all the way: those that lean least from the middle between the two
-walls, by the maps of free orientations (riffler.plan.least_tilt), more of them only where the way between collides."""
+"""Few keys along a path with which the tool is free at each of its points: those that lean least from the middle between
+the two walls, by the maps of free orientations (riffler.plan.least_tilt), more of them only where points between collide.
+
+The way from point to point is not judged here: on a curved path it dips into the part by what its chord does, and only
+resolving, which may lift and put rows between, says whether that matters."""
 
 from __future__ import annotations
 
@@ -97,7 +100,7 @@ class Search:
         self._taken = self._check
 
     def _check(self, found) -> None:
-        """Whether it is free between them as well."""
+        """Whether the points between them are free as well."""
         oriented, report = found
         if oriented is None:
             self.answer = Answer(None, self._points[report["point"]], report["reason"].partition(": ")[2])

@@ -1,4 +1,4 @@
-"""Keys on many paths at once: those that lean least and are free all along, or one axis everywhere."""
+"""Keys on many paths at once: those that lean least and are free at every point, or one axis everywhere."""
 
 import math
 from dataclasses import replace
@@ -28,7 +28,7 @@ NAMED = 5  # paths in a report
 
 
 class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
-    """Set few keys on many paths at once, with which the tool is free all along and leans least. Paths on which no
+    """Set few keys on many paths at once, with which the tool is free at every point and leans least. Paths on which no
     orientation is free are listed and stay as they are"""
 
     bl_idname = "riffler.plan_least_tilt"
