@@ -82,7 +82,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
             why = f"{blocked} of {count} paths still collide: turn their keys, or take another tool"
             self.report({"WARNING"}, why)
         else:
-            self.report({"INFO"}, f"{count} paths are free{said}")
+            self.report({"INFO"}, f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free{said}")
         return {"FINISHED"}
 
 

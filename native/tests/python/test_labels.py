@@ -1,0 +1,65 @@
+"""Panels, buttons and fields that the documents name are those of the add-on, or Blender's own."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+DOCS = ROOT / "docs"
+PAGES = ["first-chip", "relief", "engrave", "connect-a-pen", "pencil-cut", "planning", "sessions", "troubleshooting"]
+# What is Blender's own, and what objects are called in a tutorial.
+BLENDERS = {
+    *(
+        "Add-ons",
+        "All Transforms",
+        "Alignment",
+        "Circle",
+        "Convert",
+        "Cube",
+        "Dimensions",
+        "Displace",
+        "Export",
+        "Item",
+    ),
+    *("Measure", "Plain Axes", "Rings", "Segments", "Select Box", "UV Sphere"),
+}
+OURS = {"Clamp", "Sphere Stock"}
+LONGEST = 60  # of a label; what is longer is a sentence
+
+
+def spoken(text):
+    """A source's text with literals joined that lie side by side."""
+    return re.sub(r'"\s*(?:\n\s*)?f?"', "", text)
+
+
+@pytest.fixture(scope="module")
+def addon():
+    paths = [*(ROOT / "addon").rglob("*.py"), ROOT / "addon" / "core" / "presets.json"]
+    return (
+        "\n".join(spoken(path.read_text()) for path in paths) + (ROOT / "native/pen/simulated_device.hpp").read_text()
+    )
+
+
+def named(page):
+    """What a page sets in italics or in bold, without code and pictures' captions; entries of menus one by one."""
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", (DOCS / f"{page}.md").read_text(), flags=re.DOTALL)
+    for _, words in re.findall(r"(?<!\*)(\*{1,2})(?=[\w+])([^*]+?)\1(?!\*)", text):
+        for label in re.split(r" \u203a |\u2026", re.sub(r"\s+", " ", words)):
+            if label.strip(" .,:") and len(label) < LONGEST and not label.endswith("?"):
+                yield label.strip(" .,:")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_label_is_in_the_add_on(page, addon):
+    unknown = [label for label in named(page) if label not in addon and label not in BLENDERS | OURS]
+    assert not unknown, f"docs/{page}.md"
+
+
+def test_labels_are_found():
+    assert {"New Stock", "Carve", "Export STL", "Mirror"} <= set(named("first-chip"))
+    assert {"Resolve", "Write NC", "Find Pencil Cuts"} <= set(named("planning"))
+
+
+def test_a_label_that_nobody_has_is_found(addon):
+    assert "Gone to Lunch" not in addon
