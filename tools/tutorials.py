@@ -1,6 +1,6 @@
 """Does the tutorials in Blender's window, and puts the pictures that they take into docs/images/tutorials.
 
-tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py)
+tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session": of docs/sessions.md)
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ from shell import PYTHON, ROOT, StepError, main, run, say
 
 TAKEN = ROOT / "out" / "blender" / "tutorials"
 PLACE = ROOT / "docs" / "images" / "tutorials"
+ALSO = {"session": "window_pen"}  # pictures that a test takes on its way
 
 
 def entry() -> None:
     shutil.rmtree(TAKEN, ignore_errors=True)
-    for name in sys.argv[1:] or [""]:
-        run(PYTHON, "blender_tests/run.py", "--mode", "source", "--no-headless", "--only", f"tutorial_{name}")
+    for name in sys.argv[1:] or ["", *ALSO]:
+        only = ALSO.get(name, f"tutorial_{name}")
+        run(PYTHON, "blender_tests/run.py", "--mode", "source", "--no-headless", "--only", only)
     taken = sorted(TAKEN.glob("*.png"))
     if not taken:
         raise StepError("no picture was taken: is there a Blender with a window here?")

@@ -12,6 +12,7 @@ import numpy as np
 import support
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
+lessons = harness.load(Path(__file__).with_name("lessons.py"))
 NAME = "Stock"
 
 
@@ -104,6 +105,7 @@ def steps(screen):
     look, session().look = session().look, lambda: True  # nobody looks for a moment, and a picture has the arrows
     yield 2.0
     yield from screen.picture("10-pen-force", vary=["VIEW_3D", "SIDEBAR"])
+    yield from lessons.picture(screen, "session", lessons.view_box(screen))  # that of docs/sessions.md
     session().look = look
     yield lambda: session() is None or session().removed > 400
     yield from screen.picture("08-pen", vary=["VIEW_3D"])
