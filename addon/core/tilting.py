@@ -1,6 +1,6 @@
 """Few keys along a path with which the tool is free at each of its points: those that lean least from the middle
-between the two walls, by the maps of free orientations (riffler.plan.least_tilt), more of them only where points between
-collide.
+between the two walls, by the maps of free orientations (riffler.plan.least_tilt), more of them only where points
+between collide.
 
 The way from point to point is not judged here: on a curved path it dips into the part by what its chord does, and only
 resolving, which may lift and put rows between, says whether that matters."""

@@ -14,6 +14,7 @@ import support
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 NAME = "Stock"
+SEEN = 0.12  # N: an arrow that is longer than its head
 
 
 def sculpting():
@@ -90,6 +91,31 @@ def counted(looks):
     session().look = counting
 
 
+def of_the_page(screen):
+    """The picture of docs/sessions.md: in a stroke, with the force on the tool; of a machine that keeps time, if it
+    does soon."""
+    force, end = support.part("drawing.force"), time.perf_counter() + 90
+    wanted = {"active"}
+
+    def cuts():
+        if time.perf_counter() > end:
+            wanted.add("degraded")
+        if session() is None:
+            return True
+        run = session().run
+        return run.in_stroke and run.state in wanted and np.linalg.norm(force._shown.force) > SEEN
+
+    view = screen.area.spaces.active.region_3d
+    view.view_distance *= 1.25
+    yield cuts
+    assert sculpting(), "the session was over before it could be looked at"
+    look, session().look = session().look, lambda: True
+    yield 1.0
+    yield from lessons.picture(screen, "session", lessons.view_box(screen))
+    session().look = look
+    view.view_distance /= 1.25
+
+
 def steps(screen):
     yield from prepare(screen)
     before, whole = cut.state(), volume().volume
@@ -105,10 +131,10 @@ def steps(screen):
     look, session().look = session().look, lambda: True  # nobody looks for a moment, and a picture has the arrows
     yield 2.0
     yield from screen.picture("10-pen-force", vary=["VIEW_3D", "SIDEBAR"])
-    yield from lessons.picture(screen, "session", lessons.view_box(screen))  # that of docs/sessions.md
     session().look = look
     yield lambda: session() is None or session().removed > 400
     yield from screen.picture("08-pen", vary=["VIEW_3D"])
+    yield from of_the_page(screen)
     times = np.array(looks)
     support.figure(
         "a session's looks in the window",
