@@ -14,6 +14,7 @@ import support
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 NAME = "Stock"
+TOP = 20.0  # mm, of the block
 SEEN = 0.12  # N: an arrow that is longer than its head
 
 
@@ -70,7 +71,7 @@ def prepare(screen):
         settings.tool.kind, settings.tool.diameter = "ball", 8.0
         settings.sculpt.limit = 0.2
         bpy.ops.riffler.new_stock(
-            "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, 20), pitch=0.25, directions="xyz"
+            "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, TOP), pitch=0.25, directions="xyz"
         )
         bpy.ops.ed.undo_push(message="Stock")
     screen.to_view()
@@ -103,7 +104,8 @@ def of_the_page(screen):
         if session() is None:
             return True
         run = session().run
-        return run.in_stroke and run.state in wanted and np.linalg.norm(force._shown.force) > SEEN
+        deep = run.in_stroke and run.pose[2] < TOP - 2
+        return deep and run.state in wanted and min(run.force, force._shown.size) > SEEN
 
     view = screen.area.spaces.active.region_3d
     view.view_distance *= 1.25
