@@ -82,7 +82,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
 
     options: StringProperty(
         name="Options",
-        description='Of the machine, as JSON: {"max_rotary": 3600, "coolant": true}; docs/machines.md has them all',
+        description='Of the machine, as JSON: {"max_rotary": 3600, "coolant": "flood"}; docs/machines.md has them all',
     )
 
     def tool_dict(self):
