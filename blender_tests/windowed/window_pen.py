@@ -94,15 +94,16 @@ def counted(looks):
 
 def of_the_page(screen):
     """The picture of docs/sessions.md: deep in a stroke, with force on tool and hand. A machine that does not keep time
-    for so long gets one of any stroke."""
-    force, end = support.part("drawing.force"), time.perf_counter() + 80
+    for a minute gets one that says so, and later one of any stroke."""
+    force, begin = support.part("drawing.force"), time.perf_counter()
 
     def cuts():
         if session() is None:
             return True
         run = session().run
-        good = run.state == "active" and run.pose[2] < TOP - 2 and min(run.force, force._shown.size) > SEEN
-        return run.in_stroke and (good or time.perf_counter() > end)
+        waited = time.perf_counter() - begin
+        good = run.pose[2] < TOP - 2 and min(run.force, force._shown.size) > SEEN
+        return run.in_stroke and (waited > 105 or (good and (run.state == "active" or waited > 60)))
 
     view = screen.area.spaces.active.region_3d
     view.view_distance *= 1.25
