@@ -73,8 +73,9 @@ class Row:
 
 
 def files() -> list[Path]:
-    """What goes into a chroot: all that the wheel, the zips and the tests are made of."""
+    """What goes into a chroot: all that the wheel, the zips and the tests are made of, and what the tests read."""
     listed = [*wheel.sources(), *(ROOT / "tools").glob("*.py"), *(ROOT / "requirements").glob("*.txt")]
+    listed += (ROOT / "docs").glob("*.md")
     for folder in ("addon", "blender_tests"):
         listed += (f for f in (ROOT / folder).rglob("*") if f.is_file() and f.suffix != ".pyc")
     return listed
