@@ -92,4 +92,5 @@ def replayed(screen, first, curve, recording):
     path = support.out("name.stl")
     with screen.override():
         assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
-    lessons.closed(path, lessons.volume(second).volume, within=2e-3)
+    surface = lessons.closed(path, lessons.volume(second).volume, within=2e-3)
+    assert np.allclose(np.ptp(surface.vertices, axis=0), SIZE, atol=1e-4)  # crests between grooves stay below the top
