@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dexel/boolean.hpp"
+#include "sweep/clay_tile.hpp"
 
 namespace riffler {
 
@@ -21,11 +22,7 @@ void Protection::show(const Volume& left, std::span<const TileExchange::Place> p
     const auto& stock = stock_.grids()[p.grid].shared_tile(p.tile);
     const auto& before = cuttable_.grids()[p.grid].shared_tile(p.tile);
     const auto& rest = left.grids()[p.grid].shared_tile(p.tile);
-    auto whole = rest;
-    if (before != stock) {  // something of it is protected
-      const auto gone = apply(Boolean::Subtract, grid, p.tile, before, rest, builder);
-      whole = apply(Boolean::Subtract, grid, p.tile, stock, gone, builder);
-    }
+    auto whole = worked_tile(CarveMode::Remove, grid, p.tile, stock, before, rest, builder);
     if (whole == grid.shared_tile(p.tile)) continue;
     grid.set_tile(p.tile, std::move(whole));
     any = true;

@@ -8,6 +8,7 @@
 
 #include "dexel/boolean.hpp"
 #include "geom/parallel.hpp"
+#include "sweep/clay_tile.hpp"
 #include "sweep/tile_cutter.hpp"
 
 namespace riffler {
@@ -63,12 +64,7 @@ class Clay {
   /// The volume's tile without or with what was cut from `t.before`, of which `rest` is left.
   TilePtr changed(const Touched& t, const TilePtr& rest, TileBuilder& builder) const {
     const Grid& grid = volume_.grids()[t.grid];
-    const TilePtr& old = grid.shared_tile(t.tile);
-    if (rest == t.before) return old;
-    const bool remove = options_.mode == CarveMode::Remove;
-    if (remove && t.before == old) return rest;  // nothing of it is protected
-    const TilePtr cut = apply(Boolean::Subtract, grid, t.tile, t.before, rest, builder);
-    return apply(remove ? Boolean::Subtract : Boolean::Add, grid, t.tile, old, cut, builder);
+    return worked_tile(options_.mode, grid, t.tile, grid.shared_tile(t.tile), t.before, rest, builder);
   }
 
  private:
