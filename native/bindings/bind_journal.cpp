@@ -66,12 +66,12 @@ JournalStock to_stock(const py::object& lower, const py::object& upper, double p
   return {{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions, snapshot, mask};
 }
 
-constexpr const char* kModes[kStrokeModes] = {"remove", "add", "mask", "unmask", "soften", "beside"};
+constexpr const char* kModes[kStrokeModes] = {"remove", "add", "mask", "unmask", "soften", "beside", "build"};
 
 StrokeMode to_stroke_mode(const std::string& name) {
   for (std::uint32_t k = 0; k < kStrokeModes; ++k)
     if (name == kModes[k]) return static_cast<StrokeMode>(k);
-  throw py::value_error(R"(mode must be "remove", "add", "mask", "unmask", "soften" or "beside")");
+  throw py::value_error(R"(mode must be "remove", "add", "mask", "unmask", "soften", "beside" or "build")");
 }
 
 py::object json() {
@@ -178,8 +178,8 @@ void add_records(Class& c) {
 never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
 ends at the row. mode says what the tool does where it sweeps: "remove" and "add" material, but not where it is protected;
 "mask" and "unmask": protect it, or no longer; "soften": a dab of ``strength`` at each row's tip, as wide as the tool;
-"beside": remove as a Session does beside what is protected. To replay to the bit what was put on, or cut by ``carve``
-beside a mask, each carve has to be a stroke.)")
+"beside": remove as a Session does beside what is protected; "build": put on as a Session does. To replay to the bit what
+was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.)")
       .def(
           "extend_stroke",
           [](T& self, const Doubles& poses, const py::object& times, const py::object& forces,
@@ -234,7 +234,7 @@ void bind_journal(py::module_& m) {
       .def_property_readonly("name", [](const StrokeView& s) { return s.get().name; })
       .def_property_readonly(
           "mode", [](const StrokeView& s) { return kModes[static_cast<std::uint32_t>(s.get().mode)]; },
-          R"("remove", "add", "mask", "unmask", "soften" or "beside".)")
+          R"("remove", "add", "mask", "unmask", "soften", "beside" or "build".)")
       .def_property_readonly(
           "strength", [](const StrokeView& s) { return s.get().strength; }, "0 to 1, of one that softens.")
       .def("__len__", [](const StrokeView& s) { return s.get().poses.size(); });

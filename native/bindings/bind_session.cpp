@@ -52,6 +52,7 @@ struct SharedSession {
   py::object collider;
   Tool tool;
   MoveCarver::Options carving;
+  CarveMode mode;
   std::optional<Volume> mask{};
   std::shared_ptr<JournalSink> sink;
   std::unique_ptr<Session> session;
@@ -59,8 +60,13 @@ struct SharedSession {
   SculptTick last{};
 
   SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<Pen> p, py::object c, const Tool& t,
-                const MoveCarver::Options& o)
-      : volume(std::move(v)), pen(std::move(p)), collider(std::move(c)), tool(t), carving(o) {}
+                const SessionSettings& settings)
+      : volume(std::move(v)),
+        pen(std::move(p)),
+        collider(std::move(c)),
+        tool(t),
+        carving(settings.loop.carving),
+        mode(settings.mode) {}
   ~SharedSession() {
     const NoGil release;  // the thread of the device may be waiting for it
     session.reset();
@@ -176,24 +182,37 @@ struct Options {
   }
 };
 
+CarveMode to_mode(const std::string& mode) {
+  if (mode == "remove") return CarveMode::Remove;
+  if (mode == "add") return CarveMode::Add;
+  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + '"');
+}
+
 std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
                                     std::shared_ptr<Pen> pen, const py::object& obstacles, SharedVolume* protect,
-                                    const py::kwargs& given) {
+                                    const std::string& mode, const py::kwargs& given) {
   if (!volume) throw py::type_error("volume: None");
   if (!pen) pen = std::make_shared<PointerPen>(PointerPen::Kind::Mouse);
   Options options;
   options.settings.loop.passivity = pen->passivity();
   if (pen->capability().has_force()) options.settings.loop.sculpt.budget = 4e-4;
   options.read(given);
+  options.settings.mode = to_mode(mode);
   // Python's collider is immutable, and kept by the object.
   const Collider* collider = obstacles.is_none() ? nullptr : py::cast<const Collider*>(obstacles);
-  auto out = std::make_unique<SharedSession>(volume, pen, obstacles, tool, options.settings.loop.carving);
+  auto out = std::make_unique<SharedSession>(volume, pen, obstacles, tool, options.settings);
   const Volume state = Reading(*volume).volume.snapshot();
   if (protect) out->mask = Reading(*protect).volume.snapshot();
   out->session = std::make_unique<Session>(state, tool, std::move(pen),
                                            std::shared_ptr<const Collider>(std::shared_ptr<void>(), collider),
                                            options.settings, out->mask ? &*out->mask : nullptr);
   return out;
+}
+
+/// Of all its strokes.
+StrokeMode stroke_mode(const SharedSession& self) {
+  if (self.mode == CarveMode::Add) return StrokeMode::Build;
+  return self.mask ? StrokeMode::Beside : StrokeMode::Remove;
 }
 
 /// Stock and tool stand at the journal's beginning; every stroke follows as it is made.
@@ -218,7 +237,7 @@ void record(SharedSession& self, const std::filesystem::path& path, const py::di
   writer->add_tool(1, tool_json(py::cast(self.tool)));
   writer->sync();
   JournalStream::Options options;
-  if (self.mask) options.mode = StrokeMode::Beside;
+  options.mode = stroke_mode(self);
   auto sink = std::make_shared<JournalSink>(std::move(writer), 1, self.carving.tolerance, options);
   self.session->record(sink);
   self.sink = std::move(sink);
@@ -293,7 +312,8 @@ tip, in the part's.)")
           "tool_forces", [](const F& f) { return f.wrenches([](const T& t) { return t.on_tool; }); },
           "(n, 6): force (N) and torque (N·mm) of the material on the tool, whatever the hand is given of them.")
       .def_property_readonly(
-          "removed", [](const F& f) { return f.column([](const T& t) { return t.removed; }); }, "(n,) mm³.")
+          "removed", [](const F& f) { return f.column([](const T& t) { return t.removed; }); },
+          "(n,) mm³; with mode \"add\" what was put on.")
       .def_property_readonly(
           "energy", [](const F& f) { return f.column([](const T& t) { return t.energy; }); },
           "(n,) N·mm that may go to the hand: the account of passivity.")
@@ -372,15 +392,16 @@ while the session runs. The tool cuts while a button of ``dead_man_mask`` is hel
 
 pen: of ``riffler.pen.open``; None: a ``riffler.pen.Pointer`` of kind "mouse", see ``pen``. obstacles: a Collider to stay
 out of. protect: a volume of the same lower, upper, pitch and directions, or None; what lies in it stays as it is, and is
-as air to the tool. Options: ``material`` (of the stock), ``at`` ((6,) where the tool stands at the start; for tablets, mice and
-recordings their own pose, otherwise 5 mm above the stock), ``scale`` and ``turn`` ((3, 3); from the hand's motion to the
-tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``, ``turn_damping`` (of the coupling between hand
-and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which resistance is
-learnt; None: by tool and stock), ``max_force`` (N),
-``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp`` (s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget``
-(s for a step; None: as long as it takes), ``undo`` (strokes that can be taken back).)")
+as air to the tool. mode: "remove", or "add": the cutter puts on what it sweeps, all its length, within the volume's box;
+then it feels neither that nor the stock, only obstacles. Options: ``material`` (of the stock), ``at`` ((6,) where the tool
+stands at the start; for tablets, mice and recordings their own pose, otherwise 5 mm above the stock), ``scale`` and
+``turn`` ((3, 3); from the hand's motion to the tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``,
+``turn_damping`` (of the coupling between hand and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which
+resistance is learnt; None: by tool and stock), ``max_force`` (N), ``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp``
+(s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget`` (s for a step; None: as long as it takes), ``undo`` (strokes
+that can be taken back).)")
       .def(py::init(&make), "volume"_a, "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none(),
-           "protect"_a = py::none())
+           "protect"_a = py::none(), "mode"_a = "remove")
       .def(
           "start",
           [](SharedSession& s) {

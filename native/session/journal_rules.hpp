@@ -26,16 +26,17 @@ struct JournalStock {
 
 /// What a stroke does where the tool sweeps: to the stock, but for what is protected, or to what is protected. Soften:
 /// a dab at the tip of each row, as wide as the tool (dexel/soften.hpp). Beside: removes as a session does beside what
-/// is protected (session/protection.hpp); those that follow each other have one beginning, and no seams between them.
-enum class StrokeMode : std::uint32_t { Remove = 0, Add = 1, Mask = 2, Unmask = 3, Soften = 4, Beside = 5 };
-inline constexpr std::uint32_t kStrokeModes = 6;
+/// is protected (session/cuttable.hpp), and Build puts on as a session does; those of one mode that follow each other
+/// have one beginning, and no seams between them.
+enum class StrokeMode : std::uint32_t { Remove = 0, Add = 1, Mask = 2, Unmask = 3, Soften = 4, Beside = 5, Build = 6 };
+inline constexpr std::uint32_t kStrokeModes = 7;
 
 /// Rows of a stroke. A column beside the poses is as long as they are, or empty: not recorded.
 struct JournalRows {
   std::span<const Pose> poses;
   std::span<const double> times{};    ///< s, never falling
   std::span<const Wrench> forces{};   ///< N, N·mm that the device was told to give the hand: about the grip
-  std::span<const double> removed{};  ///< mm³ by the move that ends at the row
+  std::span<const double> removed{};  ///< mm³ by the move that ends at the row; or put on
 };
 
 /// Whether a tool that stood at `a` stands there still at `b`: no move.
@@ -44,7 +45,7 @@ inline bool stands(const Pose& a, const Pose& b) {
 }
 
 /// One stroke: what was carved in one go with one tool (replay.hpp). Of one that removes, where nothing is protected,
-/// any division into carves leaves the same bytes; of others but those beside each carve is a stroke.
+/// any division into carves leaves the same bytes; of others but a session's (Beside, Build) each carve is a stroke.
 struct JournalStroke {
   int tool = 0;
   double tolerance = 0.01;  ///< mm, as carve() was given it

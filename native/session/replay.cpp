@@ -5,7 +5,7 @@
 
 #include "dexel/file.hpp"
 #include "dexel/soften.hpp"
-#include "session/protection.hpp"
+#include "session/cuttable.hpp"
 #include "sweep/carve.hpp"
 
 namespace riffler {
@@ -48,17 +48,24 @@ void apply_dabs(const JournalStroke& stroke, const Tool& tool, Replayed& to, con
   soften(to.volume, centres, options);
 }
 
-/// Strokes beside what is protected, from the first on.
-struct Beside {
-  Protection protection;
+/// Strokes of a session that cuts not the volume itself, from the first on: all of one mode.
+struct Run {
+  Cuttable cuttable;
   Volume left;
 };
 
-void apply_beside(const JournalStroke& stroke, const Tool& tool, const Replayed& to, std::optional<Beside>& run,
-                  const Progress& progress) {
+/// How such a stroke carves, or nothing for those that carve the volume itself. Without a mask all of it may be cut.
+std::optional<CarveMode> run_mode(const JournalStroke& stroke, const Replayed& to) {
+  if (stroke.mode == StrokeMode::Build) return CarveMode::Add;
+  if (stroke.mode == StrokeMode::Beside && to.mask) return CarveMode::Remove;
+  return std::nullopt;
+}
+
+void apply_in_run(const JournalStroke& stroke, CarveMode mode, const Tool& tool, const Replayed& to,
+                  std::optional<Run>& run, const Progress& progress) {
   if (!run) {
-    const Protection protection(to.volume, *to.mask);
-    run.emplace(Beside{protection, protection.cuttable()});
+    const Cuttable cuttable(to.volume, mode, to.mask ? &*to.mask : nullptr);
+    run.emplace(Run{cuttable, cuttable.volume()});
   }
   CarveOptions options;
   options.tolerance = stroke.tolerance;
@@ -67,15 +74,16 @@ void apply_beside(const JournalStroke& stroke, const Tool& tool, const Replayed&
 }
 
 /// The volume is what those strokes have left.
-void end_run(Replayed& to, std::optional<Beside>& run) {
-  if (run) to.volume = run->protection.whole(run->left);
+void end_run(Replayed& to, std::optional<Run>& run) {
+  if (run) to.volume = run->cuttable.whole(run->left);
   run.reset();
 }
 
-void apply(const JournalStroke& stroke, const Tool& tool, Replayed& to, std::optional<Beside>& run,
+void apply(const JournalStroke& stroke, const Tool& tool, Replayed& to, std::optional<Run>& run,
            const Progress& progress) {
-  if (stroke.mode == StrokeMode::Beside && to.mask) return apply_beside(stroke, tool, to, run, progress);
-  end_run(to, run);
+  const std::optional<CarveMode> mode = run_mode(stroke, to);
+  if (run && mode != run->cuttable.mode()) end_run(to, run);
+  if (mode) return apply_in_run(stroke, *mode, tool, to, run, progress);
   if (stroke.mode == StrokeMode::Soften) return apply_dabs(stroke, tool, to, progress);
   CarveOptions options;
   options.tolerance = stroke.tolerance;
@@ -101,7 +109,7 @@ Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, co
                     const Progress& progress) {
   constexpr double kStock = 0.05;  // share of the work, for the listener
   Replayed out = begin(journal, folder, part(progress, 0, kStock));
-  std::optional<Beside> run;
+  std::optional<Run> run;
   double rows = 0, done = 0;
   for (const JournalStroke& stroke : journal.strokes()) rows += static_cast<double>(stroke.poses.size());
   const auto share = [&] { return rows > 0 ? kStock + (1 - kStock) * done / rows : 1; };

@@ -43,7 +43,7 @@ struct SculptTick {
   Wrench wrench;       ///< on the hand, about the grip's point, device's frame: what the device was told
   Wrench applied;      ///< what it had, as far as it says so; otherwise what it was told a tick before
   Wrench on_tool;      ///< of the material, about the tip, part's frame: what the tool feels; nothing where it is air
-  double removed = 0;  ///< mm³
+  double removed = 0;  ///< mm³; of a session that puts on, what it put on
   double depth = 0;    ///< mm that the tool is at most in what it must not enter
   double energy = 0;   ///< N·mm: of the account
   double dt = 0;       ///< s since the last

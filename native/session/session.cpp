@@ -20,6 +20,12 @@ constexpr double kTick = 1e-3;  // s
 // What a tile of three directions with many spans needs, and how many tiles a frame's steps may cut for the first time.
 constexpr std::size_t kLargestBlock = 1 << 17, kBlocks = 64;
 
+/// To put material on is no work against it: of a force there would be that of milling the air.
+SculptLoopSettings for_mode(SculptLoopSettings settings, CarveMode mode) {
+  if (mode == CarveMode::Add) settings.carving.removal_constant = settings.sculpt.damping = 0;
+  return settings;
+}
+
 SculptLoopSettings for_device(SculptLoopSettings settings, const DeviceCapability& device) {
   if (device.has_force()) return settings;
   // A mouse jumps as it likes: nothing pushes anybody.
@@ -44,8 +50,8 @@ Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen
       obstacles_(std::move(obstacles)),
       shown_(stock.revision()) {
   if (!pen_) throw std::invalid_argument("a session needs a device");
-  settings_.loop = for_device(settings_.loop, pen_->capability());
-  if (protect) left_ = protection_.emplace(stock, *protect).cuttable();
+  settings_.loop = for_device(for_mode(settings_.loop, settings.mode), pen_->capability());
+  if (protect || settings.mode == CarveMode::Add) left_ = cuttable_.emplace(stock, settings.mode, protect).volume();
   moments_.push_back({0, stock, left_});
 }
 
@@ -114,10 +120,10 @@ SessionFrame Session::frame(Volume& shown) {
 
 /// What the loop has cut since comes into `shown`.
 TileExchange::Mark Session::follow(Volume& shown, std::vector<TileExchange::Place>& places) {
-  if (!protection_) return loop_->show(shown, places);
+  if (!cuttable_) return loop_->show(shown, places);
   const std::size_t before = places.size();
   const TileExchange::Mark mark = loop_->show(*left_, places);
-  protection_->show(*left_, std::span(places).subspan(before), shown);
+  cuttable_->show(*left_, std::span(places).subspan(before), shown);
   return mark;
 }
 

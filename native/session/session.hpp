@@ -10,7 +10,7 @@
 
 #include "geom/block_pool.hpp"
 #include "pen/device.hpp"
-#include "session/protection.hpp"
+#include "session/cuttable.hpp"
 #include "session/sculpt_loop.hpp"
 
 namespace riffler {
@@ -22,6 +22,9 @@ struct SessionSettings {
   /// the stock's box.
   std::optional<Pose> start;
   std::size_t undo = 64;  ///< strokes that can be taken back
+  /// Add: the tool puts material on, within the stock's box. Nothing of that is felt, nor is the stock: only obstacles
+  /// are.
+  CarveMode mode = CarveMode::Remove;
 
   /// std::invalid_argument naming the field.
   void validate() const;
@@ -40,7 +43,8 @@ struct SessionFrame {
 class Session {
  public:
   /// Validates; std::invalid_argument as MoveCarver. A device without force is spared the checks of its motion. What
-  /// lies in `protect`, a volume of the stock's frame or null, stays as it is, and is as air to the tool.
+  /// lies in `protect`, a volume of the stock's frame or null, stays as it is, material and air, and is as air to the
+  /// tool.
   Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen, std::shared_ptr<const Collider> obstacles,
           const SessionSettings& settings, const Volume* protect = nullptr);
   Session(const Session&) = delete;
@@ -77,7 +81,7 @@ class Session {
   struct Moment {
     std::uint64_t strokes;  // from the moment before to this one: one, or more where frames came seldom
     Volume volume;
-    std::optional<Volume> left{};  // of what may be cut, where something is protected
+    std::optional<Volume> left{};  // of what may be cut, where that is not the volume itself
 
     const Volume& cut() const { return left ? *left : volume; }  // the loop's
   };
@@ -100,13 +104,13 @@ class Session {
   std::atomic<bool> ending_{false};
   BlockReserve reserve_;
 
-  std::optional<Protection> protection_;
-  std::optional<Volume> left_;   // of what may be cut, where something is protected: as it is shown
-  std::uint64_t shown_ = 0;      // revision of the volume that is shown
-  std::vector<Moment> moments_;  // between strokes; oldest first
-  std::size_t here_ = 0;         // of them, the one that is shown or being changed
-  std::uint64_t strokes_ = 0;    // that were seen
-  SessionFrame kept_;            // for the next
+  std::optional<Cuttable> cuttable_;  // where that is not the volume itself
+  std::optional<Volume> left_;        // of it, as it is shown
+  std::uint64_t shown_ = 0;           // revision of the volume that is shown
+  std::vector<Moment> moments_;       // between strokes; oldest first
+  std::size_t here_ = 0;              // of them, the one that is shown or being changed
+  std::uint64_t strokes_ = 0;         // that were seen
+  SessionFrame kept_;                 // for the next
 };
 
 }  // namespace riffler

@@ -1207,7 +1207,7 @@ class JournalStroke:
     @property
     def mode(self) -> str:
         """
-        "remove", "add", "mask", "unmask", "soften" or "beside".
+        "remove", "add", "mask", "unmask", "soften", "beside" or "build".
         """
     @property
     def name(self) -> str:
@@ -1266,8 +1266,8 @@ class Journal:
         never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
         ends at the row. mode says what the tool does where it sweeps: "remove" and "add" material, but not where it is protected;
         "mask" and "unmask": protect it, or no longer; "soften": a dab of ``strength`` at each row's tip, as wide as the tool;
-        "beside": remove as a Session does beside what is protected. To replay to the bit what was put on, or cut by ``carve``
-        beside a mask, each carve has to be a stroke.
+        "beside": remove as a Session does beside what is protected; "build": put on as a Session does. To replay to the bit what
+        was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.
         """
     def add_tool(self, number: typing.SupportsInt, tool: typing.Any) -> None:
         """
@@ -1354,8 +1354,8 @@ class JournalWriter:
         never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
         ends at the row. mode says what the tool does where it sweeps: "remove" and "add" material, but not where it is protected;
         "mask" and "unmask": protect it, or no longer; "soften": a dab of ``strength`` at each row's tip, as wide as the tool;
-        "beside": remove as a Session does beside what is protected. To replay to the bit what was put on, or cut by ``carve``
-        beside a mask, each carve has to be a stroke.
+        "beside": remove as a Session does beside what is protected; "build": put on as a Session does. To replay to the bit what
+        was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.
         """
     def add_tool(self, number: typing.SupportsInt, tool: typing.Any) -> None:
         """
@@ -1581,7 +1581,7 @@ class SessionFrame:
     @property
     def removed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm³.
+        (n,) mm³; with mode "add" what was put on.
         """
     @property
     def starts(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1643,13 +1643,14 @@ class Session:
 
     pen: of ``riffler.pen.open``; None: a ``riffler.pen.Pointer`` of kind "mouse", see ``pen``. obstacles: a Collider to stay
     out of. protect: a volume of the same lower, upper, pitch and directions, or None; what lies in it stays as it is, and is
-    as air to the tool. Options: ``material`` (of the stock), ``at`` ((6,) where the tool stands at the start; for tablets, mice and
-    recordings their own pose, otherwise 5 mm above the stock), ``scale`` and ``turn`` ((3, 3); from the hand's motion to the
-    tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``, ``turn_damping`` (of the coupling between hand
-    and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which resistance is
-    learnt; None: by tool and stock), ``max_force`` (N),
-    ``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp`` (s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget``
-    (s for a step; None: as long as it takes), ``undo`` (strokes that can be taken back).
+    as air to the tool. mode: "remove", or "add": the cutter puts on what it sweeps, all its length, within the volume's box;
+    then it feels neither that nor the stock, only obstacles. Options: ``material`` (of the stock), ``at`` ((6,) where the tool
+    stands at the start; for tablets, mice and recordings their own pose, otherwise 5 mm above the stock), ``scale`` and
+    ``turn`` ((3, 3); from the hand's motion to the tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``,
+    ``turn_damping`` (of the coupling between hand and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which
+    resistance is learnt; None: by tool and stock), ``max_force`` (N), ``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp``
+    (s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget`` (s for a step; None: as long as it takes), ``undo`` (strokes
+    that can be taken back).
     """
     @staticmethod
     def replay(path: os.PathLike | str | bytes, progress: typing.Any = None) -> typing.Any:
@@ -1660,7 +1661,7 @@ class Session:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice = None, *, obstacles: typing.Any = None, protect: Volume = None, **kwargs) -> None:
+    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice = None, *, obstacles: typing.Any = None, protect: Volume = None, mode: str = 'remove', **kwargs) -> None:
         ...
     def frame(self) -> SessionFrame:
         """

@@ -291,6 +291,63 @@ def test_what_is_protected_stays_to_the_bit_and_the_replay_too(tmp_path, directi
     assert {s.mode for s in journal.strokes} == {"beside"} and journal.stock["mask"] == "a-mask.rvol"
 
 
+@pytest.mark.parametrize("directions", ["z", "xyz"])
+@pytest.mark.parametrize("masked", [False, True])
+def test_what_is_put_on_is_not_felt_and_the_replay_is_the_same_to_the_bit(tmp_path, directions, masked):
+    volume, mask = stock(0.5, directions), None
+    volume.carve(riffler.Tool.flat(100, 40), np.array([[-60.0, 0, -4, 0, 0, 1], [60, 0, -4, 0, 0, 1]]))
+    if masked:
+        mask = riffler.Volume.empty((-30, -30, -20), (30, 30, 0), 0.5, directions)
+        mask.carve(BALL, np.array([[-20.0, 0, -6, 0, 0, 1], [20, 1, -6, 0, 0, 1]]), mode="add")
+    before = volume.copy()
+    pen = riffler.pen.Pointer("mouse")
+    pen.set_frame(depth=3)
+    material = riffler.Material(removal_constant=0.01, damping=0.1)
+    session = riffler.Session(volume, BALL, pen, protect=mask, mode="add", material=material, stiffness=5.0)
+    session.journal(tmp_path / "a.rjournal")
+    at, states, seen = 0.0, [before.to_bytes()], []
+
+    def give(x, y, pressed):
+        nonlocal at
+        at += 0.004
+        pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=at)
+        time.sleep(0.004)
+
+    give(-5, -40, 0)
+    with session:
+        for x in (-12.0, 0.0, 12.0):  # across the mask
+            give(x, -20, 0)
+            time.sleep(0.02)
+            for y in np.arange(-20, 20, 1.0):
+                give(x + 0.05 * y, y, 1)
+            for _ in range(5):
+                give(x, 20, 0)
+            seen += frames(session, 10, lambda frame: frame.strokes >= len(states) and not frame.in_stroke)
+            states.append(volume.to_bytes())
+        assert session.undo() == 1 and volume.to_bytes() == states[2]
+        assert session.redo() == 1 and volume.to_bytes() == states[3]
+        assert session.undo() == 1
+    assert volume.to_bytes() == states[2] and len(set(states)) == 4
+    assert same(volume, riffler.Session.replay(tmp_path / "a.rjournal"))
+    assert volume.volume > before.volume + 50
+    if masked:
+        inside, was = volume.copy(), before.copy()
+        inside.intersect(mask), was.intersect(mask)
+        for direction in directions:
+            for a, b in zip(inside.intervals(direction), was.intervals(direction), strict=True):
+                assert np.array_equal(a, b)
+    assert not np.concatenate([frame.tool_forces for frame in seen]).any()
+    journal = riffler.Journal.read(tmp_path / "a.rjournal")
+    assert {s.mode for s in journal.strokes} == {"build"} and journal.stock["mask"] == ("a-mask.rvol" if masked else "")
+    put_on = sum(s.removed.sum() for s in journal.strokes)
+    assert put_on == pytest.approx(volume.volume - before.volume, rel=1e-6)
+
+
+def test_a_mode_that_no_session_has_is_named():
+    with pytest.raises(ValueError, match=r'^mode must be "remove" or "add", not "smooth"$'):
+        riffler.Session(stock(), BALL, mode="smooth")
+
+
 def test_a_mask_on_another_grid_is_refused():
     mask = riffler.Volume.empty((-30, -30, -20), (30, 30, 0), 0.4, "z")
     with pytest.raises(ValueError, match="protect"):

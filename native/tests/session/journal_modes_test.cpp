@@ -186,10 +186,10 @@ TEST(JournalModes, OfANewerRifflerAreNamed) {
   std::vector<std::uint8_t> bytes = to_bytes(j);
   const auto record = journal_format::whole_record(std::span(bytes).subspan(at));
   std::vector<std::uint8_t> payload(record->payload.begin(), record->payload.end());
-  payload[payload.size() - 4] = 6;
+  payload[payload.size() - 4] = kStrokeModes;
   Journal out = journal();
   EXPECT_EQ(error_of([&] { journal_format::apply_record({record->kind, payload, record->size}, out); }),
-            "a stroke of mode 6, unknown here: a newer Riffler wrote it");
+            "a stroke of mode 7, unknown here: a newer Riffler wrote it");
   payload[payload.size() - 4] = 1;
   journal_format::apply_record({record->kind, payload, record->size}, out);
   EXPECT_EQ(out.strokes()[0].mode, StrokeMode::Add);

@@ -14,7 +14,9 @@
 #include "pen/pointer.hpp"
 #include "pen/simulated_device.hpp"
 #include "session/sculpt_bench.hpp"
+#include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
+#include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler {
@@ -39,11 +41,13 @@ bool soon(const Done& done, double seconds = 10) {
 
 /// A mouse that drags a ball through the top of the stock, `strokes` times.
 struct MouseBench {
-  explicit MouseBench(SessionSettings settings = {}, std::shared_ptr<StrokeSink> sink = nullptr)
-      : pen(std::make_shared<PointerPen>(PointerPen::Kind::Mouse, PointerFrame{.depth = 1})) {
+  explicit MouseBench(SessionSettings settings = {}, std::shared_ptr<StrokeSink> sink = nullptr,
+                      const Volume& begin = test::sculpt_stock(0.5),
+                      std::shared_ptr<const Collider> obstacles = nullptr)
+      : stock(begin), pen(std::make_shared<PointerPen>(PointerPen::Kind::Mouse, PointerFrame{.depth = 1})) {
     settings.loop.carving.removal_constant = 1e-4;
     pen->give({.x = -40, .time = time});
-    session = std::make_unique<Session>(stock, kBall, pen, nullptr, settings);
+    session = std::make_unique<Session>(stock, kBall, pen, std::move(obstacles), settings);
     if (sink) session->record(std::move(sink));
   }
 
@@ -65,7 +69,7 @@ struct MouseBench {
     });
   }
 
-  Volume stock = test::sculpt_stock(0.5), shown = stock;
+  Volume stock, shown = stock;
   double time = 0;
   std::shared_ptr<PointerPen> pen;
   std::unique_ptr<Session> session;
@@ -119,6 +123,85 @@ TEST(Session, UndoAndRedoGoStrokeByStrokeAndTellTheTiles) {
   EXPECT_EQ(sink->taken_back - sink->brought_back, 2U);
   EXPECT_TRUE(test::same_spans(last, test::carved_again(bench.stock, kBall, {sink->strokes[0], sink->strokes[3]},
                                                         {.tolerance = 0.01, .removal_constant = 1e-4})));
+}
+
+/// What a session that puts on begins with: the stock's lower half.
+Volume half_a_stock() {
+  Volume out = test::sculpt_stock(0.5);
+  carve(out, cutters::flat(100, 40), std::vector<Pose>{{{-60, 0, -3}, {0, 0, 1}}, {{60, 0, -3}, {0, 0, 1}}});
+  return out;
+}
+
+TEST(Session, ThatPutsOnAddsToTheVolumeStrokeByStrokeAndIsUndone) {
+  const auto sink = std::make_shared<RememberingSink>();
+  SessionSettings settings;
+  settings.mode = CarveMode::Add;
+  MouseBench bench(settings, sink, half_a_stock());
+  bench.session->start();
+  std::vector<Volume> after{bench.shown};
+  for (int k = 1; k <= 3; ++k) {
+    bench.stroke(8 * (k - 2));
+    ASSERT_TRUE(bench.ended(k));
+    after.push_back(bench.shown);
+    EXPECT_GT(after.back().volume(), after[k - 1].volume() + 50);
+  }
+  for (int k = 2; k >= 1; --k) {
+    EXPECT_EQ(bench.session->undo(bench.shown), 1U);
+    EXPECT_TRUE(test::same_spans(bench.shown, after[k]));
+  }
+  EXPECT_EQ(bench.session->redo(bench.shown), 1U);
+  EXPECT_TRUE(test::same_spans(bench.shown, after[2]));
+  bench.session->stop(bench.shown);
+  EXPECT_TRUE(test::same_spans(bench.shown, after[2]));
+  CarveOptions add;
+  add.mode = CarveMode::Add;
+  Volume again = bench.stock;
+  double put_on = 0;
+  for (int k = 0; k < 2; ++k) {
+    carve(again, kBall, sink->strokes[k].poses, add);
+    for (const double row : sink->strokes[k].removed) put_on += row;
+  }
+  EXPECT_NEAR(bench.shown.volume(), again.volume(), 1e-6 * again.volume());
+  EXPECT_NEAR(put_on, again.volume() - bench.stock.volume(), 1e-6 * again.volume());
+}
+
+TEST(Session, WhatIsPutOnIsNotFelt) {
+  for (const CarveMode mode : {CarveMode::Remove, CarveMode::Add}) {
+    SessionSettings settings;
+    settings.mode = mode, settings.loop.sculpt.damping = 0.01;
+    MouseBench bench(settings, nullptr, half_a_stock());
+    bench.session->start();
+    double force = 0, changed = 0;
+    for (const double depth : {1.0, 5.0}) {  // in the air above the half, and into it
+      bench.pen->set_frame({.depth = depth});
+      bench.stroke(0);
+    }
+    for (const SculptTick& tick : bench.session->stop(bench.shown).ticks)
+      force = std::max(force, glm::length(tick.on_tool.force)), changed += tick.removed;
+    EXPECT_GT(changed, 50);
+    if (mode == CarveMode::Add)
+      EXPECT_EQ(force, 0);
+    else
+      EXPECT_GT(force, 0);
+  }
+}
+
+TEST(Session, ThatPutsOnKeepsTheToolOutOfObstacles) {
+  const auto plate =
+      std::make_shared<Collider>(test::box_mesh({-200, -200, -11}, {200, 200, -1}), std::vector<Volume>{},
+                                 Collider::Settings{.spacing = 0.3, .stiffness = 1e3});
+  SessionSettings settings;
+  settings.mode = CarveMode::Add;
+  MouseBench bench(settings, nullptr, half_a_stock(), plate);
+  bench.pen->set_frame({.depth = 2});
+  bench.session->start();
+  bench.stroke(0);
+  double lowest = 1e9, changed = 0;
+  for (const SculptTick& tick : bench.session->stop(bench.shown).ticks)
+    lowest = std::min(lowest, tick.tool.tip.z), changed += tick.removed;
+  EXPECT_GT(lowest, -1.1);
+  EXPECT_LT(lowest, -0.5);
+  EXPECT_GT(changed, 50);
 }
 
 TEST(Session, AMesherThatFollowsTheFramesHasTheMeshOfTheWhole) {

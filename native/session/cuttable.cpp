@@ -1,4 +1,4 @@
-#include "session/protection.hpp"
+#include "session/cuttable.hpp"
 
 #include <cstdint>
 #include <utility>
@@ -9,12 +9,14 @@
 
 namespace riffler {
 
-Protection::Protection(const Volume& stock, const Volume& mask) : stock_(stock), cuttable_(stock) {
-  check_same_grid(stock.frame(), mask.frame(), "protect");
-  apply(Boolean::Subtract, cuttable_, mask);
+Cuttable::Cuttable(const Volume& stock, CarveMode mode, const Volume* protect)
+    : mode_(mode), stock_(stock), cuttable_(mode == CarveMode::Add ? Volume::block(stock.frame()) : stock) {
+  if (protect) check_same_grid(stock.frame(), protect->frame(), "protect");
+  if (mode == CarveMode::Add) apply(Boolean::Subtract, cuttable_, stock);
+  if (protect) apply(Boolean::Subtract, cuttable_, *protect);
 }
 
-void Protection::show(const Volume& left, std::span<const TileExchange::Place> places, Volume& shown) const {
+void Cuttable::show(const Volume& left, std::span<const TileExchange::Place> places, Volume& shown) const {
   TileBuilder builder(shown.grids().front().has_normals());
   bool any = false;
   for (const TileExchange::Place& p : places) {
@@ -22,7 +24,7 @@ void Protection::show(const Volume& left, std::span<const TileExchange::Place> p
     const auto& stock = stock_.grids()[p.grid].shared_tile(p.tile);
     const auto& before = cuttable_.grids()[p.grid].shared_tile(p.tile);
     const auto& rest = left.grids()[p.grid].shared_tile(p.tile);
-    auto whole = worked_tile(CarveMode::Remove, grid, p.tile, stock, before, rest, builder);
+    auto whole = worked_tile(mode_, grid, p.tile, stock, before, rest, builder);
     if (whole == grid.shared_tile(p.tile)) continue;
     grid.set_tile(p.tile, std::move(whole));
     any = true;
@@ -30,7 +32,7 @@ void Protection::show(const Volume& left, std::span<const TileExchange::Place> p
   if (any) shown.touch();
 }
 
-Volume Protection::whole(const Volume& left) const {
+Volume Cuttable::whole(const Volume& left) const {
   std::vector<TileExchange::Place> changed;
   for (std::uint32_t g = 0; g < left.grids().size(); ++g)
     for (std::uint32_t t = 0; t < left.grids()[g].tile_count(); ++t)
