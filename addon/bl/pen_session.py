@@ -32,7 +32,7 @@ class PenSession:
         self._begin, self._recordings, self._on_end = time.perf_counter(), recordings, ended
         self.ended = False
         self.problem, self.count = "", 0  # what went wrong; strokes
-        self._tool = tool
+        self._tool, self.mode = tool, options.get("mode", "remove")
         self.run = pen.PenRun(device, tool, {**options, "undo": context.preferences.edit.undo_steps + working.SPARE})
         fresh = live.of(ob) is None
         self.live = None
@@ -64,9 +64,9 @@ class PenSession:
 
     # ------------------------------------------------------------------ while it goes on
     @property
-    def removed(self):
-        """mm³ since it began, but for what was taken back."""
-        return self._before - self.live.volume.volume
+    def changed(self):
+        """mm³ removed or put on since it began, but for what was taken back."""
+        return abs(self._before - self.live.volume.volume)
 
     @property
     def diameter(self):
@@ -109,7 +109,7 @@ class PenSession:
         made, self._strokes = run.strokes - self._strokes, run.strokes
         work.keeping.made(made)
         for rows in run.taken_rows():
-            work.took(self._tool.to_dict(), rows)
+            work.took(self._tool.to_dict(), rows, self.mode)
         if run.untold:
             self.problem = "Blender was busy for seconds: strokes may be missing among the cuts"
         if work.finish_stroke(bpy.context, LABEL):

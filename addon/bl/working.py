@@ -159,9 +159,9 @@ class Live:
             self.begin_device_stroke()
         self.cancel_stroke()
 
-    def took(self, tool, rows):
+    def took(self, tool, rows, mode):
         """The poses, (n, 6), of a stroke with `tool`, a dictionary, that a device has made."""
-        self._strokes.append((0, tool, "remove", [rows]))
+        self._strokes.append((0, tool, mode, [rows]))
 
     def carve(self, tool, poses, dt=None, mode="remove", new=True):
         """Carves the poses, (n, 6), and their copies by symmetry. `new`: they do not go on from the last ones. Returns

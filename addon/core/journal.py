@@ -26,6 +26,7 @@ from .job import Cut
 STROKES, STOCK, MASK, CUTS, ABOUT = "strokes.rjournal", "stock.rvol", "mask.rvol", "cuts", "about.json"
 STATES = "states"  # of a session's: a line for each state, of how many strokes make it and its token
 MODES = ("remove", "add", "mask", "unmask", "soften")  # that can be told again
+SHAPING = {"remove": "remove", "beside": "remove", "add": "add", "build": "add"}  # what a stroke is among the cuts
 PROBLEMS = (OSError, RuntimeError, ValueError)
 
 
@@ -325,10 +326,10 @@ def cuts_of(journal: riffler.Journal) -> list[Cut]:
     rows: dict[tuple, list[np.ndarray]] = {}
     tools = journal.tools
     for stroke in journal.strokes:
-        if stroke.mode not in ("remove", "add", "beside"):
+        if stroke.mode not in SHAPING:
             continue
         poses = stroke.poses
-        key = (stroke.name, stroke.tool, "add" if stroke.mode == "add" else "remove")
+        key = (stroke.name, stroke.tool, SHAPING[stroke.mode])
         open_ones = rows.setdefault(key, [])
         for k, before in enumerate(open_ones):
             if np.array_equal(before[-1], poses[0]):

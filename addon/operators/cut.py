@@ -41,9 +41,10 @@ class CutShell(shared.TakesTool, SculptWork):
     def finish(self, context, job):
         self.keep(job.volume, self._before.cuts + job.cuts, self._before.mask)
         seconds = time.perf_counter() - self._begin
-        removed = units.format_volume(job.removed)
+        changed, adds = units.format_volume(job.removed), {cut.mode == "add" for cut in job.cuts}
+        done = {(False,): "Removed", (True,): "Put on"}.get(tuple(adds), "Removed and put on")
         level = {"INFO"} if job.removed > 0 else {"WARNING"}
-        self.report(level, f"Removed {removed} in {units.format_count(job.total)} moves, {seconds:.2f} s")
+        self.report(level, f"{done} {changed} in {units.format_count(job.total)} moves, {seconds:.2f} s")
         return {"FINISHED"}
 
 
@@ -110,7 +111,7 @@ class RIFFLER_OT_cut_recording(CutShell, bpy.types.Operator, ImportHelper):
         cuts, stock = paths.from_recording(bpy.path.abspath(self.filepath))
         if self.other or self.tool:
             tool = self.tool_dict(context)
-            cuts = [Cut(tool, cut.poses, cut.tolerance) for cut in cuts]
+            cuts = [Cut(tool, cut.poses, cut.tolerance, cut.mode) for cut in cuts]
         volume = self._before.volume
         if stock and not (np.allclose(stock["lower"], volume.lower) and np.allclose(stock["upper"], volume.upper)):
             size = units.format_size(stock["upper"] - stock["lower"])

@@ -7,6 +7,7 @@ import riffler
 from ..bl import curves as bl_curves
 from ..bl import sculpts, surface
 from ..core import curves, poses, problems
+from ..core import journal as journals
 from ..core.job import Cut
 
 
@@ -46,9 +47,13 @@ def from_recording(path):
     problems.check_source(path)
     journal = riffler.Journal.read(path)
     tools = journal.tools
-    cuts = [Cut(tools[s.tool], s.poses, s.tolerance) for s in journal.strokes if len(s) > 1]
+    cuts = [
+        Cut(tools[s.tool], s.poses, s.tolerance, journals.SHAPING[s.mode])
+        for s in journal.strokes
+        if len(s) > 1 and s.mode in journals.SHAPING
+    ]
     if not cuts:
-        raise ValueError("the recording has no stroke with two poses")
+        raise ValueError("the recording has no stroke with two poses that removes material or puts it on")
     return cuts, journal.stock
 
 

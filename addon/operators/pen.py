@@ -11,7 +11,7 @@ import riffler
 
 from .. import properties
 from ..bl import chosen, events, pen_session, sculpts, working
-from ..core import problems
+from ..core import brush, problems
 from ..core import units as names
 from ..drawing import force
 from . import shared
@@ -21,14 +21,48 @@ TELL = 0.2  # s between two changes of what the panel says
 TOOL = (
     "riffler.carve"  # at hand while a device sculpts: Esc is its key, and whoever takes another leaves (bl/leaving.py)
 )
+MODES = (
+    ("TOOL", "As the tool at hand", "What the sculpt tool in the toolbar does; without one, Carve"),
+    ("REMOVE", "Carve", "Take material away"),
+    ("ADD", "Add", "Put material on"),
+)
+OF_TOOLS = {"riffler.add": "add"}  # any other carves
+SAID = {"remove": "removed", "add": "put on"}
+NO_STROKE = {
+    "remove": "no stroke",
+    "add": "no stroke where the stock's box has room; a new stock with a larger box has more",
+}
+NOT_OURS = {"riffler.smooth": "Smooth", "riffler.mask": "Mask"}  # tools whose work no session does
 
 _shown = None  # arrows and gauge (drawing/force.py)
 _told = 0.0
 
 
-def session_options(context, ob, settings):
+def mode_of(context, choice):
+    """What a session does to the material: "remove" or "add". ValueError where the tool at hand does something else."""
+    if choice != "TOOL":
+        return choice.lower()
+    tool = _at_hand(context)
+    if tool in NOT_OURS:
+        raise ValueError(f"a pen carves or puts material on: take Carve or Add instead of {NOT_OURS[tool]}")
+    return OF_TOOLS.get(tool, "remove")
+
+
+def _at_hand(context):
+    """Identifier of the tool that is active in the 3D view's toolbar, or ""."""
+    tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
+    return tool.idname if tool is not None else ""
+
+
+def tool_for(mode, tool, depth):
+    """What of the cutter a session works with: put on, a whole one would be a wall as high as it is long."""
+    return brush.stub(tool, depth) if mode == "add" else tool
+
+
+def session_options(context, ob, settings, mode="remove"):
     clean = names.clean
     options = {
+        "mode": mode,
         "stiffness": clean(settings.stiffness),
         "material": riffler.Material(removal_constant=clean(settings.removal_constant)),
         **chosen.limits(),
@@ -81,6 +115,13 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
     bl_label = "Sculpt with Pen"
     bl_options = set()  # it pushes its undo steps itself: its beginning, and each stroke
 
+    mode: bpy.props.EnumProperty(
+        name="Mode",
+        items=MODES,
+        default="TOOL",
+        options={"SKIP_SAVE"},
+        description="What the session does to the material",
+    )
     seconds: bpy.props.FloatProperty(
         name="Seconds",
         min=0.0,
@@ -126,10 +167,12 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
     def _start(self, context):
         ob = sculpts.active(context)
         try:
+            mode = mode_of(context, self.mode)
             if sculpts.edited(ob.data) and not sculpts.behind(ob.data):
                 self.report({"WARNING"}, "The mesh had been edited: the pen starts from the volume, the edits are gone")
-            tool = riffler.Tool.from_dict(self.tool_dict(context))
-            folder, options = recordings(self), session_options(context, ob, self)
+            depth = names.clean(context.scene.riffler.sculpt.depth)
+            tool = tool_for(mode, riffler.Tool.from_dict(self.tool_dict(context)), depth)
+            folder, options = recordings(self), session_options(context, ob, self, mode)
             device = open_device(self)
             pen_session.PenSession(context, ob, device, tool, options, folder, _leave)
         except (*shared.ERRORS, TypeError) as error:
@@ -141,8 +184,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
 
 
 def _take_up_tool(context):
-    tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
-    if tool is None or not tool.idname.startswith("riffler."):
+    if not _at_hand(context).startswith("riffler."):
         bpy.ops.wm.tool_set_by_id(name=TOOL, space_type="VIEW_3D")
 
 
@@ -173,7 +215,8 @@ def _tell(session):
     _told = time.perf_counter()
     state = bpy.context.window_manager.riffler
     state.force = f"Hand: {run.state}, {run.force:.2f} N"
-    state.text = f"{names.format_volume(session.removed)} in {session.count} strokes"
+    what = " put on" if session.mode == "add" else ""
+    state.text = f"{names.format_volume(session.changed)}{what} in {session.count} strokes"
     state.why = run.why
     why = f"    {run.why}" if run.why else ""
     _status(f"Riffler: {state.force}, {state.text}    Esc: end    Ctrl Z: take a stroke back{why}")
@@ -208,12 +251,14 @@ def _stop(operator):
 def _said(operator, session):
     """What a session has done, and whether that is anything."""
     problem = session.problem or session.run.why
+    done = SAID[session.mode]
     if not session.count:
-        operator.report({"WARNING"}, f"Nothing was removed in {session.seconds:.1f} s: {problem or 'no stroke'}")
+        why = problem or NO_STROKE[session.mode]
+        operator.report({"WARNING"}, f"Nothing was {done} in {session.seconds:.1f} s: {why}")
         return {"CANCELLED"}
     note = f"; {session.problem}" if session.problem else ""
-    removed = names.format_volume(session.removed)
-    text = f"Removed {removed} in {session.count} strokes, {session.seconds:.1f} s{note}"
+    changed = names.format_volume(session.changed)
+    text = f"{done.capitalize()} {changed} in {session.count} strokes, {session.seconds:.1f} s{note}"
     operator.report({"WARNING"} if session.problem else {"INFO"}, text)
     return {"FINISHED"}
 

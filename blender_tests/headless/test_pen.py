@@ -63,15 +63,26 @@ def journals():
     return [j for j in keeping._open if work() is not None and j is work().keeping.journal]
 
 
-class Hand:
-    """A session whose device is a mouse that a test moves: a stroke is a groove along x, 1 mm deep."""
+def lowered(directions="z"):
+    """A sculpt with air above z = 16."""
+    ob = sculpt(directions)
+    run = live().begin(bpy.context, ob)
+    run.begin_stroke()
+    run.carve(riffler.Tool.flat(150, 40), np.array([[-80, 30, 16, 0, 0, 1], [140, 30, 16, 0, 0, 1.0]]))
+    run.finish_stroke(bpy.context, "lowered")
+    return ob
 
-    def __init__(self, ob, record=None):
-        tool = riffler.Tool.ball(6, 30)
+
+class Hand:
+    """A session whose device is a mouse that a test moves: a stroke is a groove along x, 1 mm deep, or in mode "add" a
+    ridge on what is `lowered`."""
+
+    def __init__(self, ob, record=None, mode="remove"):
+        tool = support.part("operators.pen").tool_for(mode, riffler.Tool.ball(6, 30), 0.5)
         self.pen, self._time = riffler.pen.Pointer("mouse"), 0.0
-        self.pen.set_frame(origin=(0, 0, 20), depth=1.0)
+        self.pen.set_frame(origin=(0, 0, 17 if mode == "add" else 20), depth=1.0)
         self._give(-10, 0, 0)
-        options = {"material": riffler.Material(removal_constant=1e-5), "stiffness": 5.0}
+        options = {"material": riffler.Material(removal_constant=1e-5), "stiffness": 5.0, "mode": mode}
         self.session = sessions().PenSession(bpy.context, ob, self.pen, tool, options, record)
         support.push("Sculpt with Pen")
 
@@ -262,6 +273,134 @@ def test_what_is_masked_stays_to_the_byte_and_the_journal_tells_the_same():
         assert support.content(ob).mask.to_bytes() == mask.to_bytes()
         nothing_is_left()
         bpy.data.objects.remove(ob)
+
+
+def test_material_is_put_on_stroke_by_stroke_undone_and_told_by_the_journal():
+    core = support.part("core.journal")
+    for directions in ("z", "xyz"):
+        ob = lowered(directions)
+        before = work().volume.copy()
+        hand = Hand(ob, mode="add")
+        states = [hand.stroke(y) for y in (10, 24, 40)]
+        sizes = [before.volume, *(riffler.Volume.from_bytes(s).volume for s in states)]
+        # A ridge: a half disc 6 mm wide, 40 mm long; 3 mm of its height are above the stock.
+        assert (np.diff(sizes) > 0.8 * 40 * np.pi * 9 / 2).all(), sizes
+        assert np.isclose(hand.session.changed, sizes[-1] - sizes[0])
+        is_shown(NAME)
+        (journal,) = journals()
+        for token, expected in zip(journal._tokens[1:], states, strict=True):
+            assert journal.state(token).volume.to_bytes() == expected
+        for k in (1, 0):
+            bpy.ops.ed.undo()
+            assert sessions().running is hand.session and now() == states[k]
+            is_shown(NAME)
+        bpy.ops.ed.redo()
+        assert now() == states[1]
+        hand.session.look()
+        time.sleep(0.3)  # its keeper writes
+        told = core.replay(journal.folder)  # as a recovery has it
+        assert told.volume.to_bytes() == states[1]
+        assert [c.mode for c in told.cuts] == ["remove", "add", "add"]
+        hand.session.finish()
+        live().end_all()
+        content = support.content(bpy.data.objects[NAME])
+        assert content.volume.to_bytes() == states[1] and [c.mode for c in content.cuts] == ["remove", "add", "add"]
+        again = before.copy()
+        for cut in content.cuts[1:]:
+            again.carve(riffler.Tool.from_dict(cut.tool), cut.poses, mode="add")
+        assert abs(again.volume - content.volume.volume) < 1e-6 * again.volume
+        matches_its_volume(NAME)
+        nothing_is_left()
+        bpy.data.objects.remove(bpy.data.objects[NAME])
+
+
+def test_what_is_masked_gets_no_material_put_on():
+    ob = lowered("xyz")
+    run = live().of(ob)
+    run.begin_stroke()
+    run.carve(sculpting.BALL, np.array([[30, 5, 14, 0, 0, 1], [31, 50, 14, 0, 0, 1.0]]), mode="mask")
+    run.finish_stroke(bpy.context, "mask")
+    before, mask = run.volume.copy(), run.mask.copy()
+    hand = Hand(ob, mode="add")
+    made = hand.stroke(24)
+    inside, was = work().volume.copy(), before.copy()
+    inside.intersect(mask), was.intersect(mask)
+    assert support.same(support.shape(inside), support.shape(was))
+    assert work().volume.volume > before.volume + 100
+    (journal,) = journals()
+    assert journal.state(work().token).volume.to_bytes() == made
+    hand.session.finish()
+    live().end_all()
+    nothing_is_left()
+
+
+def test_a_session_does_what_the_tool_at_hand_does():
+    operators = support.part("operators.pen")
+    at_hand = operators._at_hand
+    try:
+        for tool, mode in (
+            ("riffler.add", "add"),
+            ("riffler.carve", "remove"),
+            ("riffler.plan", "remove"),
+            ("", "remove"),
+        ):
+            operators._at_hand = lambda context, tool=tool: tool
+            assert operators.mode_of(bpy.context, "TOOL") == mode
+            assert operators.mode_of(bpy.context, "ADD") == "add"
+        ob = lowered()
+        live().end_all()
+        before = now()
+        for tool, word in (("riffler.smooth", "Smooth"), ("riffler.mask", "Mask")):
+            operators._at_hand = lambda context, tool=tool: tool
+            support.refused(lambda: sculpt_for(0.2), f"take Carve or Add instead of {word}")
+            no_session()
+        assert now_of(ob) == before
+        operators._at_hand = lambda context: "riffler.add"
+        place = folder("put-on")
+        until_cut(record=True, folder=str(place))
+    finally:
+        operators._at_hand = at_hand
+    no_session()
+    live().end_all()
+    content = support.content(bpy.data.objects[NAME])
+    start = riffler.Volume.from_bytes(before)
+    assert content.volume.volume > start.volume + 1
+    assert {c.mode for c in content.cuts[1:]} == {"add"}
+    assert all(riffler.Tool.from_dict(c.tool).length == 3.0 for c in content.cuts[1:]), "the tip, and no wall"
+    path = sorted(place.glob("*.rjournal"))[-1]
+    assert riffler.Session.replay(path).to_bytes() == content.volume.to_bytes()
+    again = lowered()
+    live().end_all()
+    assert bpy.ops.riffler.cut_recording(filepath=str(path)) == {"FINISHED"}
+    assert abs(support.content(again).volume.volume - content.volume.volume) < 1e-6 * start.volume
+    nothing_is_left()
+
+
+def test_putting_on_where_the_box_is_full_says_so():
+    ob = sculpt()
+    before = now()
+    heard = []
+    operators = support.part("operators.pen")
+    said = operators._said
+    operators._said = lambda operator, session: said(Heard(heard), session)
+    try:
+        assert sculpt_for(0.5, mode="ADD") == {"CANCELLED"}
+    finally:
+        operators._said = said
+    assert "Nothing was put on" in heard[0], heard
+    live().end_all()
+    assert now_of(ob) == before
+    nothing_is_left()
+
+
+class Heard:
+    """What an operator would report."""
+
+    def __init__(self, texts):
+        self._texts = texts
+
+    def report(self, level, text):
+        self._texts.append(text)
 
 
 def test_there_is_one_journal_and_a_recovery_knows_its_states():

@@ -1,5 +1,5 @@
 """The simulated pen carves in view: chunks, tool and arrows follow, Blender makes its autosave meanwhile, Ctrl-Z takes
-a stroke back and Ctrl-Shift-Z brings it again, Esc or another tool ends it."""
+a stroke back and Ctrl-Shift-Z brings it again, Esc or another tool ends it; with the tool Add at hand it puts on."""
 
 import shutil
 import time
@@ -132,7 +132,7 @@ def steps(screen):
     yield 2.0
     yield from screen.picture("10-pen-force", vary=["VIEW_3D", "SIDEBAR"])
     session().look = look
-    yield lambda: session() is None or session().removed > 400
+    yield lambda: session() is None or session().changed > 400
     yield from screen.picture("08-pen", vary=["VIEW_3D"])
     yield from of_the_page(screen)
     times = np.array(looks)
@@ -187,6 +187,18 @@ def steps(screen):
         bpy.ops.wm.tool_set_by_id(name="builtin.move")
     yield lambda: not sculpting()
     assert volume().to_bytes() == last
+
+    # it does what the tool at hand does when it starts
+    with screen.override():
+        bpy.ops.wm.tool_set_by_id(name="riffler.add")
+    assert begin(screen) == {"FINISHED"} and session().mode == "add"
+    yield 1.0
+    screen.key("ESC")
+    yield lambda: not sculpting()
+    with screen.override():
+        bpy.ops.wm.tool_set_by_id(name="riffler.mask")
+    support.refused(lambda: begin(screen), "take Carve or Add instead of Mask")
+    assert not sculpting() and volume().to_bytes() == last
     with screen.override():
         bpy.ops.wm.open_mainfile(filepath=support.out("pen-autosaved.blend"))
     yield 1.0
