@@ -5,7 +5,8 @@ are Blender's own objects, so that materials, matcaps and overlays are the artis
 by the object (docs/decisions.md). The sculpt itself is hidden meanwhile.
 
 Everything is in one collection that says which sculpt it stands for: what is left of one, in an undo step or in the
-file of a Blender that crashed, is known and swept away.
+file of a Blender that crashed, is known and swept away. A copy that somebody made of something in it stays: Blender has
+given it another name.
 """
 
 import itertools
@@ -18,6 +19,7 @@ from ..core.blocks import Blocks
 from . import masks, meshes, sculpts, versions
 
 MARK = "riffler_live"  # on the collection: the sculpt's mark (sculpts.new_mark); on meshes and the material, too
+MADE = "riffler_made"  # on the collection and its objects: the name that they were given
 NUMBER = "riffler_chunk"  # on a chunk's object
 FILLING = "riffler_filling"  # on its mesh: which of our fillings it shows
 TOOL = "Riffler Tool"
@@ -96,7 +98,7 @@ class Chunks:
         """After an undo: the objects that came back, and the bricks of those that do not show what `fillings` says."""
         if fillings is None:  # nobody knows: all of them
             fillings = dict.fromkeys(range(len(self._blocks)), -1)
-        found = {ob[NUMBER]: ob for ob in collection_of(self._mark).objects if NUMBER in ob}
+        found = {ob[NUMBER]: ob for ob in collection_of(self._mark).objects if NUMBER in ob and is_own(ob)}
         self._names = {block: ob.name for block, ob in found.items()}
         self.fillings = {block: ob.data.get(FILLING, 0) for block, ob in found.items()}
         stale = [block for block, filling in fillings.items() if self.fillings.get(block) != filling]
@@ -147,7 +149,7 @@ class Chunks:
 
     def _tools(self):
         collection = collection_of(self._mark)
-        return [ob for ob in collection.objects if SHOWN in ob] if collection is not None else []
+        return [ob for ob in collection.objects if SHOWN in ob and is_own(ob)] if collection is not None else []
 
     def _add(self, collection, sculpt, name):
         mesh = bpy.data.meshes.new(name)
@@ -155,6 +157,7 @@ class Chunks:
         for material in self._materials:
             mesh.materials.append(bpy.data.materials.get(material))
         ob = bpy.data.objects.new(name, mesh)
+        ob[MADE] = ob.name
         ob.matrix_world = sculpt.matrix_world
         ob.hide_render = True  # what is rendered is the sculpt
         collection.objects.link(ob)
@@ -166,7 +169,7 @@ class Chunks:
 
 def _new_collection(context, ob):
     collection = bpy.data.collections.new("Riffler Live")
-    collection[MARK] = ob.riffler.mark
+    collection[MARK], collection[MADE] = ob.riffler.mark, collection.name
     collection["hidden"], collection["selected"] = ob.hide_get(), ob.select_get()
     # Views that draw a line around every object would draw it around every chunk. It is written down here, so that it
     # is given back after a crash, too.
@@ -241,15 +244,46 @@ def sweep(mark=None, name=""):
             weigh(ob)
         except ValueError as error:  # what is packed cannot be read: there is no surface to be shown
             print(f"Riffler: {error}")
-        parts = [ob for ob in collection.objects if ob.data is not None and MARK in ob.data]
-        bpy.data.batch_remove(parts)
-        for ob in list(collection.objects):  # somebody put it there
-            collection.objects.unlink(ob)
-            if not ob.users_collection:
-                bpy.context.scene.collection.objects.link(ob)
-        bpy.data.collections.remove(collection)
+        _clear(collection)
         if ob is not None and not hidden:
             reveal(ob, selected)
         _outline(outlined)
+    stray = [ob for ob in bpy.data.objects if is_own(ob) and ob.data is not None and _is_marked(ob.data, mark)]
+    _remove(stray)  # somebody, or an undo, has taken them out of the collection
     for place in (bpy.data.meshes, bpy.data.materials):
-        bpy.data.batch_remove([thing for thing in place if MARK in thing and mark in (None, thing[MARK])])
+        marked = [thing for thing in place if _is_marked(thing, mark)]
+        for thing in (thing for thing in marked if thing.users):
+            del thing[MARK]  # a copy shows it: it is somebody's now
+        bpy.data.batch_remove([thing for thing in marked if not thing.users])
+
+
+def _is_marked(thing, mark):
+    return MARK in thing and mark in (None, thing[MARK])
+
+
+def is_own(thing):
+    """Of an object or a collection: True where the add-on has made it, and it is no copy."""
+    return thing.get(MADE) == thing.name
+
+
+def _clear(collection):
+    """Takes away the collection and what the add-on has made in it. A copy of the whole collection, as of a scene, has
+    pictures only."""
+    pictures = [ob for ob in collection.objects if ob.data is not None and MARK in ob.data]
+    if is_own(collection):
+        pictures = [ob for ob in pictures if is_own(ob)]
+    _remove(pictures)
+    for ob in list(collection.objects):  # somebody put it there
+        collection.objects.unlink(ob)
+        if not ob.users_collection:
+            bpy.context.scene.collection.objects.link(ob)
+    bpy.data.collections.remove(collection)
+
+
+def _remove(pictures):
+    """What hangs on them, a copy of one, say, stays where it is."""
+    gone = set(pictures)
+    left = [(ob, ob.matrix_world.copy()) for ob in bpy.data.objects if ob.parent in gone and ob not in gone]
+    bpy.data.batch_remove(gone)
+    for ob, matrix in left:
+        ob.matrix_world = matrix

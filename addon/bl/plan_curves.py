@@ -1,15 +1,27 @@
 """What is seen of a plan: one curve object for each path, along the ball's centres. They are a picture of the plan that
-can be selected; edits to them change nothing."""
+can be selected; edits to them change nothing.
+
+The plan's Empty points to those that the add-on has made. A copy of one is in nobody's list and so belongs to whoever
+made it; where the Empty is copied with its curves, Blender lets the copy point to the copies. What somebody has named,
+or put to a use of their own, is theirs, too: drawing anew leaves it where it is.
+"""
+
+import re
+from collections import Counter
 
 import bpy
 import numpy as np
 
 from . import plan_store
 
+_T = bpy.types
+_KEEPERS = (_T.Scene, _T.Collection, _T.Screen, _T.WorkSpace, _T.WindowManager)  # have what is seen, or show it
+_NUMBER = re.compile(r"\.\d{3,}$")  # what Blender appends to a name that is taken
+
 
 def show(ob, plan, mm_per_unit):
-    """Makes the plan's curves anew, as children of its Empty and beside it."""
-    hide(ob)
+    """Makes the plan's curves anew, as children of its Empty and beside it; returns what was left, as `hide` does."""
+    left = hide(ob)
     home = ob.users_collection[0]
     for k, path in enumerate(plan.paths):
         curve = bpy.data.curves.new(name_of(k, path), "CURVE")
@@ -19,22 +31,82 @@ def show(ob, plan, mm_per_unit):
         spline.points.foreach_set("co", _points(path, mm_per_unit))
         spline.use_cyclic_u = path.closed
         shown = bpy.data.objects.new(curve.name, curve)
-        shown.riffler.plan.path = k
         shown.parent = ob
         plan_store.lock(shown)
         home.objects.link(shown)
+        line = ob.riffler.plan.curves.add()
+        line.name, line.curve = shown.name, shown
+    return left
 
 
 def hide(ob):
-    """Takes the curves away."""
-    curves = [c.data for c in of(ob)]
-    bpy.data.batch_remove([*of(ob), *[c for c in curves if c.users <= 1]])
+    """Takes the curves away; returns the names of those that are a person's by now, which stay."""
+    lines = [(line.curve, line.name) for line in ob.riffler.plan.curves if _is_of(line.curve, ob)]
+    used = _used([curve for curve, _ in lines])
+    left = [curve for curve, name in lines if curve in used or _plain(curve.name) != _plain(name)]
+    names = [curve.name for curve in left]
+    going = {curve for curve, _ in lines}.difference(left)
+    data = {curve.data for curve in going}
+    ob.riffler.plan.curves.clear()
+    bpy.data.batch_remove(going)
+    bpy.data.batch_remove([curve for curve in data if curve.users == 0])
+    return names
 
 
 def of(ob):
-    """The plan's curve objects by the number of their path; copies that a person made are among them."""
-    found = [c for c in ob.children if c.type == "CURVE" and c.riffler.plan.path >= 0]
-    return sorted(found, key=lambda c: c.riffler.plan.path)
+    """The plan's curve objects in the order of their paths."""
+    return list(numbered(ob).values())
+
+
+def numbered(ob):
+    """The plan's curve objects by the number of their path, from 0; not those that were deleted, which stay in the file
+    as long as the plan points to them."""
+    seen = {other for scene in bpy.data.scenes for other in scene.objects}
+    lines = enumerate(line.curve for line in ob.riffler.plan.curves)
+    return {k: curve for k, curve in lines if _is_of(curve, ob) and curve in seen}
+
+
+def _is_of(curve, ob):
+    """A copy of the Empty alone points to the curves of the other one."""
+    return curve is not None and curve.type == "CURVE" and curve.parent == ob
+
+
+def _plain(name):
+    return _NUMBER.sub("", name)
+
+
+def kept_note(names):
+    """What is said of those that `hide` has left."""
+    if not names:
+        return ""
+    shown = ", ".join(names[:3]) + (" …" if len(names) > 3 else "")
+    return f"Left as they are, since they were renamed or are in use: {shown}"
+
+
+def _used(curves):
+    """Those of these objects that somebody has put to a use: in one more collection, by other data (children,
+    modifiers, constraints), by a setting of a scene, or with something added to them."""
+    if not curves:
+        return set()
+    homes = Counter(ob for collection in _collections() for ob in collection.objects)
+    used = set()
+    for curve, users in bpy.data.user_map(subset=curves).items():
+        plans = sum(plan_store.is_plan(user) for user in users if isinstance(user, bpy.types.Object))
+        others = [user for user in users if not isinstance(user, _KEEPERS)]
+        counted = curve.users - homes[curve] - plans  # by a setting, say
+        if homes[curve] > 1 or len(others) > plans or counted > 0 or _has_additions(curve):
+            used.add(curve)
+    return used
+
+
+def _collections():
+    return [*bpy.data.collections, *(scene.collection for scene in bpy.data.scenes)]
+
+
+def _has_additions(curve):
+    data = curve.data
+    added = (curve.modifiers, curve.constraints, data.materials)
+    return any(map(len, added)) or any((curve.animation_data, data.animation_data, data.shape_keys))
 
 
 def name_of(k, path):
@@ -45,8 +117,7 @@ def name_of(k, path):
 def edited(ob, plan, mm_per_unit):
     """How many of the paths are not shown as they are: their curve was edited, moved, or is gone."""
     right = set()
-    for c in of(ob):
-        k = c.riffler.plan.path
+    for k, c in numbered(ob).items():
         if k < len(plan.paths) and _is_as_shown(c, plan.paths[k], mm_per_unit):
             right.add(k)
     return len(plan.paths) - len(right)

@@ -87,9 +87,10 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         else:
             ob = plan_store.new(context, plan)
         ob.riffler.plan.part = context.scene.objects[self._part]
-        plan_curves.show(ob, plan, self._mm)
+        left = plan_curves.kept_note(plan_curves.show(ob, plan, self._mm))
         total = names.trim(sum(path.length for path in paths), 1)
-        self.report({"INFO"}, f"{ob.name}: {names.format_count(len(paths))} paths, {total} mm")
+        found = f"{ob.name}: {names.format_count(len(paths))} paths, {total} mm"
+        self.report({"INFO"}, f"{found}. {left}" if left else found)
         return {"FINISHED"}
 
     def draw(self, context):
@@ -97,7 +98,8 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
 
 
 class RIFFLER_OT_plan_show(bpy.types.Operator):
-    """Draw the plan's paths anew; edits to their curves are lost"""
+    """Draw the plan's paths anew; edits to their curves are lost. Copies stay, and curves that were renamed or are in
+    use"""
 
     bl_idname = "riffler.plan_show"
     bl_label = "Redraw Paths"
@@ -116,7 +118,9 @@ class RIFFLER_OT_plan_show(bpy.types.Operator):
         except ValueError as error:
             return shared.fail(self, error)
         context.view_layer.objects.active = ob  # the curve that may be active goes
-        plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
+        left = plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
+        if left:
+            self.report({"INFO"}, plan_curves.kept_note(left))
         return {"FINISHED"}
 
 

@@ -95,7 +95,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             return [layout.at(frame)]
         if self.paths == "SELECTED":
             selected = set(context.selected_objects)
-            found = {c.riffler.plan.path for c in plan_curves.of(ob) if c in selected}
+            found = {k for k, c in plan_curves.numbered(ob).items() if c in selected}
             if not found:
                 raise ValueError("No path is selected: select their curves")
             return sorted(k for k in found if k < len(plan.paths))

@@ -9,7 +9,7 @@ from bpy.props import PointerProperty
 from .clay import ReliefSettings, RifflerClay
 from .cut import CutSettings, NcSettings, RifflerCut, RifflerNc
 from .pen import DEVICES, PREFERRED, RECORDING, PenProgress, PenSettings, RifflerPen
-from .plan import WITH_SURFACE, FindSettings, RifflerFinding, RifflerPlan, RifflerPlanObject
+from .plan import WITH_SURFACE, FindSettings, RifflerFinding, RifflerPathCurve, RifflerPlan, RifflerPlanObject
 from .progress import WorkProgress
 from .result import ResultSettings, RifflerResult
 from .sculpt import RifflerSculpt
@@ -60,6 +60,7 @@ CLASSES = (
     RifflerClay,
     RifflerResult,
     RifflerFinding,
+    RifflerPathCurve,
     RifflerPlan,
     RifflerSculpt,
     RifflerVerify,

@@ -113,15 +113,22 @@ class RifflerFinding(bpy.types.PropertyGroup):
     place: FloatVectorProperty(size=3)
 
 
+class RifflerPathCurve(bpy.types.PropertyGroup):
+    """The curve object of one path, and the name that it was given."""
+
+    name: StringProperty()
+    curve: PointerProperty(type=bpy.types.Object)
+
+
 class RifflerPlanObject(bpy.types.PropertyGroup):
-    """On a plan's Empty: where the plan is, and what a panel shows without reading it. On its curves: which path they
-    show."""
+    """On a plan's Empty: where the plan is, what a panel shows without reading it, and what shows its paths, in their
+    order (bl/plan_curves.py)."""
 
     store: PointerProperty(type=bpy.types.Image)
     part: PointerProperty(type=bpy.types.Object)
     paths: IntProperty()
     length: FloatProperty()
     tool: StringProperty()
-    path: IntProperty(default=-1)
+    curves: CollectionProperty(type=RifflerPathCurve)
     findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
     index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")

@@ -240,6 +240,47 @@ def test_a_saved_file_has_the_last_stroke_and_opens_without_chunks():
     nothing_is_left()
 
 
+def test_a_copy_of_what_is_shown_is_a_persons():
+    """In the collection or out of it, with a mesh of its own or without one. What is shown itself goes, wherever it
+    was put meanwhile."""
+    name = sculpt(directions="z")
+    bpy.data.objects[name].location.x = 5
+    bpy.context.view_layer.update()
+    stroke(name, 1)
+    chunks = support.part("bl.chunks")
+    ours = chunks.collection_of(bpy.data.objects[name].riffler.mark)
+    first, second = [ob for ob in ours.objects if len(ob.data.polygons) and ob.parent is not None][:2]
+    elsewhere = bpy.context.scene.collection
+    copies = set()
+    for of, linked, home in ((first, True, ours), (second, False, ours), (first, False, elsewhere)):
+        copy = of.copy()
+        copy.data = of.data if linked else of.data.copy()
+        home.objects.link(copy)
+        copies.add(copy.name)
+    bpy.context.view_layer.update()
+    ours.objects.unlink(second)
+    elsewhere.objects.link(second)
+    gone = {ob.name for ob in bpy.data.objects if chunks.is_own(ob)}
+    assert {first.name, second.name} < gone and not gone & copies
+    live().end_all()
+    nothing_is_left()
+    bpy.context.view_layer.update()
+    assert not gone & set(bpy.data.objects.keys())
+    for copy in copies:
+        ob = bpy.context.scene.objects[copy]
+        assert len(ob.data.polygons) and ob.matrix_world.translation.x == 5, copy
+    matches_its_volume(name)
+
+
+def test_a_whole_copy_of_the_scene_leaves_no_pictures():
+    name = sculpt(directions="z")
+    stroke(name, 1)
+    bpy.ops.scene.new(type="FULL_COPY")
+    live().end_all()
+    nothing_is_left()
+    assert not [ob.name for ob in bpy.data.objects if ob.name.startswith("Riffler Chunk")]
+
+
 def test_what_needs_the_sculpt_gets_what_is_shown():
     name = sculpt()
     last = stroke(name, 3)

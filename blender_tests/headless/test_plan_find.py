@@ -213,6 +213,89 @@ def test_a_duplicated_plan_is_a_plan_of_its_own():
     assert judge(first).edited == 0 and judge(first).part != "" and judge(second).part == ""
 
 
+def names():
+    return {c.name for c in bpy.data.objects if c.type == "CURVE"}
+
+
+def redraw(ob):
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = ob
+    assert bpy.ops.riffler.plan_show() == {"FINISHED"}
+
+
+def test_copies_of_paths_curves_are_a_persons():
+    """Whichever way one is made; also where the curve that it is of was deleted since."""
+    step()
+    ob = find(passes=2, stepover=0.5)
+    a, b, c = curves(ob)
+    kept = set()
+    for curve, linked in ((a, False), (b, True), (c, False)):
+        support.select(curve)
+        bpy.ops.object.duplicate(linked=linked)
+        kept.add(bpy.context.object.name)
+    by_script = a.copy()
+    ob.users_collection[0].objects.link(by_script)
+    kept.add(by_script.name)
+    support.select(c)
+    bpy.ops.object.delete()
+    assert len(curves(ob)) == 2 and judge(ob).edited == 1 and len(names()) == 7  # the plan points to what was deleted
+    was = {name: [p.co[:] for p in bpy.data.objects[name].data.splines[0].points] for name in kept}
+    redraw(ob)
+    assert len(curves(ob)) == 3 and judge(ob).edited == 0 and names() == kept | {c.name for c in curves(ob)}
+    assert {name: [p.co[:] for p in bpy.data.objects[name].data.splines[0].points] for name in kept} == was
+    find(replace=ob.name)
+    assert kept <= names() and len(curves(ob)) == 1 and len(names()) == 5
+    assert not [d for d in bpy.data.curves if not d.users], "what was drawn is gone with its points"
+
+
+def test_what_was_renamed_or_is_in_use_is_a_persons():
+    step()
+    ob = find(passes=4, stepover=0.5)
+    named, bound, parent, cut, other, thick, *_ = curves(ob)
+    named.name = "Nose"
+    follower = bpy.data.objects.new("Follower", None)
+    bpy.context.scene.collection.objects.link(follower)
+    follower.constraints.new("FOLLOW_PATH").target = bound
+    rider = bpy.data.objects.new("Rider", None)
+    bpy.context.scene.collection.objects.link(rider)
+    rider.parent = parent
+    bpy.context.scene.riffler.cut.curve = cut
+    bpy.context.scene.collection.objects.link(other)
+    thick.modifiers.new("Thick", "SOLIDIFY")
+    kept = {c.name for c in (named, bound, parent, cut, other, thick)}
+    redraw(ob)
+    assert kept <= names() and len(curves(ob)) == 7 and len(names()) == 13 and judge(ob).edited == 0
+    assert follower.constraints[0].target.name in kept and rider.parent.name in kept
+    assert not kept & {c.name for c in curves(ob)}
+    redraw(ob)
+    assert kept <= names() and len(names()) == 13, "what was drawn the second time was nobody's"
+
+
+def test_a_copy_of_the_plan_alone_takes_no_curves_away():
+    step()
+    ob = find()
+    support.select(ob)
+    bpy.ops.object.duplicate()
+    twin = bpy.context.object
+    assert store().is_plan(twin) and curves(twin) == [] and len(curves(ob)) == 1
+    before = names()
+    redraw(twin)
+    assert before < names() and len(curves(twin)) == len(curves(ob)) == 1
+    redraw(ob)
+    assert len(names()) == 2
+
+
+def test_what_is_copied_with_its_plan_is_the_copys():
+    step()
+    ob = find()
+    support.select(ob)
+    curves(ob)[0].select_set(True)
+    bpy.ops.object.duplicate()
+    (twin,) = (p for p in store().in_scene(bpy.context.scene) if p != ob)
+    redraw(twin)
+    assert len(names()) == 2 and len(curves(twin)) == len(curves(ob)) == 1, "nothing is left of what was copied"
+
+
 def test_what_is_done_for_a_panel_is_done_once():
     """A part is read again only where it was changed; other objects cost nothing."""
     part, watch = step(), support.part("operators.plan_watch")
