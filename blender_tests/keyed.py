@@ -15,7 +15,7 @@ def paths(ob):
 
 
 def state(ob):
-    return support.part("bl.replan").state(ob)
+    return support.part("bl.plan_states").state(ob)
 
 
 def tracks(ob):

@@ -12,7 +12,7 @@ import riffler
 
 from ..core import course, problems
 from ..core import units as names
-from . import live, plan_store, replan, sculpts, surroundings, timeline, units
+from . import live, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
 
 RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
 
@@ -186,7 +186,9 @@ def _plan(context):
     where = _timed(context.scene, program)
     if timeline.pair(ob) is not None:
         replan.sync(context.scene, ob)
-        where = course.of_paths(program.poses, [(e.motion.poses, e.motion.frames) for e in replan.state(ob).motions])
+        where = course.of_paths(
+            program.poses, [(e.motion.poses, e.motion.frames) for e in plan_states.state(ob).motions]
+        )
     chosen = options(settings.options)
     program, text = _with_lines(program, settings.post, chosen)
     return _new(ob.name, program, where, text=text, machine=settings.post, options=chosen, plan=ob.name)
@@ -237,7 +239,7 @@ def _played(context, program, wanted):
     if wanted.frame != "WORLD" or ob is None or timeline.pair(ob) is None:
         return None
     replan.sync(context.scene, ob)
-    paths = [(e.motion.poses, e.motion.frames) for e in replan.state(ob).motions if len(e.motion)]
+    paths = [(e.motion.poses, e.motion.frames) for e in plan_states.state(ob).motions if len(e.motion)]
     return course.like_paths(program.poses, paths) if paths else None
 
 

@@ -9,87 +9,22 @@ In a window this happens when nothing has changed for a tenth of a second; witho
 at once.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import bpy
 import numpy as np
 import riffler
 
-from ..core import collisions, keys, motion, playback
+from ..core import keys, motion, playback
 from ..core.surroundings import nothing
-from . import events, plan_store, surroundings, timeline, units
+from . import events, plan_collisions, plan_states, plan_store, surroundings, timeline, units
+from .plan_states import Baked, on_timeline, rendering, scene_of, state
 
 CLASSES = ()
 OTHER_PATHS = "The plan has other paths now: put it on the timeline again"
 PAUSE = 0.1  # s without a change
 WAIT = 0.5  # s, while something renders
-LOOK = 0.03  # s between two looks at surroundings in the making
 ERRORS = (ValueError, OSError, RuntimeError)
-
-
-@dataclass
-class Baked:
-    """What was computed of one path, and what for."""
-
-    path: object
-    cl: object
-    ends: tuple
-    motion: motion.Motion  # as the program has it
-    played: motion.Played  # as the timeline has it
-    difference: playback.Difference | None = None
-
-    def of(self, path, cl, ends):
-        return self.path is path and self.cl is cl and self.ends == ends
-
-
-@dataclass
-class State:
-    """Of one plan, by its object's name: what the panel says, and what need not be computed again."""
-
-    problems: list = field(default_factory=list)
-    difference: playback.Difference = field(default_factory=playback.Difference)
-    changes: dict = field(default_factory=dict)  # path → core.keys.Change: what the last edit did
-    synced: int = 0  # how often plan and animation were brought up to date, since the add-on runs
-    baked: int = 0  # paths whose motion was computed
-    laid: int = 0  # paths that were laid out in time
-    layout: keys.Layout | None = None
-    seen: str = ""  # fingerprint of the keyframes
-    motions: list = field(default_factory=list)  # Baked, one for each path
-    near: object = None  # core.surroundings.Surroundings, once collisions were asked for
-    clearances: dict = field(default_factory=dict)  # of poses that were looked at, with those and that tool
-    tool: object = None
-    looks: int = 0  # clearances that were computed
-    colliding: list = field(default_factory=list)  # runs of frames
-    job: object = None  # core.collisions.ClearanceJob
-
-
-_states = {}
-_known = (-1, ())  # how many objects there were, and the names of the plans on the timeline
-
-
-def state(plan_ob):
-    return _states.setdefault(plan_ob.name, State())
-
-
-def forget():
-    """Another file, or the add-on goes."""
-    global _known
-    _states.clear()
-    _known = (-1, ())
-
-
-def on_timeline():
-    """All plans that are. Objects are looked through only when there are more or fewer of them than before."""
-    global _known
-    if len(bpy.data.objects) != _known[0] or any(_pair_of(name) is None for name in _known[1]):
-        names = [ob.name for ob in bpy.data.objects if timeline.TOOL in ob and timeline.pair(ob)]
-        _known = (len(bpy.data.objects), tuple(names))
-    return [bpy.data.objects[name] for name in _known[1]]
-
-
-def _pair_of(name):
-    ob = bpy.data.objects.get(name)
-    return timeline.pair(ob) if ob is not None else None
 
 
 # ------------------------------------------------------------------ keyframes → plan → animation
@@ -191,7 +126,7 @@ def bake(scene, plan_ob, plan):
     now.motions = entries
     timeline.settle(scene, tool, ghost, afresh=True)
     if now.near is not None:
-        look(scene, plan_ob)
+        plan_collisions.look(scene, plan_ob)
 
 
 def _motion(path, rows, track, tool):
@@ -203,105 +138,21 @@ def _motion(path, rows, track, tool):
     return motion.along(track, start, report.points, rows)
 
 
-# ------------------------------------------------------------------ collisions
-def look(scene, plan_ob):
-    """Looks at the poses that were not looked at yet: at once without a window, otherwise from a timer."""
-    now, near = state(plan_ob), surroundings.known(plan_ob)
-    if near is not None and near is not now.near:
-        now.near, now.clearances = near, {}
-    now.job = clearance_job(plan_ob, now.near, now.clearances)
-    if bpy.app.background:
-        while not now.job.step(1.0):
-            pass
-        show_collisions(scene, plan_ob)
-    elif not bpy.app.timers.is_registered(_go_on):
-        bpy.app.timers.register(_go_on, first_interval=0.0)
-
-
-def clearance_job(plan_ob, near, known):
-    """Of all poses of the animation; `known`: clearances with these surroundings."""
-    now = state(plan_ob)
-    poses = np.vstack([e.played.poses for e in now.motions] or [np.empty((0, 6))])
-    return collisions.ClearanceJob(near, now.tool, poses, known)
-
-
-def show_collisions(scene, plan_ob, job=None):
-    """Marks the frames that collide, and returns them as runs."""
-    now = state(plan_ob)
-    job, now.job = job or now.job, None
-    frames, _, _, ends = motion.joined([e.played for e in now.motions])
-    tolerance = plan_store.plan(plan_ob).tolerance or 0.01
-    now.looks += job.computed
-    now.colliding = collisions.runs(frames, job.clearances, -tolerance, ends)
-    timeline.mark(scene, now.colliding)
-    return now.colliding
-
-
-def _go_on():
-    """A timer's: 20 ms of looking at collisions, as long as there is something to look at."""
-    if _rendering():
-        return WAIT
-    for plan_ob in on_timeline():
-        job = state(plan_ob).job
-        if job is None:
-            continue
-        try:
-            if job.step(0.02):
-                show_collisions(_scene_of(plan_ob), plan_ob)
-        except ERRORS as error:
-            state(plan_ob).job = None
-            state(plan_ob).problems.append(str(error))
-        return 0.01
-    return None
-
-
-def outdated(plan_ob):
-    """True where the marks are of before part or fixtures changed, or may be."""
-    now = state(plan_ob)
-    return now.near is not None and (surroundings.known(plan_ob) is not now.near or now.job is not None)
-
-
-def _look_again():
-    """A timer's, once part and fixtures have been left alone: looks again where they are others now."""
-    waiting = False
-    for plan_ob in on_timeline():
-        now, scene = state(plan_ob), _scene_of(plan_ob)
-        if now.near is None:
-            continue
-        try:
-            near = surroundings.ask(surroundings.SceneContext(scene), plan_ob)
-        except ERRORS:
-            continue  # without a part the marks stay outdated
-        waiting |= near is None
-        if near is not None and near is not now.near:
-            look(scene, plan_ob)
-    return LOOK if waiting else None
-
-
-def _scene_of(ob):
-    return next((s for s in bpy.data.scenes if s.objects.get(ob.name) == ob), bpy.context.scene)
-
-
 # ------------------------------------------------------------------ what Blender tells
 def flush():
     """All that is to follow from the keyframes follows now."""
     events.stop(_due)
     for plan_ob in on_timeline():
-        sync(_scene_of(plan_ob), plan_ob)
+        sync(scene_of(plan_ob), plan_ob)
 
 
 def _due():
     """A timer's."""
-    if _rendering():
+    if rendering():
         return WAIT
     for plan_ob in on_timeline():
-        sync(_scene_of(plan_ob), plan_ob)
+        sync(scene_of(plan_ob), plan_ob)
     return None
-
-
-def _rendering():
-    """A render job reads what timers would change meanwhile."""
-    return bpy.app.is_job_running("RENDER")
 
 
 def _soon():
@@ -339,8 +190,8 @@ def _look_later(plans):
     if bpy.app.background:
         return
     asked = [p for p in plans if state(p).near is not None]
-    if any(surroundings.suspect(surroundings.SceneContext(_scene_of(p)), p) for p in asked):
-        _later(_look_again)
+    if any(surroundings.suspect(surroundings.SceneContext(scene_of(p)), p) for p in asked):
+        _later(plan_collisions.look_again)
 
 
 def _changed(plans):
@@ -364,25 +215,24 @@ def _on_frame(scene, depsgraph=None):
 
 def _settle_all():
     """A timer's."""
-    if _rendering():
+    if rendering():
         return WAIT
     for plan_ob in on_timeline():
-        timeline.settle(_scene_of(plan_ob), *timeline.pair(plan_ob), afresh=True)
+        timeline.settle(scene_of(plan_ob), *timeline.pair(plan_ob), afresh=True)
     return None
 
 
 @bpy.app.handlers.persistent
 def _on_history(*_):
     """After undo and redo; names and numbers of objects may be others."""
-    global _known
-    _known = (-1, ())
+    plan_states.list_anew()
     if on_timeline():
         _soon()
 
 
 @bpy.app.handlers.persistent
 def _on_load(*_):
-    forget()
+    plan_states.forget()
     if on_timeline():
         _soon()
 
@@ -409,5 +259,5 @@ def attach():
 
 def detach():
     events.ignore(_HANDLERS)
-    events.stop(_due, _go_on, _settle_all, _look_again)
-    forget()
+    events.stop(_due, _settle_all, plan_collisions.go_on, plan_collisions.look_again)
+    plan_states.forget()

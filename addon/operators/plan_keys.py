@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntProperty
 
-from ..bl import plan_curves, plan_store, replan, surroundings, timeline, units
+from ..bl import plan_collisions, plan_curves, plan_states, plan_store, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import keys, quaternions
 from . import shared
@@ -230,12 +230,12 @@ class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
     def begin(self, context):
         ob, _ = self.take(context)
         self._near, self._known = surroundings.now(context, ob), {}
-        return replan.clearance_job(ob, self._near, self._known)
+        return plan_collisions.clearance_job(ob, self._near, self._known)
 
     def finish(self, context, job):
-        now = replan.state(self.ob)
+        now = plan_states.state(self.ob)
         now.near, now.clearances, now.job = self._near, self._known, None
-        found = replan.show_collisions(context.scene, self.ob, job)
+        found = plan_collisions.show(context.scene, self.ob, job)
         if found:
             self.report({"WARNING"}, f"The tool collides at {sum(b - a + 1 for a, b in found)} frames, marked below")
         else:

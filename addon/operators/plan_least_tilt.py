@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty
 
-from ..bl import findings, plan_curves, plan_store, replan, surroundings, timeline, units
+from ..bl import findings, plan_curves, plan_states, plan_store, replan, surroundings, timeline, units
 from ..core import keys, locating, tilting
 from ..core import units as names
 from ..core.surroundings import guarded
@@ -132,7 +132,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             named = ", ".join(str(k + 1) for k in without[:NAMED]) + (" …" if len(without) > NAMED else "")
             ones = f"path{'s' * (len(without) > 1)} {named}"
             said += f"; no orientation is free on {len(without)}, listed under NC Code: {ones}"
-        problems = replan.state(ob).problems
+        problems = plan_states.state(ob).problems
         self.report({"WARNING" if without or problems else "INFO"}, "; ".join([said, *problems]))
 
 

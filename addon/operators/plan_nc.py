@@ -8,7 +8,7 @@ import riffler
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import findings, plan_store, programs, replan, surroundings, timeline, units
+from ..bl import findings, plan_states, plan_store, programs, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import locating, problems
 from ..core import units as names
@@ -76,7 +76,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         said = ""
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
-            said = f". {replan.state(ob).difference}"
+            said = f". {plan_states.state(ob).difference}"
         count = names.format_count(len(self._paths))
         if blocked:
             why = f"{blocked} of {count} paths still collide: turn their keys, or take another tool"
@@ -148,7 +148,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
         done = f"{bpy.path.basename(path)}: {names.format_count(written['blocks'])} blocks"
         level = "INFO"
         if timeline.pair(ob) is not None:
-            difference = replan.state(ob).difference
+            difference = plan_states.state(ob).difference
             done, level = f"{done}. {difference}", "INFO" if difference.small else "WARNING"
         if len(written["rewinds"]):
             rows = ", ".join(str(int(r)) for r in np.atleast_1d(written["rewinds"])[:4])

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ..bl import looking, plan_store, replan, surroundings, timeline, turning, units
+from ..bl import looking, plan_states, plan_store, replan, surroundings, timeline, turning, units
 from ..bl.turning import plan_object
 from ..core import quaternions, turn
 from ..drawing import cspace, force, paths
@@ -88,7 +88,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
     def _say(self, context, ob, frame, angles):
         """What came of it; how the tool stands only where somebody has looked around before."""
         near = surroundings.known(ob)
-        if near is None or replan.state(ob).problems:
+        if near is None or plan_states.state(ob).problems:
             return tell(self, ob)
         spot = turning.spot(context.scene, ob, frame)
         state = looking.state(context.scene, near, spot, spot.axis)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bl import parts, plan_store, replan, surroundings, timeline
+from ..bl import parts, plan_states, plan_store, replan, surroundings, timeline
 from ..bl.turning import plan_object
 from . import shared
 from .long import LongWork
@@ -34,7 +34,7 @@ def part_poll(cls, context):
 
 def tell(operator, ob):
     """How the plan plays now, or what is wrong with it."""
-    now = replan.state(ob)
+    now = plan_states.state(ob)
     if now.problems:
         operator.report({"WARNING"}, "; ".join(now.problems))
     elif not now.difference.small:

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bl import replan, timeline, turning
+from ..bl import plan_collisions, plan_states, timeline, turning
 from ..operators import plan_keys, plan_least_tilt
 from .panels import lines
 from .pen_panel import wrapped
@@ -26,7 +26,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         layout.operator_menu_enum(
             plan_least_tilt.RIFFLER_OT_plan_least_tilt.bl_idname, "paths", icon="KEYTYPE_KEYFRAME_VEC"
         )
-        now = replan.state(ob)
+        now = plan_states.state(ob)
         for problem in now.problems:
             lines(layout, *wrapped(context, problem), icon="ERROR")
         if now.motions:
@@ -34,7 +34,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
             lines(layout, *wrapped(context, str(now.difference)), icon=icon)
         self._turn(layout, context)
         layout.operator(plan_keys.RIFFLER_OT_plan_check.bl_idname, icon="MOD_PHYSICS")
-        if replan.outdated(ob):
+        if plan_collisions.outdated(ob):
             lines(layout, *wrapped(context, "The marks are of before part or fixtures changed."), icon="INFO")
         for first, last in now.colliding[:4]:
             lines(layout, f"Collides at frames {first} to {last}", icon="ERROR")

@@ -187,7 +187,7 @@ def test_fixtures_count():
 
 def looked_again():
     """What a window's timer does once the scene is left alone."""
-    again = support.part("bl.replan")._look_again
+    again = support.part("bl.plan_collisions").look_again
     while again() is not None:
         time.sleep(0.01)
 
@@ -195,7 +195,7 @@ def looked_again():
 def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_again():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=[plans.paths()[0].oriented({0: (0, -0.6, 0.8)})])
-    outdated = support.part("bl.replan").outdated
+    outdated = support.part("bl.plan_collisions").outdated
     vise = fixture((20, 40), (0, 10), (8, 40))
     assert not outdated(ob)  # nobody has asked
     bpy.context.scene.riffler.plan.part = part

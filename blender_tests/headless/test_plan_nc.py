@@ -157,7 +157,7 @@ def test_resolving_is_one_step_of_undo():
 
 def test_the_plan_s_locations_are_what_plays():
     ob = programs.resolved()
-    state = support.part("bl.replan").state(ob)
+    state = support.part("bl.plan_states").state(ob)
     assert np.array_equal(state.motions[0].motion.poses, programs.content(ob).cl[0])
     assert state.difference.small and not state.problems
 

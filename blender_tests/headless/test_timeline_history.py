@@ -184,10 +184,10 @@ def test_other_paths_are_not_given_keys_that_were_not_meant_for_them():
 
 
 def test_a_scene_without_a_plan_has_no_work():
-    replan = support.part("bl.replan")
+    states = support.part("bl.plan_states")
     calls, pair_of = [], support.part("bl.timeline").pair
     ob = bpy.data.objects["Cube"]
-    replan.on_timeline()
+    states.on_timeline()
     support.part("bl.timeline").pair = lambda p: calls.append(p) or pair_of(p)
     try:
         for frame in range(1, 20):
@@ -196,4 +196,4 @@ def test_a_scene_without_a_plan_has_no_work():
             update()
     finally:
         support.part("bl.timeline").pair = pair_of
-    assert calls == [] and replan._states == {}
+    assert calls == [] and states._states == {}

@@ -76,10 +76,9 @@ def shown():
 
 
 def settled():
-    timers, replan = bpy.app.timers, support.part("bl.replan")
-    return not any(
-        timers.is_registered(f) for f in (replan._due, replan._go_on, replan._settle_all, replan._look_again)
-    )
+    replan, collisions = support.part("bl.replan"), support.part("bl.plan_collisions")
+    ours = (replan._due, replan._settle_all, collisions.go_on, collisions.look_again)
+    return not any(map(bpy.app.timers.is_registered, ours))
 
 
 def select_column(screen, frame):
@@ -216,7 +215,7 @@ def undo(screen):
         screen.window.event_simulate("Z", "RELEASE", x=x, y=y, ctrl=True, shift=True)
         yield lambda wanted=wanted: settled() and indices() == wanted
         yield 0.3
-    assert support.part("bl.replan").state(plan_object()).difference.small
+    assert support.part("bl.plan_states").state(plan_object()).difference.small
     yield from screen.picture("timeline-05-redone")
 
 
@@ -227,7 +226,7 @@ def collide(screen):
     with screen.override():
         assert bpy.ops.riffler.plan_key("EXEC_DEFAULT", True, axis=(0, 1, 0.4)) == {"FINISHED"}
     yield lambda: settled() and bpy.context.scene.timeline_markers
-    ((first, last),) = support.part("bl.replan").state(plan_object()).colliding
+    ((first, last),) = support.part("bl.plan_states").state(plan_object()).colliding
     assert 1 < first < 20 < last < 43
     assert [m.name for m in bpy.context.scene.timeline_markers] == [f"collides {first}–{last}"]
     ui = screen.region("UI")
@@ -241,7 +240,7 @@ def collide(screen):
     for way, markers in ((-100, 0), (100, 1)):  # mm: away from the tool and back, looked at without being asked
         part.location.z += way * bpy.context.scene.unit_settings.scale_length * 1000
         yield lambda count=markers: settled() and len(bpy.context.scene.timeline_markers) == count
-    assert not support.part("bl.replan").outdated(plan_object())
+    assert not support.part("bl.plan_collisions").outdated(plan_object())
     select_column(screen, 20)
     yield from press(screen, "DOPESHEET_EDITOR", "DEL")
     yield lambda: settled() and not bpy.context.scene.timeline_markers

@@ -1,0 +1,88 @@
+"""What is known of the plans on the timeline while Blender runs. Nothing of it is in the file: it follows from the
+keyframes (bl/replan.py) and the scene."""
+
+from dataclasses import dataclass, field
+
+import bpy
+
+from ..core import keys, motion, playback
+from . import timeline
+
+
+@dataclass
+class Baked:
+    """What was computed of one path, and what for."""
+
+    path: object
+    cl: object
+    ends: tuple
+    motion: motion.Motion  # as the program has it
+    played: motion.Played  # as the timeline has it
+    difference: playback.Difference | None = None
+
+    def of(self, path, cl, ends):
+        return self.path is path and self.cl is cl and self.ends == ends
+
+
+@dataclass
+class State:
+    """Of one plan, by its object's name: what the panel says, and what need not be computed again."""
+
+    problems: list = field(default_factory=list)
+    difference: playback.Difference = field(default_factory=playback.Difference)
+    changes: dict = field(default_factory=dict)  # path → core.keys.Change: what the last edit did
+    synced: int = 0  # how often plan and animation were brought up to date, since the add-on runs
+    baked: int = 0  # paths whose motion was computed
+    laid: int = 0  # paths that were laid out in time
+    layout: keys.Layout | None = None
+    seen: str = ""  # fingerprint of the keyframes
+    motions: list = field(default_factory=list)  # Baked, one for each path
+    near: object = None  # core.surroundings.Surroundings, once collisions were asked for
+    clearances: dict = field(default_factory=dict)  # of poses that were looked at, with those and that tool
+    tool: object = None
+    looks: int = 0  # clearances that were computed
+    colliding: list = field(default_factory=list)  # runs of frames
+    job: object = None  # core.collisions.ClearanceJob
+
+
+_states = {}
+_known = (-1, ())  # how many objects there were, and the names of the plans on the timeline
+
+
+def state(plan_ob):
+    return _states.setdefault(plan_ob.name, State())
+
+
+def forget():
+    """Another file, or the add-on goes."""
+    _states.clear()
+    list_anew()
+
+
+def list_anew():
+    """Names and numbers of objects may be others, as after an undo."""
+    global _known
+    _known = (-1, ())
+
+
+def on_timeline():
+    """All plans that are. Objects are looked through only when there are more or fewer of them than before."""
+    global _known
+    if len(bpy.data.objects) != _known[0] or any(_pair_of(name) is None for name in _known[1]):
+        names = [ob.name for ob in bpy.data.objects if timeline.TOOL in ob and timeline.pair(ob)]
+        _known = (len(bpy.data.objects), tuple(names))
+    return [bpy.data.objects[name] for name in _known[1]]
+
+
+def _pair_of(name):
+    ob = bpy.data.objects.get(name)
+    return timeline.pair(ob) if ob is not None else None
+
+
+def scene_of(ob):
+    return next((s for s in bpy.data.scenes if s.objects.get(ob.name) == ob), bpy.context.scene)
+
+
+def rendering():
+    """A render job reads what timers would change meanwhile."""
+    return bpy.app.is_job_running("RENDER")
