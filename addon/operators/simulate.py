@@ -7,8 +7,6 @@ from ..bl import programs, simulating
 from ..core import units as names
 from . import shared
 
-_keys = []  # (keymap, item) that were added
-
 
 def program_poll(cls, context):
     """True where there may be a program on a stock."""
@@ -69,16 +67,3 @@ class RIFFLER_OT_simulate_stop(bpy.types.Operator):
 
 
 CLASSES = (RIFFLER_OT_simulate, RIFFLER_OT_simulate_stop)
-
-
-def attach():
-    configuration = bpy.context.window_manager.keyconfigs.addon
-    if configuration is not None:  # there is none without a window
-        keymap = configuration.keymaps.new(name="3D View", space_type="VIEW_3D")
-        _keys.append((keymap, keymap.keymap_items.new(RIFFLER_OT_simulate_stop.bl_idname, "ESC", "PRESS")))
-
-
-def detach():
-    while _keys:
-        keymap, item = _keys.pop()
-        keymap.keymap_items.remove(item)

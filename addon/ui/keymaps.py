@@ -1,15 +1,39 @@
 """The add-on's own keys beside those of its tools: in Blender's add-on key configuration, taken back with the add-on.
 What a user makes of them is in the user's configuration, and stays there."""
 
+from dataclasses import dataclass, field
+
 import bpy
 import rna_keymap_ui
 
+from ..operators import simulate
 from . import menus, sculpt_panel
 
-# Keymap, operator, key, and what the operator is given. Blender has nothing on these keys in any version.
+
+@dataclass(frozen=True)
+class Key:
+    keymap: str
+    operator: str
+    event: dict
+    label: str
+    given: dict = field(default_factory=dict)  # to the operator
+    space: str = "EMPTY"
+
+    def is_of(self, item):
+        same = all(getattr(item.properties, name) == value for name, value in self.given.items())
+        return item.idname == self.operator and same
+
+
+def _menu(operator, menu, **event):
+    return Key("Object Mode", operator, event, menu.bl_label, {"name": menu.bl_idname})
+
+
+STOP = simulate.RIFFLER_OT_simulate_stop
+# Blender has nothing on these keys in any version, but for Esc, which is ours only while something is simulated.
 KEYS = (
-    ("Object Mode", "wm.call_menu_pie", {"type": "W", "ctrl": True, "shift": True}, sculpt_panel.RIFFLER_MT_sculpt_pie),
-    ("Object Mode", "wm.call_menu", {"type": "W", "ctrl": True, "alt": True}, menus.RIFFLER_MT_object),
+    _menu("wm.call_menu_pie", sculpt_panel.RIFFLER_MT_sculpt_pie, type="W", ctrl=True, shift=True),
+    _menu("wm.call_menu", menus.RIFFLER_MT_object, type="W", ctrl=True, alt=True),
+    Key("3D View", STOP.bl_idname, {"type": "ESC"}, STOP.bl_label, space="VIEW_3D"),
 )
 CLASSES = ()
 _made = []  # (keymap, item)
@@ -19,10 +43,11 @@ def attach():
     configuration = bpy.context.window_manager.keyconfigs.addon
     if configuration is None:  # Blender without a window may have none
         return
-    for name, operator, key, menu in KEYS:
-        keymap = configuration.keymaps.new(name)
-        item = keymap.keymap_items.new(operator, value="PRESS", **key)
-        item.properties.name = menu.bl_idname
+    for key in KEYS:
+        keymap = configuration.keymaps.new(key.keymap, space_type=key.space)
+        item = keymap.keymap_items.new(key.operator, value="PRESS", **key.event)
+        for name, value in key.given.items():
+            setattr(item.properties, name, value)
         _made.append((keymap, item))
 
 
@@ -36,20 +61,19 @@ def users():
     """(keymap, item) of each of KEYS in the user's configuration, which is the one that counts; the item is None where
     the user has removed it."""
     configuration = bpy.context.window_manager.keyconfigs.user
-    for name, operator, _, menu in KEYS:
-        keymap = configuration.keymaps.get(name) if configuration is not None else None
+    for key in KEYS:
+        keymap = configuration.keymaps.get(key.keymap) if configuration is not None else None
         items = keymap.keymap_items if keymap is not None else ()
-        found = [i for i in items if i.idname == operator and i.properties.name == menu.bl_idname]
-        yield keymap, next(iter(found), None)
+        yield keymap, next(filter(key.is_of, items), None)
 
 
 def draw(layout, context):
     """One row for each key, as in Blender's own list: edited there, and put back by its arrow."""
     layout.label(text="Keys")
-    for (name, _, _, menu), (keymap, item) in zip(KEYS, users(), strict=True):
+    for key, (keymap, item) in zip(KEYS, users(), strict=True):
         if item is None:
             layout.label(
-                text=f"{menu.bl_label}: removed. Restore in the list Keymap, {name}, brings it back", icon="INFO"
+                text=f"{key.label}: removed. Restore in the list Keymap, {key.keymap}, brings it back", icon="INFO"
             )
             continue
         layout.context_pointer_set("keymap", keymap)
