@@ -8,6 +8,7 @@ from . import properties
 from .bl import chosen
 from .core import diagnosis
 from .operators import doctor
+from .translations import local
 from .ui import keymaps
 
 HID = (
@@ -107,7 +108,7 @@ class RifflerPreferences(bpy.types.AddonPreferences):
             most.prop(self, name)
         notes = column.column(align=True)
         notes.scale_y = 0.8
-        for text in (HID, SPACEMOUSE):
+        for text in (local(HID), local(SPACEMOUSE)):
             for k, line in enumerate(diagnosis.wrap(text, width)):
                 notes.label(text=line, icon="INFO" if k == 0 else "BLANK1")
 

@@ -6,6 +6,8 @@ A function does one thing in this Blender's way, and says how the ways differ.
 import bpy
 import numpy as np
 
+from ..translations import local
+
 # From 4.0 on a layout has a bar, and a polygon's corners end where the next one's begin: no count of them is kept.
 _SINCE_4_0 = bpy.app.version >= (4, 0, 0)
 # From 4.1 on auto smooth is gone: sharp edges are an attribute, and polygons are smooth until they are told otherwise.
@@ -37,7 +39,7 @@ def progress(layout, state):
     row = layout.row()
     row.use_property_split = False  # the name goes into the bar, as wide as the panel
     if _SINCE_4_0:
-        row.progress(factor=state.percent / 100, text=f"{state.running} {state.percent:.0f} %")
+        row.progress(factor=state.percent / 100, text=f"{local(state.running)} {state.percent:.0f} %")
     else:
         row.prop(state, "percent", text=state.running, slider=True)
 

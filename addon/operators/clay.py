@@ -10,6 +10,7 @@ from ..core import units as names
 from ..core.cache import Content
 from ..core.job import TaskJob
 from ..properties import stock
+from ..translations import local
 from .sculpt_work import SculptEdit, SculptWork
 
 DIRECTIONS = (("KEEP", "As now", "The directions that the sculpt has"), *stock.DIRECTIONS)
@@ -99,7 +100,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
     def finish(self, context, job):
         first, *others = job.result or [self._before.volume]
         if not others:
-            self.report({"WARNING"}, "The sculpt is one piece")
+            self.report({"WARNING"}, local("The sculpt is one piece"))
             return {"CANCELLED"}
         ob = bpy.data.objects[self._object]
         collections, matrix, name = ob.users_collection, ob.matrix_world.copy(), ob.name

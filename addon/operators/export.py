@@ -9,6 +9,7 @@ from .. import properties
 from ..bl import live, programs, sculpts
 from ..core import poses, problems, threemf_out
 from ..core import units as names
+from ..translations import local
 from . import paths, shared
 
 
@@ -49,7 +50,7 @@ class ExportSurface(Export):
 
     def write(self, context, ob, path):
         if live.of(ob) is None and sculpts.edited(ob.data):
-            self.report({"WARNING"}, "The mesh was edited: what is written is the volume, without the edits")
+            self.report({"WARNING"}, local("The mesh was edited: what is written is the volume, without the edits"))
         surface = live.content(ob).volume.to_mesh()
         if self.world:
             surface = placed(surface, sculpts.to_world_mm(ob, context.scene))

@@ -11,6 +11,7 @@ import time
 import bpy
 
 from ..core.job import RefreshClock, run_through, slice_budget
+from ..translations import local
 from . import shared
 
 TELL = 0.1  # s between two reports of progress
@@ -78,7 +79,7 @@ class LongWork:
             return {"CANCELLED"}
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
-            self.report({"INFO"}, self.cancelled)
+            self.report({"INFO"}, local(self.cancelled))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"} if event.type in shared.NAVIGATION else {"RUNNING_MODAL"}
@@ -135,7 +136,7 @@ class LongWork:
         state.percent = 100 * self._job.fraction
         state.text = self._job.text or "Esc cancels"
         context.window_manager.progress_update(state.percent)
-        _status(context, f"Riffler: {self.doing}, {state.percent:.0f} %    Esc: cancel")
+        _status(context, f"Riffler: {local(self.doing)}, {state.percent:.0f} %    {local('Esc: cancel')}")
         shared.redraw_sidebars(context)
 
     def _end(self, context):

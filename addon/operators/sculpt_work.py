@@ -4,6 +4,7 @@ import bpy
 
 from ..bl import live, sculpts, store
 from ..core.cache import Content
+from ..translations import local
 from . import shared
 from .long import LongWork
 
@@ -23,7 +24,7 @@ class SculptWork(LongWork):
         live.end_all()
         ob = sculpts.active(context)
         if not self.from_edits and sculpts.edited(ob.data):
-            self.report({"WARNING"}, "The mesh had been edited: this starts from the volume, the edits are gone")
+            self.report({"WARNING"}, local("The mesh had been edited: this starts from the volume, the edits are gone"))
         self._object, self._identity = ob.name, store.identity(ob.data)
         return ob, store.content(ob.data)
 

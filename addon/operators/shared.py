@@ -6,6 +6,7 @@ import bpy
 
 from ..bl import sculpts
 from ..core.problems import said
+from ..translations import local
 
 NAVIGATION = {
     "MIDDLEMOUSE",
@@ -76,7 +77,7 @@ def deny(cls, message):
 
 def fail(operator, error):
     """One clear message instead of a traceback; the operator is cancelled."""
-    operator.report({"ERROR"}, said(error))
+    operator.report({"ERROR"}, local(said(error)))
     return {"CANCELLED"}
 
 

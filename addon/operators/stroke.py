@@ -12,6 +12,7 @@ from ..bl import fixtures, live, sculpts
 from ..core import brush, units
 from ..core.stroke import Sample
 from ..drawing import force, pointer
+from ..translations import local
 from . import shared
 
 LOOK = 1 / 30  # s from one look to the next
@@ -115,7 +116,9 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         edited = self._fresh and sculpts.edited(ob.data)
         self._run = live.begin(context, ob)
         if edited:
-            self.report({"WARNING"}, "The mesh had been edited: the stroke starts from the volume, the edits are gone")
+            self.report(
+                {"WARNING"}, local("The mesh had been edited: the stroke starts from the volume, the edits are gone")
+            )
 
     def _start(self, context, view):
         ob = sculpts.active(context)

@@ -1,7 +1,8 @@
 """The interface in other languages: <code of the language>.json has what is said in English, and how it is there.
 
-Blender looks in the table for labels, tooltips and why a button is grey; what is not there stays English. A message
-that has numbers or names in it is made when it is said, and stays English, too.
+Blender looks in the table for labels, tooltips and why a button is grey; for what it does not look up itself, reports
+and lines that are wrapped, there is `local`. What is not in the table stays English. A message that has numbers or
+names in it is made when it is said, and stays English, too.
 """
 
 import json
@@ -21,6 +22,11 @@ def table():
         texts = json.loads(path.read_text(encoding="utf-8"))
         found[path.stem] = {(context, text): said for text, said in texts.items() for context in CONTEXTS}
     return found
+
+
+def local(text):
+    """A fixed text in the interface's language."""
+    return bpy.app.translations.pgettext_iface(text) if text else text
 
 
 def attach():

@@ -1,0 +1,177 @@
+"""Whatever the add-on says in fixed words has its German: labels, tooltips, entries of menus and lists, what a panel
+writes, and why something is refused. Found in the sources, so that the table cannot fall behind them."""
+
+import ast
+import json
+import re
+from pathlib import Path
+
+import riffler
+
+import addon
+
+ADDON = Path(addon.__file__).parent
+TABLE = json.loads((ADDON / "translations" / "de.json").read_text(encoding="utf-8"))
+# Functions of ours that make a field, a tool or a line of a panel: which of their arguments are shown.
+FIELDS_OF = {"length": (0, 2), "_folder": (1, 2), "_tool": (1, 2)}
+MESSAGES = {"wrapped": (1,), "deny": (1,), "poll_message_set": (0,), "local": (0,), "ValueError": (0,), "report": (1,)}
+SHOWN = {**FIELDS_OF, **MESSAGES}
+NOT_SHOWN = {
+    "package.py",  # makes the zips
+    "ui/fallback.py",  # what is said where the core does not load, and no table either
+}
+FIELDS = {"name", "description"}
+DRAWN = {"text", "heading"}
+SAID_BY = {"description", "unfit", "missing"}  # functions that return what is shown
+ENTRY = re.compile(r"[A-Z][A-Z0-9_]*")  # what Blender knows an entry of a list by
+
+
+def sources():
+    for path in sorted(ADDON.rglob("*.py")):
+        name = path.relative_to(ADDON).as_posix()
+        if "_vendor" not in path.parts and name not in NOT_SHOWN:
+            yield name, ast.parse(path.read_text(encoding="utf-8"))
+
+
+def is_text(node):
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
+
+
+def texts(node, names=None):
+    """Of an expression: the fixed texts that it may be. `names`: what variables of the source are set to."""
+    if is_text(node):
+        yield node.lineno, node.value
+    elif isinstance(node, ast.IfExp):
+        yield from texts(node.body, names)
+        yield from texts(node.orelse, names)
+    elif isinstance(node, ast.BoolOp):
+        for value in node.values:
+            yield from texts(value, names)
+    elif isinstance(node, ast.Name):
+        for value in (names or {}).get(node.id, ()):
+            yield from texts(value)
+
+
+def variables(tree):
+    """{name: expressions that it is set to}"""
+    names = {}
+    for node in ast.walk(tree):
+        for target in node.targets if isinstance(node, ast.Assign) else ():
+            pairs = [(target, node.value)]
+            if isinstance(target, ast.Tuple):
+                values = [node.value.body, node.value.orelse] if isinstance(node.value, ast.IfExp) else [node.value]
+                pairs = [p for v in values if isinstance(v, ast.Tuple) for p in zip(target.elts, v.elts, strict=False)]
+            for name, value in pairs:
+                if isinstance(name, ast.Name):
+                    names.setdefault(name.id, []).append(value)
+    return names
+
+
+def name_of(call):
+    return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+
+
+def of_class(cls):
+    own = {t.id: n.value for n in cls.body if isinstance(n, ast.Assign) for t in n.targets if isinstance(t, ast.Name)}
+    for key in ("bl_label", "bl_description", "doing", "cancelled"):
+        if key in own:
+            yield from texts(own[key])
+    is_operator = any(getattr(base, "attr", "") == "Operator" for base in cls.bases)
+    if is_operator and "bl_description" not in own and ast.get_docstring(cls):
+        yield cls.lineno, " ".join(ast.get_docstring(cls).split())
+
+
+def of_call(call, names):
+    name = name_of(call)
+    places = SHOWN.get(name, ())
+    if name == "lines":
+        places = range(1, len(call.args))
+    for k in places:
+        if k < len(call.args):
+            yield from texts(call.args[k], names)
+    for keyword in call.keywords:
+        of_field = keyword.arg in FIELDS and (name.endswith("Property") or name in FIELDS_OF)
+        if of_field or (keyword.arg in DRAWN and isinstance(call.func, ast.Attribute)):
+            yield from texts(keyword.value, names)
+
+
+def of_entry(row):
+    """(identifier, label, tooltip, …)"""
+    if len(row.elts) < 3 or not all(map(is_text, row.elts[:3])):
+        return
+    key, *said = (node.value for node in row.elts[:3])
+    if ENTRY.fullmatch(key) and not all(map(ENTRY.fullmatch, said)):
+        yield from ((row.lineno, text) for text in said)
+
+
+def shown(tree):
+    """(line, text) of all that a source shows."""
+    names = variables(tree)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            yield from of_class(node)
+        elif isinstance(node, ast.Call):
+            yield from of_call(node, names)
+        elif isinstance(node, ast.Tuple):
+            yield from of_entry(node)
+        elif isinstance(node, ast.FunctionDef) and node.name in SAID_BY:
+            for inner in ast.walk(node):
+                if isinstance(inner, ast.Return) and inner.value is not None:
+                    yield from texts(inner.value)
+
+
+def found():
+    """{text: where it is}"""
+    said = {text: f"riffler.machines()[{name!r}]" for name, text in riffler.machines().items()}
+    for path, tree in sources():
+        for line, text in shown(tree):
+            if re.search(r"[A-Za-z]{2}", text):
+                said.setdefault(text, f"addon/{path}:{line}")
+    return said
+
+
+def test_what_is_looked_for_is_found():
+    example = """
+class RIFFLER_OT_a(Mixin, bpy.types.Operator):
+    '''The tooltip
+    in two lines'''
+    bl_label = "Label"
+    size: length("Size", 0.0, "Of it")
+    axis: EnumProperty(name="Axis", items=[("X", "Along x", "The first")], description="Which")
+
+    def draw(self, context):
+        lines(self.layout, "One", "Two" if context else "Three", f"{context} four")
+        self.layout.operator("riffler.b", text="Five", icon="NONE")
+        self.report({"INFO"}, "Six")
+        deny(self, "Seven")
+        said, icon = ("Eight", "NONE") if context else ("Nine", "NONE")
+        self.layout.label(text=said, icon=icon)
+        raise ValueError("Ten")
+"""
+    said = {text for _, text in shown(ast.parse(example))}
+    words = {
+        "The tooltip in two lines",
+        "Label",
+        "Size",
+        "Of it",
+        "Axis",
+        "Along x",
+        "The first",
+        "Which",
+        "One",
+        "Two",
+    }
+    assert said == words | {"Three", "Five", "Six", "Seven", "Eight", "Nine", "Ten"}
+
+
+def test_every_fixed_text_has_its_german():
+    said = found()
+    assert len(said) > 500
+    without = [f"{where}: {text!r}" for text, where in said.items() if text not in TABLE]
+    assert not without, "addon/translations/de.json lacks\n" + "\n".join(without)
+
+
+def test_the_table_is_sorted_and_ends_sentences_as_the_original():
+    assert list(TABLE) == sorted(TABLE)
+    odd = [text for text, german in TABLE.items() if text.endswith(".") != german.endswith(".") or not german.strip()]
+    assert not odd, odd
