@@ -109,6 +109,7 @@ def _take(module):
 
     for cls in module.CLASSES:
         _one_line(cls)
+        _module("bl.versions").own_words(cls)
         bpy.utils.register_class(cls)
         _undo.append(lambda cls=cls: bpy.utils.unregister_class(cls))
     if hasattr(module, "attach"):

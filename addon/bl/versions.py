@@ -6,7 +6,7 @@ A function does one thing in this Blender's way, and says how the ways differ.
 import bpy
 import numpy as np
 
-from ..translations import local
+from ..translations import CONTEXT, local
 
 # From 4.0 on a layout has a bar, and a polygon's corners end where the next one's begin: no count of them is kept.
 _SINCE_4_0 = bpy.app.version >= (4, 0, 0)
@@ -32,6 +32,17 @@ def graphics():
     import gpu
 
     return f"{gpu.platform.renderer_get()}, {gpu.platform.version_get()}"
+
+
+def own_words(cls):
+    """What a class that is not registered yet, and its fields, are called is looked up as ours. Fields of Blender 3.4
+    know no contexts: its own words for theirs come first."""
+    if hasattr(cls, "bl_label"):
+        cls.bl_translation_context = CONTEXT
+    for base in cls.__mro__:
+        for field in vars(base).get("__annotations__", {}).values():
+            if "translation_context" in (getattr(getattr(field, "function", None), "__doc__", None) or ""):
+                field.keywords["translation_context"] = CONTEXT
 
 
 def progress(layout, state):

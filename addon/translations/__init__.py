@@ -3,6 +3,9 @@
 Blender looks in the table for labels, tooltips and why a button is grey; for what it does not look up itself, reports
 and lines that are wrapped, there is `local`. What is not in the table stays English. A message that has numbers or
 names in it is made when it is said, and stays English, too.
+
+Blender asks its own catalogue first, where Pitch is a slope and Path belongs to a file. So the add-on's classes and
+fields have a context of their own, given to them as they are registered (versions.own_words).
 """
 
 import json
@@ -12,7 +15,8 @@ import bpy
 
 CLASSES = ()
 FOLDER = Path(__file__).resolve().parent
-CONTEXTS = ("*", "Operator")  # buttons of operators have a context of their own
+CONTEXT = "Riffler"
+CONTEXTS = ("*", "Operator", CONTEXT)  # tooltips have none
 
 
 def table():

@@ -6,6 +6,7 @@ from .. import properties
 from ..bl import sculpts
 from ..core import units as names
 from ..operators import clay, mask, relief
+from ..translations import CONTEXT
 from .panels import Sidebar, give, lines
 
 
@@ -28,7 +29,7 @@ class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
             lines(layout, "No sculpt is active.", icon="INFO")
         column = layout.column(align=True)
         row = column.row(align=True)
-        row.prop(settings, "pitch")
+        row.prop(settings, "pitch", text="Pitch", text_ctxt=CONTEXT)
         op = row.operator(clay.RIFFLER_OT_resample.bl_idname, text="", icon="MESH_GRID")
         op.pitch = settings.pitch
         if ob is not None:

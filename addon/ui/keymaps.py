@@ -7,6 +7,7 @@ import bpy
 import rna_keymap_ui
 
 from ..operators import simulate
+from ..translations import CONTEXT
 from . import menus, sculpt_panel
 
 
@@ -69,7 +70,7 @@ def users():
 
 def draw(layout, context):
     """One row for each key, as in Blender's own list: edited there, and put back by its arrow."""
-    layout.label(text="Keys")
+    layout.label(text="Keys", text_ctxt=CONTEXT)
     for key, (keymap, item) in zip(KEYS, users(), strict=True):
         if item is None:
             layout.label(

@@ -7,6 +7,7 @@ from ..bl import live, sculpts, units, versions
 from ..core import estimate, presets
 from ..core import units as names
 from ..operators import clay, cut, export, scene, stock
+from ..translations import CONTEXT
 
 
 class Sidebar:
@@ -94,7 +95,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
             self._button(layout, settings)
             return
         row = layout.row(align=True)
-        row.prop(settings, "pitch")
+        row.prop(settings, "pitch", text="Pitch", text_ctxt=CONTEXT)
         row.operator(stock.RIFFLER_OT_fit_pitch.bl_idname, text="", icon="SHADERFX")
         layout.prop(settings, "directions")
         if settings.source == "BLOCK":
@@ -151,7 +152,7 @@ class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
         layout = self.layout
         tool = context.scene.riffler.tool
         preset = tool.from_preset()
-        layout.menu(RIFFLER_MT_tools.bl_idname, text=preset["name"] if preset else "Custom")
+        layout.menu(RIFFLER_MT_tools.bl_idname, text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(tool, "kind")

@@ -4,6 +4,7 @@ import bpy
 
 from ..bl import live, sculpts
 from ..core import presets
+from ..translations import CONTEXT
 from .panels import Sidebar, lines
 
 MODES = {"riffler.carve": "Carve", "riffler.add": "Add", "riffler.smooth": "Smooth", "riffler.mask": "Mask"}
@@ -18,11 +19,11 @@ def tool_of(context):
 def draw_header(context, layout):
     settings = context.scene.riffler
     preset = settings.tool.from_preset()
-    layout.menu("RIFFLER_MT_tools", text=preset["name"] if preset else "Custom")
+    layout.menu("RIFFLER_MT_tools", text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
     layout.prop(settings.sculpt, "radius", text="Radius (mm)")
     layout.prop(settings.sculpt, "depth", text="Depth (mm)")
     layout.prop(settings.sculpt, "axis", text="")
-    layout.popover(RIFFLER_PT_sculpt_tool.bl_idname, text="Stroke")
+    layout.popover(RIFFLER_PT_sculpt_tool.bl_idname, text="Stroke", text_ctxt=CONTEXT)
 
 
 class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
@@ -58,7 +59,7 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
         active = tool_of(context)
         row = layout.row(align=True)
         for name, label in MODES.items():
-            row.operator("wm.tool_set_by_id", text=label, depress=name == active).name = name
+            row.operator("wm.tool_set_by_id", text=label, text_ctxt=CONTEXT, depress=name == active).name = name
 
     def _symmetry(self, layout, settings):
         row = layout.row(heading="Mirror", align=True)
@@ -83,7 +84,7 @@ class RIFFLER_MT_sculpt_pie(bpy.types.Menu):
     def draw(self, context):
         pie = self.layout.menu_pie()
         for name, label in MODES.items():  # left, right, below, above
-            pie.operator("wm.tool_set_by_id", text=label).name = name
+            pie.operator("wm.tool_set_by_id", text=label, text_ctxt=CONTEXT).name = name
         tool = context.scene.riffler.tool
         box = pie.box().column()
         box.prop(tool, "kind", text="")

@@ -272,6 +272,16 @@ def test_every_text_of_the_translations_is_one_of_the_addons():
         assert all(said.strip() for said in texts.values()), language
 
 
+def test_all_that_is_shown_is_looked_up_in_the_addons_own_words():
+    own = support.part("translations").CONTEXT
+    for cls in (c for m in support.part("registration").modules() for c in m.CLASSES if hasattr(c, "bl_label")):
+        assert cls.bl_translation_context == own, cls
+    if "translation_context" not in bpy.props.FloatProperty.__doc__:
+        return  # Blender 3.4: fields have none
+    others = {p.identifier for _, p, _ in shown() if p is not None and p.translation_context != own}
+    assert others <= {"filepath", "check_existing", "filter_glob", "rna_type"}, others  # of its file selector
+
+
 def is_text(node):
     import ast
 
@@ -288,6 +298,8 @@ def test_a_blender_in_german_speaks_german():
         view.language = "de_DE"
         view.use_translate_interface = True
         assert bpy.app.translations.pgettext_iface("New Stock", "Operator") == "Neues Rohteil"
+        own = support.part("translations").CONTEXT  # in Blender's own words a pitch is a slope
+        assert bpy.app.translations.pgettext_iface("Pitch", own) == "Raster"
         support.refused(bpy.ops.riffler.relief, "Ein Bild wählen")  # reports, which Blender does not look up
     finally:
         view.language = before
