@@ -45,7 +45,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
     def _facts(self, layout, ob):
         p = ob.data.riffler
         size = [u - low for low, u in zip(p.lower, p.upper, strict=True)]
-        layout.label(text=ob.name, icon="MOD_SOLIDIFY")
+        layout.label(text=ob.name, icon="MOD_SOLIDIFY", translate=False)
         run = live.of(ob)
         facts = p if run is None else run.facts
         rays = "tri-dexel" if p.directions == "xyz" else f"rays along {p.directions}"
@@ -140,7 +140,7 @@ class RIFFLER_MT_tools(bpy.types.Menu):
 
     def draw(self, context):
         for tool in presets.presets():
-            op = self.layout.operator(scene.RIFFLER_OT_tool_preset.bl_idname, text=tool["name"])
+            op = self.layout.operator(scene.RIFFLER_OT_tool_preset.bl_idname, text=tool["name"], translate=False)
             op.name = tool["name"]
 
 

@@ -39,7 +39,7 @@ class RIFFLER_MT_plan_tools(bpy.types.Menu):
         take = plan_setup.RIFFLER_OT_plan_tool.bl_idname
         entries, problems = libraries.files()
         for entry in (*entries, *library.shipped()):
-            op = layout.operator(take, text=entry.name, icon_value=tool_pictures.icon(entry.tool))
+            op = layout.operator(take, text=entry.name, icon_value=tool_pictures.icon(entry.tool), translate=False)
             op.name, op.path = entry.name, str(entry.path or "")
         layout.separator()
         layout.operator(take, text="Cutter of the Tool Panel", icon="FORWARD").sculpting = True
@@ -74,7 +74,7 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
 
     def _plan(self, layout, context, ob):
         p = ob.riffler.plan
-        layout.label(text=ob.name, icon="CURVE_DATA")
+        layout.label(text=ob.name, icon="CURVE_DATA", translate=False)
         part = p.part.name if p.part else "a part that is gone"
         count = f"Paths: {names.format_count(p.paths)}, {names.trim(p.length, 1)} mm"
         lines(layout, count, *wrapped(context, f"On {part} with {p.tool}"))
@@ -140,7 +140,7 @@ class RIFFLER_PT_plan_tool(Tab, bpy.types.Panel):
             layout.menu(RIFFLER_MT_plan_tools.bl_idname, text="Choose a tool")
             lines(layout, *wrapped(context, str(error)), icon="ERROR")
             return
-        layout.menu(RIFFLER_MT_plan_tools.bl_idname, text=tool.name)
+        layout.menu(RIFFLER_MT_plan_tools.bl_idname, text=tool.name, translate=False)
         row = layout.row()
         row.template_icon(icon_value=tool_pictures.icon(tool_pictures.cutter(given)), scale=PICTURE)
         if tool.shank or tool.holder:
