@@ -14,9 +14,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import bpy
 import harness
 import numpy as np
-import riffler
 
 import support
+
+if __name__ == "__main__":
+    support.JOB, support.MODULE = harness.job, harness.install()
+import riffler  # noqa: E402 (an extension's zip brings it)
 
 BALL = riffler.Tool.ball(6, 30)
 SIZE = (60, 60, 20)
@@ -74,8 +77,7 @@ def last_stroke(run, forever, mode):
 
 
 def main():
-    job = support.JOB = harness.job
-    support.MODULE = harness.install()
+    job = support.JOB
     support.part("bl.keeping").folder = lambda: Path(job["journals"])
     support.scale(1)
     name = support.stock(size=SIZE, pitch=0.5, directions="xyz").name

@@ -87,7 +87,7 @@ def long_cut(screen):
 
 
 def pen_session(screen):
-    strokes.tool(screen, "riffler.mask")
+    strokes.tool(screen, "riffler.add")
     before = cut.state()
     with screen.override():
         # far above the stock: what it carves would be kept, and this asks whether all is as it was
