@@ -19,7 +19,7 @@ import support
 
 if __name__ == "__main__":
     support.JOB, support.MODULE = harness.job, harness.install()
-import riffler  # noqa: E402 (an extension's zip brings it)
+import riffler
 
 BALL = riffler.Tool.ball(6, 30)
 SIZE = (60, 60, 20)
