@@ -40,7 +40,7 @@ def own_words(cls):
     if hasattr(cls, "bl_label"):
         cls.bl_translation_context = CONTEXT
     for base in cls.__mro__:
-        for field in vars(base).get("__annotations__", {}).values():
+        for field in getattr(base, "__annotations__", {}).values():  # from Python 3.14 on made when asked for
             if "translation_context" in (getattr(getattr(field, "function", None), "__doc__", None) or ""):
                 field.keywords["translation_context"] = CONTEXT
 

@@ -100,7 +100,7 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
 
     def _give(self, op, settings, group):
         """An operator the settings of a group, and of those that it is built on."""
-        for key in (k for base in group.__mro__ for k in vars(base).get("__annotations__", ())):
+        for key in (k for base in group.__mro__ for k in getattr(base, "__annotations__", ())):
             setattr(op, key, getattr(settings, key))
 
 
