@@ -15,6 +15,7 @@ from . import quaternions
 from .keys import Track
 
 STEP = math.radians(2)  # largest turn between two keys: there, normalised lerp is the great circle within 1e-6 rad
+GAP = 0.0101  # frames: Blender's 0.01 (BEZT_BINARYSEARCH_THRESH), and what single precision makes of it
 MATCH = 1e-6  # mm off the axis, or rad: what is still the same location, lifted or not
 
 
@@ -58,7 +59,19 @@ def _frames_of_rows(cl: np.ndarray, start: np.ndarray, frames: np.ndarray, ends:
         known[-1] = ends[1]
     there = ~np.isnan(known)
     way += 1e-12 * np.arange(len(cl))  # where the tip stands still, by number
-    return np.interp(way, way[there], known[there])
+    frames, ends = np.interp(way, way[there], known[there]), np.flatnonzero(there)
+    for i, j in zip(ends[:-1], ends[1:], strict=True):
+        if j > i + 1 and np.diff(frames[i : j + 1]).min() <= GAP < known[j] - known[i]:
+            frames[i : j + 1] = _spread(frames[i : j + 1])
+    return frames
+
+
+def _spread(frames: np.ndarray) -> np.ndarray:
+    """The same beginning and end, and every step long enough for a key of its own, if there is room: beside a long way
+    straight up the rows that were inserted would all have nearly one frame."""
+    even = np.linspace(frames[0], frames[-1], len(frames))
+    share = min(1.0, 1.5 * GAP / (even[1] - even[0]))
+    return frames + share * (even - frames)
 
 
 def _first_like(pose: np.ndarray, start: np.ndarray, at: int) -> int | None:
@@ -76,10 +89,24 @@ def _first_like(pose: np.ndarray, start: np.ndarray, at: int) -> int | None:
 
 
 def distinct(motion: Motion) -> Motion:
-    """Without rows that single precision, in which Blender keeps frames, does not tell from the next."""
-    frames = np.maximum.accumulate(np.asarray(motion.frames, np.float32))
-    last = np.append(frames[1:] > frames[:-1], True)
-    return Motion(frames[last].astype(float), motion.poses[last])
+    """Without rows that Blender cannot keep as keys: frames are single precision there, and from 4.x on, of keys no
+    more than GAP apart one is left, with the frame of the first and the value of the last."""
+    frames = np.maximum.accumulate(np.asarray(motion.frames, np.float32)).astype(float)
+    rows = np.flatnonzero(np.append(frames[1:] > frames[:-1], True))
+    if (np.diff(frames[rows]) <= GAP).any():
+        rows = _apart(frames, rows)
+    return Motion(frames[rows], motion.poses[rows])
+
+
+def _apart(frames: np.ndarray, rows: np.ndarray) -> list[int]:
+    """Of these rows as many as are more than GAP apart; the last one is."""
+    kept: list[int] = []
+    for row in rows.tolist():
+        if not kept or frames[row] - frames[kept[-1]] > GAP:
+            kept.append(row)
+    if kept[-1] != rows[-1]:
+        kept[-1 if len(kept) > 1 else len(kept) :] = [int(rows[-1])]
+    return kept
 
 
 def between(poses: np.ndarray, row: np.ndarray, share: np.ndarray) -> np.ndarray:

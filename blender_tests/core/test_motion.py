@@ -48,6 +48,25 @@ def test_lifted_inserted_and_missing_rows_are_at_their_time(closed):
     assert track.frames[6] < found.frames[5] < track.frames[7]
 
 
+def test_rows_beside_a_long_lift_have_keys_of_their_own():
+    track = keys.Track(np.c_[np.arange(3.0), np.zeros((3, 2))], False, 1, 2.0)
+    start = np.hstack([np.c_[np.arange(3.0), np.zeros((3, 2))], np.tile([0.0, 0, 1], (3, 1))])
+    high = np.c_[1 + np.linspace(0.1, 0.9, 9), np.zeros(9), np.full(9, 500.0), np.tile([0.0, 0, 1], (9, 1))]
+    rows = np.vstack([start[:2], high, start[2:] + [0, 0, 500, 0, 0, 0]])
+    found = motion.along(track, start, np.arange(3), rows)
+    assert np.array_equal(found.frames[[0, 1, -1]], track.frames)
+    assert np.diff(found.frames).min() > motion.GAP and np.array_equal(motion.distinct(found).poses, rows)
+
+
+def test_rows_without_room_are_thinned_and_the_last_one_stays():
+    frames = np.array([1.0, 1.004, 1.008, 1.02, 1.025, 2.0, 2.005])
+    poses = np.hstack([np.arange(21.0).reshape(7, 3), np.tile([0.0, 0, 1], (7, 1))])
+    found = motion.distinct(motion.Motion(frames, poses))
+    assert np.allclose(found.frames, [1, 1.02, 2.005]) and np.array_equal(found.poses, poses[[0, 3, 6]])
+    alone = motion.distinct(motion.Motion(frames[:2], poses[:2]))
+    assert np.array_equal(alone.poses, poses[:2])  # a path needs both its ends
+
+
 def test_a_constant_axis_is_told_apart_by_place():
     track = keys.Track(np.c_[np.arange(50.0), np.zeros((50, 2))], False, 1, 2.0)
     start = np.hstack([np.c_[np.arange(50.0), np.zeros((50, 2))], np.tile([0.0, 0, 1], (50, 1))])
