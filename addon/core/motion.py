@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -60,7 +61,7 @@ def _frames_of_rows(cl: np.ndarray, start: np.ndarray, frames: np.ndarray, ends:
     there = ~np.isnan(known)
     way += 1e-12 * np.arange(len(cl))  # where the tip stands still, by number
     frames, ends = np.interp(way, way[there], known[there]), np.flatnonzero(there)
-    for i, j in zip(ends[:-1], ends[1:], strict=True):
+    for i, j in pairwise(ends):
         if j > i + 1 and np.diff(frames[i : j + 1]).min() <= GAP < known[j] - known[i]:
             frames[i : j + 1] = _spread(frames[i : j + 1])
     return frames

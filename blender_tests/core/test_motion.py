@@ -52,7 +52,7 @@ def test_rows_beside_a_long_lift_have_keys_of_their_own():
     track = keys.Track(np.c_[np.arange(3.0), np.zeros((3, 2))], False, 1, 2.0)
     start = np.hstack([np.c_[np.arange(3.0), np.zeros((3, 2))], np.tile([0.0, 0, 1], (3, 1))])
     high = np.c_[1 + np.linspace(0.1, 0.9, 9), np.zeros(9), np.full(9, 500.0), np.tile([0.0, 0, 1], (9, 1))]
-    rows = np.vstack([start[:2], high, start[2:] + [0, 0, 500, 0, 0, 0]])
+    rows = np.vstack([start[:2], high, np.add(start[2:], [0, 0, 500, 0, 0, 0])])
     found = motion.along(track, start, np.arange(3), rows)
     assert np.array_equal(found.frames[[0, 1, -1]], track.frames)
     assert np.diff(found.frames).min() > motion.GAP and np.array_equal(motion.distinct(found).poses, rows)
