@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 from pathlib import Path
@@ -66,6 +67,6 @@ def spoken(command: list[Any], environment: dict[str, str], seconds: float = 900
     if lines:
         return json.loads(lines[-1])
     said = (done.stderr.strip().splitlines() or [f"it ended with {done.returncode}"])[-1]
-    if said.startswith(("ModuleNotFoundError", "ImportError")):
-        said = "it is not installed"
+    if missing := re.fullmatch(r"ModuleNotFoundError: No module named '(.+)'", said):
+        said = f"the Python module {missing[1]} is not installed"
     raise LeftOutError(said)
