@@ -1,8 +1,8 @@
 """Runs in a Blender of its own that will be killed: a sculpt in strokes, told line by line, as long as it lives.
 
 The job's `what`: "stroke", one that never ends; "rest", strokes and then nothing; "end", the add-on is disabled after
-them. `path`: a file to save before the first stroke, or ""; `mode`: of the last stroke. Each line is printed when the
-carve that it tells of has returned.
+them. `path`: a file to save before the first stroke, or ""; `stroke`: mode of the last one. Each line is printed when
+the carve that it tells of has returned.
 """
 
 import os
@@ -92,7 +92,7 @@ def main():
         run.finish_stroke(bpy.context, mode)
     while not run.keeping.journal.settled():
         time.sleep(0.01)
-    last_stroke(run, job["what"] == "stroke", job["mode"])
+    last_stroke(run, job["what"] == "stroke", job["stroke"])
     if job["what"] == "end":
         bpy.ops.preferences.addon_disable(module=support.MODULE)
     harness.say(rested=True)

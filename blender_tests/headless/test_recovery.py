@@ -50,7 +50,7 @@ def another_blender(what, path="", small=False, mode="remove"):
     """One that sculpts; what is yielded reads its next message."""
     with tempfile.TemporaryDirectory() as resources:
         (Path(resources) / "scripts" / "addons").mkdir(parents=True)
-        job = {**support.JOB, "what": what, "path": path, "small": small, "mode": mode}
+        job = {**support.JOB, "what": what, "path": path, "small": small, "stroke": mode}
         job["journals"] = str(keeping().folder())
         (Path(resources) / "job.json").write_text(json.dumps(job))
         variables = {
