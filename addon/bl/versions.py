@@ -39,10 +39,18 @@ def own_words(cls):
     know no contexts: its own words for theirs come first."""
     if hasattr(cls, "bl_label"):
         cls.bl_translation_context = CONTEXT
-    for base in cls.__mro__:
-        for field in getattr(base, "__annotations__", {}).values():  # from Python 3.14 on made when asked for
-            if "translation_context" in (getattr(getattr(field, "function", None), "__doc__", None) or ""):
-                field.keywords["translation_context"] = CONTEXT
+    for field in fields_of(cls).values():
+        if "translation_context" in (getattr(getattr(field, "function", None), "__doc__", None) or ""):
+            field.keywords["translation_context"] = CONTEXT
+
+
+def fields_of(cls):
+    """{name: field} of a class and those that it is built on. Python 3.14, which Blender 5.2 has, makes annotations
+    when they are asked for: none stand among a class's names before."""
+    fields = {}
+    for base in reversed(cls.__mro__):
+        fields |= getattr(base, "__annotations__", {})
+    return fields
 
 
 def progress(layout, state):

@@ -106,7 +106,9 @@ def _apart(frames: np.ndarray, rows: np.ndarray) -> list[int]:
         if not kept or frames[row] - frames[kept[-1]] > GAP:
             kept.append(row)
     if kept[-1] != rows[-1]:
-        kept[-1 if len(kept) > 1 else len(kept) :] = [int(rows[-1])]
+        if len(kept) > 1:  # a path needs both its ends
+            kept.pop()
+        kept.append(int(rows[-1]))
     return kept
 
 

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import properties
-from ..bl import programs, simulating, timeline, turning
+from ..bl import programs, simulating, timeline, turning, versions
 from ..operators import plan_nc, simulate, verify
 from .panels import lines
 from .pen_panel import wrapped
@@ -100,7 +100,7 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
 
     def _give(self, op, settings, group):
         """An operator the settings of a group, and of those that it is built on."""
-        for key in (k for base in group.__mro__ for k in getattr(base, "__annotations__", ())):
+        for key in versions.fields_of(group):
             setattr(op, key, getattr(settings, key))
 
 

@@ -2,13 +2,12 @@
 
 import json
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 import riffler
+from sources import ROOT, spoken
 
-ROOT = Path(__file__).parents[3]
 DOCS = ROOT / "docs"
 PAGES = ["first-chip", "relief", "engrave", "connect-a-pen", "pencil-cut", "planning", "sessions", "troubleshooting"]
 # What is Blender's own, and what objects are called in a tutorial.
@@ -29,11 +28,6 @@ BLENDERS = {
 }
 OURS = {"Clamp", "Sphere Stock"}
 LONGEST = 60  # of a label; what is longer is a sentence
-
-
-def spoken(text):
-    """A source's text with literals joined that lie side by side."""
-    return re.sub(r'"\s*(?:\n\s*)?f?"', "", text)
 
 
 @pytest.fixture(scope="module")

@@ -245,6 +245,45 @@ def test_a_session_that_nobody_stops_ends_with_its_object():
         pen.stop()
 
 
+def three_strokes_and_a_walk_back(session, pen, volume):
+    """By a pointer, across the middle; each is undone and made again to the bit, and the last one stays undone. What
+    was shown meanwhile."""
+    at, states, seen = 0.0, [volume.to_bytes()], []
+
+    def give(x, y, pressed):
+        nonlocal at
+        at += 0.004
+        pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=at)
+        time.sleep(0.004)
+
+    give(-5, -40, 0)
+    with session:
+        for x in (-12.0, 0.0, 12.0):
+            give(x, -20, 0)
+            time.sleep(0.02)
+            for y in np.arange(-20, 20, 1.0):
+                give(x + 0.05 * y, y, 1)
+            for _ in range(5):
+                give(x, 20, 0)
+            seen += frames(session, 10, lambda frame: frame.strokes >= len(states) and not frame.in_stroke)
+            states.append(volume.to_bytes())
+        assert session.undo() == 1 and volume.to_bytes() == states[2]
+        assert session.redo() == 1 and volume.to_bytes() == states[3]
+        assert session.undo() == 1
+    assert volume.to_bytes() == states[2] and len(set(states)) == 4
+    return seen
+
+
+def same_inside(mask, volume, before):
+    """What lies in a mask is what it was, which is returned."""
+    inside, was = volume.copy(), before.copy()
+    inside.intersect(mask), was.intersect(mask)
+    for direction in volume.directions:
+        for a, b in zip(inside.intervals(direction), was.intervals(direction), strict=True):
+            assert np.array_equal(a, b)
+    return was
+
+
 @pytest.mark.parametrize("directions", ["z", "xyz"])
 def test_what_is_protected_stays_to_the_bit_and_the_replay_too(tmp_path, directions):
     mask = riffler.Volume.empty((-30, -30, -20), (30, 30, 0), 0.5, directions)
@@ -256,35 +295,9 @@ def test_what_is_protected_stays_to_the_bit_and_the_replay_too(tmp_path, directi
     options = {"material": riffler.Material(removal_constant=1e-5), "stiffness": 5.0}
     session = riffler.Session(volume, BALL, pen, protect=mask, **options)
     session.journal(tmp_path / "a.rjournal")
-    at, states = 0.0, [before.to_bytes()]
-
-    def give(x, y, pressed):
-        nonlocal at
-        at += 0.004
-        pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=at)
-        time.sleep(0.004)
-
-    give(-5, -40, 0)
-    with session:
-        for x in (-12.0, 0.0, 12.0):  # across the mask
-            give(x, -20, 0)
-            time.sleep(0.02)
-            for y in np.arange(-20, 20, 1.0):
-                give(x + 0.05 * y, y, 1)
-            for _ in range(5):
-                give(x, 20, 0)
-            frames(session, 10, lambda frame: frame.strokes >= len(states) and not frame.in_stroke)
-            states.append(volume.to_bytes())
-        assert session.undo() == 1 and volume.to_bytes() == states[2]
-        assert session.redo() == 1 and volume.to_bytes() == states[3]
-        assert session.undo() == 1
-    assert volume.to_bytes() == states[2] and len(set(states)) == 4
+    three_strokes_and_a_walk_back(session, pen, volume)
     assert same(volume, riffler.Session.replay(tmp_path / "a.rjournal"))
-    inside, was, beside = volume.copy(), before.copy(), volume.copy()
-    inside.intersect(mask), was.intersect(mask)
-    for direction in directions:
-        for a, b in zip(inside.intervals(direction), was.intervals(direction), strict=True):
-            assert np.array_equal(a, b)
+    was, beside = same_inside(mask, volume, before), volume.copy()
     beside.subtract(mask)
     assert beside.volume < before.volume - was.volume - 20
     journal = riffler.Journal.read(tmp_path / "a.rjournal")
@@ -305,37 +318,11 @@ def test_what_is_put_on_is_not_felt_and_the_replay_is_the_same_to_the_bit(tmp_pa
     material = riffler.Material(removal_constant=0.01, damping=0.1)
     session = riffler.Session(volume, BALL, pen, protect=mask, mode="add", material=material, stiffness=5.0)
     session.journal(tmp_path / "a.rjournal")
-    at, states, seen = 0.0, [before.to_bytes()], []
-
-    def give(x, y, pressed):
-        nonlocal at
-        at += 0.004
-        pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=at)
-        time.sleep(0.004)
-
-    give(-5, -40, 0)
-    with session:
-        for x in (-12.0, 0.0, 12.0):  # across the mask
-            give(x, -20, 0)
-            time.sleep(0.02)
-            for y in np.arange(-20, 20, 1.0):
-                give(x + 0.05 * y, y, 1)
-            for _ in range(5):
-                give(x, 20, 0)
-            seen += frames(session, 10, lambda frame: frame.strokes >= len(states) and not frame.in_stroke)
-            states.append(volume.to_bytes())
-        assert session.undo() == 1 and volume.to_bytes() == states[2]
-        assert session.redo() == 1 and volume.to_bytes() == states[3]
-        assert session.undo() == 1
-    assert volume.to_bytes() == states[2] and len(set(states)) == 4
+    seen = three_strokes_and_a_walk_back(session, pen, volume)
     assert same(volume, riffler.Session.replay(tmp_path / "a.rjournal"))
     assert volume.volume > before.volume + 50
     if masked:
-        inside, was = volume.copy(), before.copy()
-        inside.intersect(mask), was.intersect(mask)
-        for direction in directions:
-            for a, b in zip(inside.intervals(direction), was.intervals(direction), strict=True):
-                assert np.array_equal(a, b)
+        same_inside(mask, volume, before)
     assert not np.concatenate([frame.tool_forces for frame in seen]).any()
     journal = riffler.Journal.read(tmp_path / "a.rjournal")
     assert {s.mode for s in journal.strokes} == {"build"} and journal.stock["mask"] == ("a-mask.rvol" if masked else "")

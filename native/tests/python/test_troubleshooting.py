@@ -1,18 +1,12 @@
 """docs/troubleshooting.md quotes what the sources say."""
 
 import re
-from pathlib import Path
 
 import pytest
+from sources import ROOT, spoken
 
-ROOT = Path(__file__).parents[3]
 ROWS = re.findall(r"^\| `([^`]+)` \|", (ROOT / "docs" / "troubleshooting.md").read_text(), re.MULTILINE)
 ENDS = {".py", ".cpp", ".hpp"}
-
-
-def spoken(text):
-    """A source's text with literals joined that lie side by side, over ends of lines too, in Python and in C++."""
-    return re.sub(r'"\s*(?:\n\s*)?f?"', "", text)
 
 
 def sources():
