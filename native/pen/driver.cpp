@@ -40,10 +40,11 @@ double steady_seconds() noexcept {
 /// What both threads use. They hold it, so that it outlives a driver whose threads do not end in time.
 struct Driver::Shared final : Connector, Clock {
   Shared(std::shared_ptr<HidModel> m, std::shared_ptr<PenStep> s, std::unique_ptr<Transport> transport, Open o,
-         const DriverSettings& settings)
+         const DriverSettings& settings, std::shared_ptr<Clock> c)
       : model(std::move(m)),
         step(std::move(s)),
         open(std::move(o)),
+        clock(std::move(c)),
         loop(*model, *step, *this, *this, std::move(transport), settings) {}
 
   // Connector; called by the driver's thread while it has no device.
@@ -62,8 +63,9 @@ struct Driver::Shared final : Connector, Clock {
   }
 
   // Clock
-  double now() noexcept override { return steady_seconds(); }
+  double now() noexcept override { return clock ? clock->now() : steady_seconds(); }
   void wait(double seconds) noexcept override {
+    if (clock) return clock->wait(seconds);
     std::unique_lock lock(mutex);
     changed.wait_for(lock, Seconds(seconds), [&] { return stopping.load() || answer.has_value(); });
   }
@@ -110,6 +112,7 @@ struct Driver::Shared final : Connector, Clock {
   const std::shared_ptr<HidModel> model;
   const std::shared_ptr<PenStep> step;
   const Open open;
+  const std::shared_ptr<Clock> clock;
   std::atomic<bool> stopping{false};
 
   mutable std::mutex mutex;
@@ -124,9 +127,9 @@ struct Driver::Shared final : Connector, Clock {
 };
 
 Driver::Driver(std::shared_ptr<HidModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
-               Open open, const DriverSettings& settings)
+               Open open, const DriverSettings& settings, std::shared_ptr<Clock> clock)
     : shared_(std::make_shared<Shared>(std::move(model), std::move(step), std::move(transport), std::move(open),
-                                       settings)) {
+                                       settings, std::move(clock))) {
   const WithoutSignals masked;  // threads inherit it
   try {
     std::thread([s = shared_] { s->drive(); }).detach();

@@ -15,10 +15,10 @@ class Driver {
   /// while the driver's thread uses the model.
   using Open = std::function<std::unique_ptr<Transport>()>;
 
-  /// Starts. `transport` as in DriverLoop. Throws std::invalid_argument for settings, std::system_error where no thread
-  /// can be had.
+  /// Starts. `transport` as in DriverLoop. `clock`: the device's own, looked at by the driver's thread alone, or null:
+  /// the system's. Throws std::invalid_argument for settings, std::system_error where no thread can be had.
   Driver(std::shared_ptr<HidModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
-         Open open, const DriverSettings& settings = {});
+         Open open, const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
   /// As stop().
   ~Driver();
   Driver(const Driver&) = delete;

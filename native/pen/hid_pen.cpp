@@ -49,12 +49,12 @@ SafeWrench StepSwitch::step(const PenSample& sample, double now, double dt) noex
 }
 
 HidPen::HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
-               Driver::Open open, const DriverSettings& settings)
+               Driver::Open open, const DriverSettings& settings, std::shared_ptr<Clock> clock)
     : kind_(std::move(kind)),
       model_(std::move(model)),
       held_(std::make_shared<HeldPush>()),
       switch_(std::make_shared<StepSwitch>(held_)),
-      driver_(model_, switch_, std::move(transport), std::move(open), settings) {}
+      driver_(model_, switch_, std::move(transport), std::move(open), settings, std::move(clock)) {}
 
 bool HidPen::set_step(std::shared_ptr<PenStep> step) {
   pushes_ = step == nullptr;

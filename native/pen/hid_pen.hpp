@@ -62,9 +62,10 @@ class StepSwitch final : public PenStep {
 
 class HidPen : public Pen {
  public:
-  /// `transport` is open and checked by the model; `open` finds, opens and checks it again.
+  /// `transport` is open and checked by the model; `open` finds, opens and checks it again. Of `clock` (Driver) whoever
+  /// gives one tells the time: now().
   HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport, Driver::Open open,
-         const DriverSettings& settings = {});
+         const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
 
   std::string kind() const override { return kind_; }
   const DeviceCapability& capability() const noexcept override { return model_->capability(); }

@@ -2,29 +2,15 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "pen/riffler_model.hpp"
 #include "pen/simulated_transport.hpp"
 
 namespace riffler {
-
-namespace {
-
-class SystemClock final : public Clock {
- public:
-  double now() noexcept override { return steady_seconds(); }
-  void wait(double seconds) noexcept override {
-    if (seconds > 0) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  }
-};
-
-}  // namespace
 
 /// What the hand was told, and what it does by itself.
 struct SimulatedDevice::Hand {
@@ -64,7 +50,7 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
   pen->hand().follow([hand](double seconds) { return hand->wish(seconds); });
   auto losses = std::make_shared<Losses>();
   pen->on_sense = [losses](riffler_pen_sensors& sensors) { losses->take(sensors); };
-  const auto clock = std::make_shared<SystemClock>();
+  const auto clock = std::make_shared<PatientClock>();
   const double start = clock->now();
   auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
   auto model = std::make_shared<RifflerModel>(*transport, compensation);
@@ -76,15 +62,16 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
     return next;
   };
   return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(std::move(hand), std::move(losses), std::move(model),
-                                                              std::move(transport), std::move(again), driver));
+                                                              std::move(transport), std::move(again), driver, clock));
 }
 
 SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
                                  std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
-                                 Driver::Open open, const DriverSettings& driver)
-    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver),
+                                 Driver::Open open, const DriverSettings& driver, std::shared_ptr<PatientClock> clock)
+    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver, clock),
       hand_(std::move(hand)),
-      losses_(std::move(losses)) {}
+      losses_(std::move(losses)),
+      clock_(std::move(clock)) {}
 
 void SimulatedDevice::aim(const HandWish& wish) {
   HandWish checked = wish;

@@ -8,8 +8,6 @@ namespace riffler {
 
 namespace {
 
-constexpr std::int64_t kMostBehind = 1'000'000;  // µs
-
 std::int64_t micros(double seconds) {
   return std::llround(1e6 * seconds);
 }
@@ -24,8 +22,6 @@ SimulatedTransport::SimulatedTransport(std::shared_ptr<SimulatedPen> pen, std::s
     : pen_(std::move(pen)), clock_(std::move(clock)), start_(start) {}
 
 void SimulatedTransport::catch_up() noexcept {
-  const std::int64_t due = micros(clock_->now() - start_), behind = due - pen_->time_us() - kMostBehind;
-  if (behind > 0) start_ += 1e-6 * static_cast<double>(behind);
   pen_->advance(micros(clock_->now() - start_));
 }
 

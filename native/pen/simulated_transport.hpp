@@ -19,9 +19,8 @@ class SimulatedClock final : public Clock {
   std::int64_t time_us_ = 0;
 };
 
-/// The pen is as old as the clock, from when the transport was made: it moves when somebody reads or writes. With a
-/// clock of the system it catches up with at most a second at once, and stands still for the rest: so does a machine
-/// that was asleep. Pen and clock are shared by all transports of a pen, one after the other.
+/// The pen is as old as the clock, from when the transport was made: it moves when somebody reads or writes. Pen and
+/// clock are shared by all transports of a pen, one after the other.
 class SimulatedTransport final : public Transport {
  public:
   /// `start`: when the pen's time was 0, of the clock.

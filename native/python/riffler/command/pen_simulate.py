@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 HELP = "carve with the simulated pen, and see it"
 SHOWN = 10  # s that the charts show
-LATE = 2e-3  # s from one step to the next, of steps that count as late
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -191,10 +190,11 @@ class Hand:
 class Log:
     """The frames of a run."""
 
-    COLUMNS = ("times", "poses", "applied", "energy", "removed", "step_seconds", "dt", "missed")
+    COLUMNS = ("times", "poses", "applied", "energy", "removed", "step_seconds", "missed")
 
     def __init__(self) -> None:
         self.parts: dict[str, list[np.ndarray]] = {name: [] for name in self.COLUMNS}
+        self.begin = self.now = time.monotonic()
         self.state, self.strokes, self.untold = "off", 0, 0
         self.why: str | None = None  # there is no force, or nothing is cut, now
         self.trips: dict[str, int] = {}
@@ -203,6 +203,7 @@ class Log:
         self.charts = {"position": History(SHOWN), "force": History(SHOWN), "energy": History(SHOWN)}
 
     def add(self, frame: SessionFrame) -> None:
+        self.now = time.monotonic()
         self.state, self.strokes, self.untold = frame.state, frame.strokes, frame.untold
         self.why = frame.problem or (frame.cause if frame.state != "ready" else None)
         if not len(frame):
@@ -225,14 +226,14 @@ class Log:
         return np.concatenate([empty, *self.parts[name]])
 
     def summary(self) -> dict[str, Any]:
-        times, spent, dt = self.column("times"), 1e6 * self.column("step_seconds"), self.column("dt")
+        times, spent = self.column("times"), 1e6 * self.column("step_seconds")
         forces, energy = np.linalg.norm(self.column("applied")[:, :3], axis=1), self.column("energy")
         p50, p99 = np.percentile(spent, [50, 99]) if len(spent) else (0.0, 0.0)
         seconds = float(times[-1]) if len(times) else 0.0
         return {
             "seconds": round(seconds, 3),
             "steps": len(times) + self.untold,
-            "late": int((dt > LATE).sum()),
+            "machine_seconds": round(self.now - self.begin, 3),
             "missed": int(self.column("missed").sum()),
             "step_us": {"p50": round(float(p50), 1), "p99": round(float(p99), 1)},
             "force_n": round(float(forces.max(initial=0.0)), 4),
@@ -265,7 +266,8 @@ class Log:
 
 def table(data: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
-        ("steps", f"{number(data['steps'])}, {data['late']} later than {1e3 * LATE:g} ms, {data['missed']} held over"),
+        ("time", f"{data['seconds']:.1f} s of the pen in {data['machine_seconds']:.1f} s of this machine"),
+        ("steps", f"{number(data['steps'])}, {data['missed']} held over"),
         ("a step", f"{data['step_us']['p50']:.0f} µs of the processor at p50, {data['step_us']['p99']:.0f} at p99"),
         ("force", f"{data['force_n']:.2f} N at most; {data['state']}"),
         ("energy", f"{data['energy']:.2f} N·mm may go to the hand, {data['energy_least']:.2f} at the least"),
