@@ -4,10 +4,10 @@
     python blender_tests/run.py --only test_cut       tests whose name contains the text
     python blender_tests/run.py --blender 4.5 --mode source --no-window
 
-Each (Blender, way of installing) is one process with a time limit; those without a window run two at a time, those with
-one alone. Ways of installing: the source folder, and the zips
-that users get (extension from 4.2 on, legacy before), built here from the wheel. Ends with the number of tests that
-passed, failed and were skipped, with reasons; exit code 1 if one failed.
+Each (Blender, way of installing), and each script of a window, is one process with a time limit; two run at a time.
+Ways of installing: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
+source folder, which is tested in one Blender, or in those that --blender or --mode names. Ends with the number of tests
+that passed, failed and were skipped, with reasons; exit code 1 if one failed.
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ MARK = "RIFFLER_TEST "
 sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
-AT_ONCE = 2  # processes without a window; each has a core or two to itself, and a gigabyte
+AT_ONCE = 2  # processes; each has a core or two to itself, and a gigabyte
+FIRST_DISPLAY = 90  # each window looks for a free one from a number of its own on: two at once would take the same
+FROM_SOURCE = (4, 5)  # the Blender that has the source folder, too
 END = 8  # lines of a message that are said again at the end, where they are read first
 
 
@@ -237,14 +239,15 @@ def main() -> int:
             core_tests(tally, arguments.only)
         if arguments.mode in (None, "extension") and not arguments.only:
             validate(bench)
+        runs = []
         if not arguments.no_headless:
-            runs = headless(bench, arguments)
+            runs += headless(bench, arguments)
             if arguments.mode in (None, "source"):
                 runs += soaking.runs(bench, arguments)
-            with ThreadPoolExecutor(1 if arguments.figures else AT_ONCE) as pool:
-                list(pool.map(lambda run: run(), runs))
-        if not arguments.no_window and arguments.mode in (None, "source"):
-            windowed(bench, arguments)
+        if not arguments.no_window:
+            runs += windowed(bench, arguments)
+        with ThreadPoolExecutor(1 if arguments.figures else AT_ONCE) as pool:
+            list(pool.map(lambda run: run(), runs))
     if bench.figures:
         (out / "figures.json").write_text(json.dumps(bench.figures, indent=1) + "\n")
     return close(tally)
@@ -261,9 +264,7 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
             bench.tally.skip(environment.name, environment.missing)
             continue
         usable.append(environment)
-        for mode in ("source", "extension" if environment.extensions else "legacy"):
-            if arguments.mode not in (None, mode):
-                continue
+        for mode in modes(environment, arguments):
             if mode != "source" and mode not in bench.zips:
                 bench.tally.skip(f"{environment.name}, {mode}", "no wheel in build/wheel or dist to make the zip from")
                 continue
@@ -277,6 +278,14 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
     return runs
 
 
+def modes(environment: Environment, arguments) -> list[str]:
+    """Ways of installing that are tested in a Blender."""
+    found = ["source", "extension" if environment.extensions else "legacy"]
+    if arguments.mode:
+        return [mode for mode in found if mode == arguments.mode]
+    return found if arguments.blender or environment.version[:2] == FROM_SOURCE else found[1:]
+
+
 def chain(bench: Bench, usable: list[Environment]) -> None:
     """What one Blender wrote the next one opens."""
     with tempfile.TemporaryDirectory() as folder:
@@ -284,39 +293,60 @@ def chain(bench: Bench, usable: list[Environment]) -> None:
             bench.run(environment, "source", [HERE / "chain" / "test_chain.py"], {"chain": folder})
 
 
-def windowed(bench: Bench, arguments) -> None:
+def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
+    """As `headless`: a process for each script."""
     import window
 
     application = environments.application()
     if arguments.blender not in application.name:
-        return
+        return []
     if reason := application.missing or window.missing():
         bench.tally.skip("window", reason)
-        return
+        return []
+    users = "extension" if application.extensions else "legacy"
+    mode = arguments.mode or (users if users in bench.zips else "source")
+    if mode not in ("source", users):
+        return []
     scripts = sorted((HERE / "windowed").glob("window_*.py"))
     if application.extensions:
         bench.tally.skip("tutorials", "their buttons are looked for where the sidebar of Blender 3.4 has them")
     else:
         scripts += sorted((HERE / "windowed").glob("tutorial_*.py"))
-    for script in scripts:
-        if arguments.only in script.stem:
-            window.run(bench, application, script)
+    chosen = [script for script in scripts if arguments.only in script.stem]
+    return [
+        partial(window.run, bench, application, mode, script, FIRST_DISPLAY + 10 * k) for k, script in enumerate(chosen)
+    ]
 
 
 def validate(bench: Bench) -> None:
-    """Blender's own check of an extension: that of `blender` if it has extensions, or of the newest bpy wheel."""
+    """The extension in Blender's own tool, that of `blender` if it has extensions, or of the newest bpy wheel: it is
+    accepted, and what is built of its content has the same files."""
     scripts = "lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py"
-    command = [[sys.executable, str(path), "validate"] for path in sorted(ROOT.glob(f".envs/bpy-*/{scripts}"))]
+    command = [[sys.executable, str(path)] for path in sorted(ROOT.glob(f".envs/bpy-*/{scripts}"))]
     application = environments.application()
     if application.extensions:
-        command.append([application.command[0], "--command", "extension", "validate"])
+        command.append([application.command[0], "--command", "extension"])
     if not command or "extension" not in bench.zips:
-        bench.tally.skip("extension zip, Blender's validator", "no wheel" if command else "no Blender with extensions")
+        bench.tally.skip("extension zip, Blender's tool", "no wheel" if command else "no Blender with extensions")
         return
+
+    def judge(name: str, done: subprocess.CompletedProcess, wrong: str = "") -> None:
+        outcome = "passed" if done.returncode == 0 and not wrong else "failed"
+        message = f"{done.stdout}{wrong}"
+        bench.tally.add("extension zip", {"name": name, "outcome": outcome, "seconds": 0, "message": message})
+
     print("extension zip", flush=True)
-    done = environments.execute([*command[-1], bench.zips["extension"]], {}, 60)
-    outcome = "passed" if done.returncode == 0 else "failed"
-    bench.tally.add("extension zip", {"name": "validate", "outcome": outcome, "seconds": 0, "message": done.stdout})
+    ours = bench.zips["extension"]
+    judge("validate", environments.execute([*command[-1], "validate", ours], {}, 60))
+    with tempfile.TemporaryDirectory() as folder:
+        content, theirs = Path(folder) / "content", Path(folder) / "theirs.zip"
+        with zipfile.ZipFile(ours) as archive:
+            archive.extractall(content)
+            names = sorted(name for name in archive.namelist() if not name.endswith("/"))
+        words = ["build", "--source-dir", str(content), "--output-filepath", str(theirs)]
+        done = environments.execute([*command[-1], *words], {}, 120)
+        built = sorted(zipfile.ZipFile(theirs).namelist()) if theirs.exists() else []
+        judge("build", done, "" if built == names else f"other files: {sorted({*built} ^ {*names})[:9]}")
 
 
 def close(tally: Tally) -> int:

@@ -21,10 +21,10 @@ def missing() -> str:
     return ""
 
 
-def run(bench, application, script: Path) -> None:
-    """The add-on as users get it where Blender has extensions, which is what a newer one's window is for."""
-    mode = "extension" if application.extensions and "extension" in bench.zips else "source"
-    where = f"{application.name}, window, {script.stem}"
+def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
+    """`mode`: how the add-on is installed: "source", or by the zip "extension" or "legacy". `display`: where a free one
+    is looked for."""
+    where = f"{application.name}, window, {mode}, {script.stem}"
     bench.begin(where)
     with tempfile.TemporaryDirectory() as resources:
         job = {
@@ -46,10 +46,10 @@ def run(bench, application, script: Path) -> None:
             "BLENDER_USER_SCRIPTS": str(Path(resources) / "scripts"),
             "LIBGL_ALWAYS_SOFTWARE": "1",
         }
-        display = ["xvfb-run", "-a", "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24"]
+        screen = ["xvfb-run", "-a", "-n", str(display), "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24"]
         real = "\nREAL_EVENTS = True\n" in script.read_text()
         blender = [application.command[0], "--factory-startup", *([] if real else ["--enable-event-simulate"])]
-        command = [*display, *blender, "-p", "0", "0", str(WIDTH), str(HEIGHT)]
+        command = [*screen, *blender, "-p", "0", "0", str(WIDTH), str(HEIGHT)]
         done = environments.execute(
             [*command, "--python", str(HERE / "windowed" / "driver.py")], variables, bench.timeout
         )

@@ -118,6 +118,8 @@ CPP_TESTS = [
     Need("GoogleTest", "libgtest-dev", "https://github.com/google/googletest", header("gtest/gtest.h")),
     Need("pkg-config of umockdev", "libumockdev-dev", UMOCKDEV.where, described("umockdev-1.0")),
     UMOCKDEV,
+    # The core is in the wheel and in the tests' program: compiled once (shell.compiling_once).
+    Need("ccache", "ccache", "https://ccache.dev", program("ccache")),
 ]  # fmt: skip
 
 BLENDER_WINDOW = [
