@@ -109,7 +109,7 @@ def windowed(kind, side, strokes, events):
         "depsgraph_s": float(np.median(graph)),
         "sculpt_s": float(np.median(work)),
     }
-    yield from view.history(times, strokes)
+    yield from view.history(times, ["undo"] * strokes)
     out |= {f"{name}_s": times.medians(name)["wall_s"] for name in ("undo", "redo")}
     out |= {"triangles": triangles, "side": side, "renderer": view.renderer()}
     return out | moved(ob, side, WAY * (events - 1))

@@ -56,16 +56,16 @@ class View:
         self.sent = time.perf_counter(), time.process_time()
         self.window.event_simulate(kind, value, x=pixel[0], y=pixel[1], **modifiers)
 
-    def history(self, times, steps):
-        """Ctrl-Z and then Ctrl-Shift-Z, so many times: from the key to the picture. Steps to `yield from`."""
+    def history(self, times, kinds):
+        """Ctrl-Z for each of `kinds`, by which its time is called, and then Ctrl-Shift-Z: from the key to the picture.
+        Steps to `yield from`."""
         middle = self.region.x + self.region.width // 2, self.region.y + self.region.height // 2
-        for name in ("undo", "redo"):
-            for _ in range(steps):
-                self.send("Z", "PRESS", middle, ctrl=True, shift=name == "redo")
-                yield lambda: self.undone and self.drawn and self.drawn[0] > self.undone
-                times.add(name, *self.latency())
-                self.send("Z", "RELEASE", middle)
-                yield 0.3
+        for name in (*kinds, *(kind.replace("undo", "redo") for kind in reversed(kinds))):
+            self.send("Z", "PRESS", middle, ctrl=True, shift=name.startswith("redo"))
+            yield lambda: self.undone and self.drawn and self.drawn[0] > self.undone
+            times.add(name, *self.latency())
+            self.send("Z", "RELEASE", middle)
+            yield 0.3
 
     def latency(self):
         """Wall and processor seconds from the last event to the picture of what it did."""

@@ -34,14 +34,15 @@ Row = dict[str, Any]
 def run(settings: Settings, progress: Progress = None) -> Report:
     load = os.getloadavg()[0]
     out = Report("blender", {"load": load, "cores_free": cores(), "sides_mm": SIDES})
-    tables = stroke_table(out), sculpt_table(out), boolean_table(out), export_table(out), plan_table(out)
-    stroke, sculpt, boolean, export, planned = tables
+    makers = stroke_table, undo_table, sculpt_table, boolean_table, export_table, plan_table
+    tables = tuple(make(out) for make in makers)
+    stroke, undo, sculpt, boolean, export, planned = tables
     given = list(answering(settings, stroke))
     for k, blender in enumerate(given):
         tell = (lambda share, k=k: progress((k + share) / len(given))) if progress else (lambda share: None)
         sizes = {"quick": 30.0} if settings.quick else SIDES
         for n, (size, side) in enumerate(sizes.items()):
-            strokes(out, stroke, sculpt, blender, size, side, settings.quick)
+            strokes(out, (stroke, undo, sculpt), blender, size, side, settings.quick)
             tell(0.7 * (n + 1) / len(sizes))
         if k == 0:
             for size, side in sizes.items():
@@ -88,10 +89,20 @@ def stroke_table(out: Report) -> Section:
         Column("triangles moved", "moved", report.grouped),
         Column("kB", "kilobytes", report.three),
         Column("end of stroke", "end_s", milliseconds),
-        Column("undo", "undo_s", milliseconds),
-        Column("redo", "redo_s", milliseconds),
-        Column("undo, processor time", "undo_cpu_s", milliseconds),
         Column("removed more than exact", "removed_over", report.percent),
+    )
+
+
+def undo_table(out: Report) -> Section:
+    of = {"": "", "_second": " of the second", "_first": " of the first"}
+    return out.section(
+        "undo",
+        "Undo and redo of a stroke, ms; medians",
+        Column("Blender", "where"),
+        Column("triangles", "triangles", report.grouped),
+        *(Column(f"{k}{said}", f"{k}{kind}_s", milliseconds) for kind, said in of.items() for k in ("undo", "redo")),
+        Column("undo, processor time", "undo_cpu_s", milliseconds),
+        Column("undo of an empty's move", "undo_other_s", milliseconds),
     )
 
 
@@ -180,9 +191,10 @@ def ways(blender: Blender, quick: bool) -> list[tuple[str, bool]]:
     return [("", False), *([(", window", True)] if blender.application and not quick else [])]
 
 
-def strokes(out: Report, stroke: Section, sculpt: Section, blender: Blender, size: str, side: float, quick: bool):
+def strokes(out: Report, tables: tuple[Section, ...], blender: Blender, size: str, side: float, quick: bool) -> None:
+    stroke, undo, sculpt = tables
     for where, window in ways(blender, quick):
-        how = {"strokes": 2 if quick or window else 5, "events": 10 if quick else 16 if window else 30}
+        how = {"strokes": 3 if quick else 4 if window else 5, "events": 10 if quick else 16 if window else 30}
         function = "windowed" if window else "headless"
 
         def own(function=function, how=how, window=window) -> Row:
@@ -191,6 +203,7 @@ def strokes(out: Report, stroke: Section, sculpt: Section, blender: Blender, siz
 
         mine = asked(stroke, blender, {"where": where, "size": size, "window": window}, own)
         if mine is not None:
+            undo.row(**mine)
             error = mine["removed_over"]
             out.check(abs(error) <= ERROR, f"{mine['where']}, {size}: a stroke's volume is off by {error:.3%}")
         for kind, brush in KINDS.items():
@@ -312,21 +325,27 @@ def natively(table: Section, settings: Settings) -> None:
 
 
 def notes(out: Report, tables: tuple[Section, ...], load: float) -> None:
-    stroke, sculpt, boolean, export, planned = tables
+    stroke, undo, sculpt, boolean, export, planned = tables
     renderers = {row["renderer"] for row in stroke.rows if row.get("renderer")}
     out.settings["load_after"] = os.getloadavg()[0]
     stroke.notes += [
         "A 6 mm ball 0.8 mm deep at 72 mm/s, 60 events a second, on a block at 0.25 mm, tri-dexel. *event*: until the "
         "tool has it; *follow*: picking the surface and making poses; *draw*: the last picture; *other*: all else, as "
         "earlier pictures and the wait for the next look, of which 30 are made a second. Without a window an event "
-        "ends when Blender's dependency graph is up to date, and undo is the operator; in a window it ends when a "
-        "pixel of the new picture has been read back, for Ctrl-Z too. Anti-aliasing is off. "
+        "ends when Blender's dependency graph is up to date; in a window it ends when a "
+        "pixel of the new picture has been read back. Anti-aliasing is off. "
         "Blender makes a batch anew for each chunk that "
         "has changed. Exact: the closed form of the groove.",
         f"Load of the machine before and after: {load:.1f} and {out.settings['load_after']:.1f}; two busy threads got "
         f"{out.settings['cores_free']:.2f} processors. "
         + (f"Drawn by {', '.join(sorted(renderers))}." if renderers else "Nothing was drawn."),
     ]
+    undo.notes.append(
+        "Without a window the operator, in a window from Ctrl-Z to the picture. The first stroke's brings the sculpt's "
+        "own mesh back, the second's has a step before it in which all chunks were new; the others are in the first "
+        "columns. *An empty's move*: a step that touches nothing of the sculpt, in the same file, what Blender takes "
+        "for any."
+    )
     sculpt.notes.append(
         "The brush is as wide as the ball, and goes the same way. Without a window a whole stroke is made by "
         "sculpt.brush_stroke, shared by its events, without the dependency graph. Multires is not among them: a "
