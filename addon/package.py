@@ -27,8 +27,10 @@ PLATFORMS = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm6
 
 
 def sources() -> list[Path]:
-    files = (p for p in HERE.rglob("*") if p.is_file() and p.suffix != ".pyc" and p.name not in NOT_SHIPPED)
-    return sorted(p.relative_to(HERE) for p in files)
+    """What is shipped of this folder: as with Blender's own tool nothing hidden, as the caches of linters."""
+    files = (p.relative_to(HERE) for p in HERE.rglob("*") if p.is_file())
+    shown = (p for p in files if not any(part.startswith(".") for part in p.parts))
+    return sorted(p for p in shown if p.suffix != ".pyc" and p.name not in NOT_SHIPPED)
 
 
 def tag(python: tuple[int, ...]) -> str:

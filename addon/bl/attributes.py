@@ -7,6 +7,7 @@ from . import chunks
 
 DISTANCE = "riffler_deviation"  # mm
 COLOUR = "riffler_deviation_colour"
+ERROR = "riffler_error"  # on a mesh that was made of a sculpt: mm, how far from it at most
 SCALE = "riffler_deviation_scale"  # on the mesh: mm of the full colours; where it is there, a legend is drawn
 
 

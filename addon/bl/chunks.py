@@ -11,6 +11,7 @@ given it another name.
 
 import itertools
 import uuid
+from dataclasses import dataclass
 
 import bpy
 from mathutils import Matrix, Vector
@@ -37,6 +38,7 @@ class Chunks:
             raise ValueError(f"{ob.name} is in no collection of this view layer: enable its collection in the Outliner")
         self._take(ob, shape, mm_per_unit)
         collection = _new_collection(context, ob)
+        self._before = _before(collection)
         try:
             first = None  # the others hang on it: one line in the outliner, and one object to be moved
             for block in range(len(self._blocks)):
@@ -57,6 +59,8 @@ class Chunks:
         """Those that an undo has brought back."""
         self = cls.__new__(cls)
         self._take(ob, shape, mm_per_unit)
+        self._before = _before(collection_of(self._mark))
+        self.outline(False)
         return self
 
     def _take(self, ob, shape, mm_per_unit):
@@ -103,6 +107,18 @@ class Chunks:
         self.fillings = {block: ob.data.get(FILLING, 0) for block, ob in found.items()}
         stale = [block for block, filling in fillings.items() if self.fillings.get(block) != filling]
         return [brick for block in stale for brick in self._blocks.bricks(block)]
+
+    def outline(self, on):
+        """The views' outlines, which no undo brings back or takes away: they are off while chunks are there."""
+        if on:
+            _outline(self._before.outlined)
+        else:
+            _draw_outlines(self._before.outlined, False)
+
+    def give_back(self, name):
+        """Where somebody has removed the collection: what `sweep` would have given back."""
+        self.outline(True)
+        _reveal(sculpts.marked(self._mark, name), self._before)
 
     @property
     def there(self):
@@ -171,15 +187,14 @@ def _new_collection(context, ob):
     collection = bpy.data.collections.new("Riffler Live")
     collection[MARK], collection[MADE] = ob.riffler.mark, collection.name
     collection["hidden"], collection["selected"] = ob.hide_get(), ob.select_get()
+    collection["scene"], collection["layer"] = context.scene.name, context.view_layer.name
     # Views that draw a line around every object would draw it around every chunk. It is written down here, so that it
     # is given back after a crash, too.
     outlined = [f"{screen}/{k}" for screen, k, space in views() if space.shading.show_object_outline]
     collection["outlined"] = "\n".join(outlined)
     collection.hide_select = True
     context.scene.collection.children.link(collection)
-    for screen, k, space in views():
-        if f"{screen}/{k}" in outlined:
-            space.shading.show_object_outline = False
+    _draw_outlines(outlined, False)
     return collection
 
 
@@ -189,14 +204,40 @@ def hide(ob):
     ob.hide_set(True)  # deselects it, too
 
 
-def reveal(ob, select=False):
-    """Undoes the hiding, in every view layer."""
-    for scene in bpy.data.scenes:
-        for layer in scene.view_layers:
-            if ob.name in layer.objects:
-                ob.hide_set(False, view_layer=layer)
-                if select:
-                    ob.select_set(True, view_layer=layer)
+def reveal(ob, select=False, layers=None):
+    """Undoes the hiding, in these view layers, or in every one."""
+    if layers is None:
+        layers = [layer for scene in bpy.data.scenes for layer in scene.view_layers]
+    for layer in layers:
+        if ob.name in layer.objects:
+            ob.hide_set(False, view_layer=layer)
+            if select:
+                ob.select_set(True, view_layer=layer)
+
+
+@dataclass
+class Before:
+    """How it was before the chunks: whether the sculpt was hidden and selected in that view layer, and which views drew
+    outlines."""
+
+    hidden: bool
+    selected: bool
+    layer: tuple  # names of scene and view layer
+    outlined: list
+
+
+def _before(collection):
+    """Of a collection of chunks; an older add-on did not write down the layer."""
+    layer = collection.get("scene", ""), collection.get("layer", "")
+    return Before(collection["hidden"], collection["selected"], layer, collection["outlined"].split("\n"))
+
+
+def _reveal(ob, before):
+    if ob is None or before.hidden:
+        return
+    scene = bpy.data.scenes.get(before.layer[0])
+    layer = scene and scene.view_layers.get(before.layer[1])
+    reveal(ob, before.selected, None if layer is None else [layer])
 
 
 def _outline(places):
@@ -205,9 +246,13 @@ def _outline(places):
     if other is not None:
         other["outlined"] = "\n".join([other["outlined"], *places])
         return
+    _draw_outlines(places, True)
+
+
+def _draw_outlines(places, on):
     for screen, k, space in views():
         if f"{screen}/{k}" in places:
-            space.shading.show_object_outline = True
+            space.shading.show_object_outline = on
 
 
 def weigh(ob):
@@ -238,16 +283,14 @@ def sweep(mark=None, name=""):
     """Takes away what there is, of the sculpt of that mark (and name, where it is known) or of all, and shows the
     sculpts again."""
     for collection in [c for c in bpy.data.collections if MARK in c and mark in (None, c[MARK])]:
-        ob, hidden, selected = sculpts.marked(collection[MARK], name), collection["hidden"], collection["selected"]
-        outlined = collection["outlined"].split("\n")
+        ob, before = sculpts.marked(collection[MARK], name), _before(collection)
         try:
             weigh(ob)
         except ValueError as error:  # what is packed cannot be read: there is no surface to be shown
             print(f"Riffler: {error}")
         _clear(collection)
-        if ob is not None and not hidden:
-            reveal(ob, selected)
-        _outline(outlined)
+        _reveal(ob, before)
+        _outline(before.outlined)
     stray = [ob for ob in bpy.data.objects if is_own(ob) and ob.data is not None and _is_marked(ob.data, mark)]
     _remove(stray)  # somebody, or an undo, has taken them out of the collection
     for place in (bpy.data.meshes, bpy.data.materials):

@@ -1,9 +1,14 @@
 """Lists of what was found, and the way to each: the frame, the place in the views, the line of NC code."""
 
+import hashlib
+from itertools import chain, count
+
 import bpy
 from mathutils import Vector
 
 from . import plan_store, replan, timeline, units
+
+WRITTEN = "riffler_written"  # of a Text: the hash of what was written to it
 
 
 def write(collection, entries):
@@ -59,11 +64,27 @@ def _screens(context):
 
 
 def text_of(existing, name, code):
-    """A Text block with the code: the one that had it before, where it is still there."""
-    text = existing or bpy.data.texts.new(name)
-    text.name = name
-    if text.as_string() != code:
-        text.clear()
-        text.write(code)
-        text.cursor_set(0)
-    return text
+    """A Text block with the code: the one that had it before, where it is still there and as it was written; and the
+    name of the one that somebody has edited since, which is left to them, or ""."""
+    if existing is not None and existing.as_string() == code:
+        existing[WRITTEN] = _hash(existing)
+        return existing, ""
+    edited = existing.name if existing is not None and existing.get(WRITTEN) != _hash(existing) else ""
+    text = bpy.data.texts.new(name) if existing is None or edited else existing
+    _rename(text, name)
+    text.clear()
+    text.write(code)
+    text.cursor_set(0)
+    text[WRITTEN] = _hash(text)
+    return text, edited
+
+
+def _rename(text, name):
+    """To the name, or to the next that is free: some Blenders take it from the text that has it."""
+    names = chain([name], (f"{name}.{k:03}" for k in count(1)))
+    text.name = next(n for n in names if bpy.data.texts.get(n) in (None, text))
+
+
+def _hash(text):
+    """Of what Blender gives back, which is not to the byte what was written."""
+    return hashlib.sha256(text.as_string().encode()).hexdigest()

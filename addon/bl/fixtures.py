@@ -6,8 +6,7 @@ import numpy as np
 import riffler
 import riffler.plan
 
-from ..core import poses as places
-from . import meshes
+from . import meshes, parts
 
 CLEAR = 1e-3  # mm: how closely a lifted tool comes to what it touches
 _last = ("", None)  # the meshes' hash, and the collider of them: a stroke changes no fixture
@@ -22,8 +21,8 @@ def collider(context, collection, to_mm, without=()):
     for ob in collection.all_objects:
         if ob.type != "MESH" or ob.name in without or not ob.visible_get():
             continue
-        co, tri = meshes.read(ob, depsgraph)
-        vertices.append(places.transform_points(to_mm @ meshes.matrix(ob.matrix_world), co))
+        co, tri = parts.placed(*meshes.read(ob, depsgraph), to_mm @ meshes.matrix(ob.matrix_world))
+        vertices.append(co)
         triangles.append(tri + count)
         count += len(co)
     if not sum(map(len, triangles)):

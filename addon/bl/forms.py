@@ -2,16 +2,15 @@
 
 import bpy
 import numpy as np
-import riffler
-from riffler import shape
+from riffler import shape, tasks
 
 from ..core import curves as core_curves
 from . import curves, parts, sculpts
 
 
-def volume_of(mesh, volume):
-    """The mesh (mm, the sculpt's frame) as material on the volume's grid."""
-    return riffler.Volume.from_mesh(mesh, volume.pitch, volume.directions, lower=volume.lower, upper=volume.upper)
+def task_of(mesh, volume):
+    """That makes the mesh (mm, the sculpt's frame) material on the volume's grid."""
+    return tasks.from_mesh(mesh, volume.pitch, volume.directions, lower=volume.lower, upper=volume.upper)
 
 
 def of_object(context, source, ob):

@@ -188,8 +188,9 @@ def _park(thing):
     _parked.append(thing)
 
 
-def park(lock):
-    """The journal that is locked was recovered: it goes when the file has what it made."""
+def park(lock, made):
+    """The journal that is locked was recovered: it goes when the file is saved with what it `made`, an identity."""
+    lock.made = made
     _park(lock)
 
 
@@ -206,10 +207,30 @@ def told(token):
     return None
 
 
-def drop():
-    """The file has it all, or was left on purpose."""
+def saved():
+    """The file has it all. What was recovered and then undone it has not: that is offered again."""
+    there = {store.identity(mesh) for mesh in bpy.data.meshes if mesh.riffler.store is not None}
+    if _drop(lambda lock: lock.made in there):
+        crashed(look=True)
+
+
+def leave():
+    """The file was left on purpose, and its work with it; what an earlier Blender has left is still nobody's."""
+    _drop(lambda lock: False)
+
+
+def _drop(done):
+    """Deletes the journals, but for those that were recovered and are not `done`: they are anybody's again. True where
+    there are such."""
+    released = False
     while _parked:
+        thing = _parked.pop()
         try:
-            _parked.pop().delete()
+            if isinstance(thing, journal.Lock) and not done(thing):
+                thing.release()
+                released = True
+            else:
+                thing.delete()
         except OSError as error:
             print(f"Riffler: a journal could not be deleted: {error}")
+    return released

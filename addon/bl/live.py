@@ -96,7 +96,7 @@ def _before_save(*_):
 
 @bpy.app.handlers.persistent
 def _after_save(*_):
-    keeping.drop()
+    keeping.saved()
 
 
 @bpy.app.handlers.persistent
@@ -107,17 +107,19 @@ def _before_render(*_):
 
 @bpy.app.handlers.persistent
 def _before_load(*_):
-    for live in list(lives.values()):
-        live.forget()
-    keeping.drop()
-    lives.clear()
-    snapshots.clear()
-    _told.clear()
+    """Nobody knows yet whether the other file can be opened: where it cannot, this one stays, and has it all."""
+    _end_safely()
 
 
 @bpy.app.handlers.persistent
 def _after_load(*_):
-    """The file may be an autosave, with work in it."""
+    """The other file is there. It may be an autosave, with work in it."""
+    for live in list(lives.values()):
+        live.forget()
+    keeping.leave()
+    lives.clear()
+    snapshots.clear()
+    _told.clear()
     for ob in bpy.data.objects:
         if ob.riffler.token and sculpts.is_sculpt(ob) and not (ob.library or ob.data.library):
             _settle(ob)
@@ -191,7 +193,7 @@ def attach():
 def detach():
     _end_safely()
     _told.clear()
-    keeping.drop()
+    keeping.leave()
     snapshots.clear()
     events.stop(_look)
     events.ignore(HANDLERS)

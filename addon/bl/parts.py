@@ -16,9 +16,14 @@ def surface(ob, depsgraph, to_mm):
     co, triangles = meshes.read(ob, depsgraph)
     if len(triangles) == 0:
         raise ValueError(f"{ob.name} has no faces: choose another object, or give it a surface")
+    return riffler.Mesh(*placed(co, triangles, to_mm))
+
+
+def placed(co, triangles, to_mm):
+    """Vertices and triangles under a map (4, 4); where it mirrors, normals still look out of the material."""
     if np.linalg.det(to_mm[:3, :3]) < 0:
         triangles = np.ascontiguousarray(triangles[:, ::-1])
-    return riffler.Mesh(poses.transform_points(to_mm, co), triangles)
+    return poses.transform_points(to_mm, co), triangles
 
 
 def in_world(context, ob):

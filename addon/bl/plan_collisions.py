@@ -34,14 +34,14 @@ def clearance_job(plan_ob, near, known):
 
 
 def show(scene, plan_ob, job=None):
-    """Marks the frames that collide, and returns them as runs."""
+    """Marks the frames that collide, and returns them as runs. A scene's marks are those of all its plans."""
     now = state(plan_ob)
     job, now.job = job or now.job, None
     frames, _, _, ends = motion.joined([e.played for e in now.motions])
     tolerance = plan_store.plan(plan_ob).tolerance or 0.01
     now.looks += job.computed
     now.colliding = collisions.runs(frames, job.clearances, -tolerance, ends)
-    timeline.mark(scene, now.colliding)
+    timeline.mark(scene, collisions.union(state(p).colliding for p in on_timeline() if scene.objects.get(p.name) == p))
     return now.colliding
 
 

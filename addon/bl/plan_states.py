@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..core import keys, motion, playback
-from . import timeline
+from . import sculpts, timeline
 
 
 @dataclass
@@ -26,7 +26,7 @@ class Baked:
 
 @dataclass
 class State:
-    """Of one plan, by its object's name: what the panel says, and what need not be computed again."""
+    """Of one plan, by its object: what the panel says, and what need not be computed again."""
 
     problems: list = field(default_factory=list)
     difference: playback.Difference = field(default_factory=playback.Difference)
@@ -46,11 +46,11 @@ class State:
 
 
 _states = {}
-_known = (-1, ())  # how many objects there were, and the names of the plans on the timeline
+_known = (-1, ())  # how many objects there were, and the keys of the plans on the timeline
 
 
 def state(plan_ob):
-    return _states.setdefault(plan_ob.name, State())
+    return _states.setdefault(sculpts.key_of(plan_ob), State())
 
 
 def forget():
@@ -68,14 +68,14 @@ def list_anew():
 def on_timeline():
     """All plans that are. Objects are looked through only when there are more or fewer of them than before."""
     global _known
-    if len(bpy.data.objects) != _known[0] or any(_pair_of(name) is None for name in _known[1]):
-        names = [ob.name for ob in bpy.data.objects if timeline.TOOL in ob and timeline.pair(ob)]
-        _known = (len(bpy.data.objects), tuple(names))
-    return [bpy.data.objects[name] for name in _known[1]]
+    if len(bpy.data.objects) != _known[0] or any(_pair_of(key) is None for key in _known[1]):
+        found = [sculpts.key_of(ob) for ob in bpy.data.objects if timeline.TOOL in ob and timeline.pair(ob)]
+        _known = (len(bpy.data.objects), tuple(found))
+    return [bpy.data.objects[key] for key in _known[1]]
 
 
-def _pair_of(name):
-    ob = bpy.data.objects.get(name)
+def _pair_of(key):
+    ob = bpy.data.objects.get(key)
     return timeline.pair(ob) if ob is not None else None
 
 

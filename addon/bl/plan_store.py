@@ -82,7 +82,7 @@ def in_scene(scene):
     if count != len(bpy.data.objects) or not all(map(is_plan, found)):
         searches += 1
         found = [ob for ob in scene.objects if is_plan(ob)]
-        keys = tuple((ob.name, ob.library.filepath if ob.library else None) for ob in found)
+        keys = tuple(sculpts.key_of(ob) for ob in found)
         _listed[scene.name] = len(bpy.data.objects), keys
     return found
 
@@ -116,6 +116,8 @@ def write(ob, plan):
     """Makes `plan` the object's content. It must not be changed after it."""
     if ob.library:
         raise ValueError(f"{ob.name} is linked from another file: make it local first")
+    if ob.override_library:  # the file would have the library's plan again
+        raise ValueError(f"{ob.name} overrides a plan of another file, which keeps no edits: make it local first")
     _write(ob, plan, riffler.plan.dumps(plan, texts(ob)))
 
 

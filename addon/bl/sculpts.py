@@ -34,11 +34,17 @@ def marked(mark, name=""):
     return next((ob for ob in bpy.data.objects if ob.riffler.mark == mark and is_sculpt(ob)), None)
 
 
-def new_object(context, name, volume, matrix, cuts=()):
-    """A new sculpt in the active collection at `matrix` (world), active and the only one selected."""
+def key_of(ob):
+    """What bpy.data.objects takes an object by, name and file: a linked one may be called as one of this file."""
+    return ob.name, ob.library.filepath if ob.library else None
+
+
+def new_object(context, name, volume, matrix, cuts=(), mm_per_unit=None):
+    """A new sculpt in the active collection at `matrix` (world), active and the only one selected. `mm_per_unit`: None
+    for the scene's."""
     mesh = bpy.data.meshes.new(name)
     try:
-        commit(mesh, Content(volume, list(cuts)), units.mm_per_unit(context.scene))
+        commit(mesh, Content(volume, list(cuts)), mm_per_unit or units.mm_per_unit(context.scene))
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise

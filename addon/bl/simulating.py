@@ -143,21 +143,13 @@ def _before_render(*_):
             working.tell(str(error))
 
 
-@bpy.app.handlers.persistent
-def _before_load(*_):
-    """What is shown goes with the file; what was saved of it, bl/live.py sweeps."""
-    global _now
-    _now = None
-    bpy.context.window_manager.riffler.simulating = ""
-
-
 _HANDLERS = {
     "frame_change_post": _on_frame,
     "save_pre": _end,
     "undo_post": _end,
     "redo_post": _end,
     "render_init": _before_render,
-    "load_pre": _before_load,
+    "load_pre": _end,
 }
 
 

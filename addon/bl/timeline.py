@@ -4,8 +4,9 @@
 **Riffler Motion**, an Empty that nobody sees, has the whole way as an animation; the tool copies its place and its
 orientation from it, so playing, scrubbing and rendering need nothing of the add-on.
 
-The plan's Empty points to both, and the tool back to it, by custom properties: those survive every version, renaming
-and undo, and copies of all three point to each other. A copy of the tool alone belongs to nobody.
+The plan's Empty points to both, and both back to it, by custom properties: those survive every version, renaming and
+undo, and copies of all three point to each other. A copy of the tool alone belongs to nobody. The motion cannot be
+selected, so a copy of the Empty points to the original's, with which it has nothing to do: it is not on the timeline.
 """
 
 import bpy
@@ -27,9 +28,14 @@ TURNED = 1e-5  # of a quaternion's components: what single precision does not do
 def pair(plan_ob):
     """The tool and the motion of a plan that is on the timeline, otherwise None."""
     tool, ghost = plan_ob.get(TOOL), plan_ob.get(MOTION)
-    if tool is None or ghost is None or tool.get(PLAN) != plan_ob or RATE not in tool:
+    if not (_is_of(tool, plan_ob) and _is_of(ghost, plan_ob)) or RATE not in tool:
         return None
     return tool, ghost
+
+
+def _is_of(ob, plan_ob):
+    """False for what a copy of a plan still points to, and the original has."""
+    return ob is not None and ob.get(PLAN) == plan_ob
 
 
 def plan_of(ob):
@@ -42,9 +48,10 @@ def plan_of(ob):
 def make(context, plan_ob, tool):
     """The objects of a plan with a riffler.Tool, made where they are missing, the tool's shape in any case."""
     home = plan_ob.users_collection[0] if plan_ob.users_collection else context.collection
-    ghost = plan_ob.get(MOTION) or _empty()
-    shown = plan_ob.get(TOOL)
-    if shown is None or shown.get(PLAN) != plan_ob:
+    ghost, shown = plan_ob.get(MOTION), plan_ob.get(TOOL)
+    if not _is_of(ghost, plan_ob):
+        ghost = _empty()
+    if not _is_of(shown, plan_ob):
         shown = bpy.data.objects.new("Riffler Tool", bpy.data.meshes.new("Riffler Tool"))
         shown.parent = plan_ob
         shown.data.materials.append(_material())
@@ -55,7 +62,8 @@ def make(context, plan_ob, tool):
     _follow(shown, ghost)
     vertices, triangles = pen.solid(tool.outline())
     meshes.fill(shown.data, vertices / units.mm_per_unit(context.scene), triangles)
-    shown[PLAN], plan_ob[TOOL], plan_ob[MOTION] = plan_ob, shown, ghost
+    shown[PLAN] = ghost[PLAN] = plan_ob
+    plan_ob[TOOL], plan_ob[MOTION] = shown, ghost
     return shown, ghost
 
 

@@ -266,7 +266,9 @@ class Live:
         ob = self.object
         if ob is None:
             return False
-        self._begin, self.awake = None, self.chunks.there
+        was, self.awake, self._begin = self.awake, self.chunks.there, None
+        if was != self.awake:
+            self.chunks.outline(was)
         if not self.awake:
             if self.device is not None:
                 self.device.drop()
@@ -297,6 +299,8 @@ class Live:
         """Somebody works at it no more, and nothing of it is to be seen."""
         if self.device is not None:
             self.device.drop()
+        if self.awake and not self.chunks.there:
+            self.chunks.outline(True)
         self.keeping.end()
 
     def _show(self, state):
@@ -336,6 +340,8 @@ class Live:
             self.commit()
             ob.riffler.token = ""
         self.keeping.end(store.identity(ob.data) if ob is not None else "")
+        if self.awake and not self.chunks.there:
+            self.chunks.give_back(self.name)
         chunks.sweep(self.mark, self.name)
         lives.pop(self.mark, None)
 

@@ -65,9 +65,16 @@ def runs(frames: np.ndarray, clearances: np.ndarray, least: float, ends=()) -> l
         return []
     parted = (np.diff(bad) > 1) | np.isin(bad[:-1], ends)
     firsts, lasts = np.append(bad[0], bad[1:][parted]), np.append(bad[:-1][parted], bad[-1])
+    found = [
+        (int(np.floor(frames[a] + 1e-6)), int(np.ceil(frames[b] - 1e-6))) for a, b in zip(firsts, lasts, strict=True)
+    ]
+    return union([found])
+
+
+def union(lists) -> list[tuple[int, int]]:
+    """Of several lists of runs: in order, those that overlap as one."""
     out: list[tuple[int, int]] = []
-    for a, b in zip(firsts, lasts, strict=True):
-        begin, end = int(np.floor(frames[a] + 1e-6)), int(np.ceil(frames[b] - 1e-6))
+    for begin, end in sorted(run for found in lists for run in found):
         if out and begin <= out[-1][1]:
             out[-1] = (out[-1][0], max(end, out[-1][1]))
         else:

@@ -83,12 +83,14 @@ def _turned_about(start, way, shares, radii) -> np.ndarray:
 
 
 def arc_arrow(centre, axis, radius: float, angle: float, width: float) -> np.ndarray:
-    """An arrow bent about `axis` by `angle` (rad, less than a turn), as the right hand turns. Nothing where the angle
-    is none."""
+    """An arrow bent about `axis` by `angle` (rad, less than a turn), as the right hand turns; one that is shorter than
+    its head is all head, and smaller. Nothing where the angle is none."""
     if angle <= 0:
         return np.empty((0, 3, 3))
     first, second, _ = frame(axis)
-    head = min(angle, 1.5 * HEAD * width / radius)
+    whole = 1.5 * HEAD * width / radius
+    size = min(1.0, angle / whole)
+    head = size * whole
     shaft = np.linspace(0, angle - head, max(2, int(np.ceil((angle - head) / 0.15)) + 1))
 
     def at(turn):
@@ -99,7 +101,8 @@ def arc_arrow(centre, axis, radius: float, angle: float, width: float) -> np.nda
         parts.append(tube(np.full(len(shaft), 0.5 * width), at(shaft)))
     # The head is straight: bent, it would point elsewhere than the arc does where it ends.
     neck, tip = at(np.array([angle - head, angle]))
-    parts.append(_turned_about(neck, tip - neck, np.array([0, 0, 1.0]), 0.5 * HEAD * width * np.array([0, 1, 0])))
+    radii = 0.5 * HEAD * width * size * np.array([0, 1, 0])
+    parts.append(_turned_about(neck, tip - neck, np.array([0, 0, 1.0]), radii))
     return np.concatenate(parts)
 
 

@@ -32,6 +32,21 @@ def run_through(job: Job, report=None) -> None:
             report(job.fraction)
 
 
+class DoneJob:
+    """What was made at once, as a job, where others of its kind take long."""
+
+    in_background, fraction, text = False, 1.0, ""
+
+    def __init__(self, result):
+        self.result = result
+
+    def step(self, budget: float = 0.0) -> bool:
+        return True
+
+    def cancel(self) -> None:
+        """Nothing was changed."""
+
+
 class TaskJob:
     """A native task (riffler.Task) as a job: once `step` has returned True, `result` is what the task made."""
 

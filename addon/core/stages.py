@@ -16,7 +16,7 @@ class Stages:
     def __init__(self, keep: int = 30, clock=time.perf_counter):
         self._clock = clock
         self._looks: deque[dict[str, float]] = deque(maxlen=keep)
-        self._now = dict.fromkeys(NAMES, 0.0)
+        self._now = dict.fromkeys((*NAMES, *COUNTS), 0.0)
         self.counts = dict.fromkeys(COUNTS, 0)
 
     @contextmanager
@@ -33,15 +33,16 @@ class Stages:
     def count(self, **counts: int) -> None:
         for name, n in counts.items():
             self.counts[name] += n
+            self._now[name] += n
 
     def looked(self) -> None:
         self._looks.append(self._now)
-        self._now = dict.fromkeys(NAMES, 0.0)
+        self._now = dict.fromkeys((*NAMES, *COUNTS), 0.0)
 
     @property
     def newest(self) -> dict[str, float]:
         """Seconds of the last look, by stage."""
-        return dict(self._looks[-1])
+        return {name: self._looks[-1][name] for name in NAMES}
 
     def take_counts(self) -> dict[str, int]:
         """What was counted since the last call."""
@@ -51,6 +52,10 @@ class Stages:
     def milliseconds(self) -> dict[str, float]:
         """Of a look, by stage: the median of those that were kept."""
         return {name: 1000 * _median([look[name] for look in self._looks]) for name in NAMES}
+
+    def per_look(self) -> dict[str, float]:
+        """What was counted in a look: the mean of those that were kept."""
+        return {name: sum(look[name] for look in self._looks) / max(len(self._looks), 1) for name in COUNTS}
 
 
 def _median(values: list[float]) -> float:

@@ -52,8 +52,9 @@ def triangles(bar):
     return parts
 
 
-def draw(kept, bar, place, zoom=1.0):
-    """`kept`: Batches; `place`: pixels of the foot's left end in the region; `zoom`: the interface's scale."""
+def draw(kept, bar, place, zoom=1.0, name="bar"):
+    """`kept`: Batches, which know it by `name`; `place`: pixels of the foot's left end in the region; `zoom`: the
+    interface's scale."""
     import gpu
 
     parts = triangles(bar)
@@ -62,7 +63,7 @@ def draw(kept, bar, place, zoom=1.0):
         gpu.matrix.scale_uniform(zoom)
         for k, (shape, colour) in enumerate(parts):
             signature = (k, bar.low, bar.high, bar.limit, shape.tobytes())
-            batches.draw(kept.get(f"bar {bar.title} {k}", signature, lambda s=shape: batches.flat(s)), colour)
+            batches.draw(kept.get(f"{name} {k}", signature, lambda s=shape: batches.flat(s)), colour)
     _labels(bar, place, zoom)
 
 

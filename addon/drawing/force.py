@@ -1,4 +1,4 @@
-"""Force and torque on the tool while it cuts: two arrows at its tip, and a gauge with its limit.
+"""Force and torque on the tool while it cuts: two arrows at its tip, and two gauges with their limits.
 
 Draw handlers are there only while there is something to show: from `begin` to `end`.
 """
@@ -15,7 +15,7 @@ from . import bars, batches, views
 
 FORCE, TORQUE, BEYOND = (0.98, 0.62, 0.12), (0.25, 0.62, 0.98), (0.95, 0.15, 0.12)
 LENGTH, WIDTH = 140.0, 6.0  # pixels: an arrow at the limit, its shaft
-CORNER = (24.0, 60.0)  # pixels from the region's lower left, beside the toolbar
+CORNER, BESIDE = (24.0, 60.0), 92.0  # pixels from the region's lower left, beside the toolbar; from gauge to gauge
 
 kept = batches.Batches()
 _in_views = views.InViews()
@@ -37,13 +37,17 @@ class Shown:
     def size(self):
         return float(np.linalg.norm(self.force))
 
+    @property
+    def moment(self):
+        return float(np.linalg.norm(self.torque))
+
 
 def begin(limit, lever, to_world):
     """A Shown to be kept up to date. Whatever was shown before is not any more."""
     global _shown
     end()
     _shown = Shown(limit, lever, to_world=np.asarray(to_world, float))
-    for draw, when in ((_draw_arrows, "POST_VIEW"), (_draw_gauge, "POST_PIXEL")):
+    for draw, when in ((_draw_arrows, "POST_VIEW"), (_draw_gauges, "POST_PIXEL")):
         _in_views.add(draw, when)
     return _shown
 
@@ -65,9 +69,8 @@ def arrows(shown, pixel):
         length = LENGTH * pixel * scale.share(size, 0, shown.limit)
         way = turn @ (shown.force / size) * length
         out.append((glyphs.arrow(tip, tip + way, WIDTH * pixel), FORCE if size <= shown.limit else BEYOND))
-    moment = float(np.linalg.norm(shown.torque))
-    if moment > 0:
-        share = scale.share(moment, 0, shown.limit * shown.lever)
+    if shown.moment > 0:
+        share = scale.share(shown.moment, 0, shown.limit * shown.lever)
         bent = glyphs.arc_arrow(
             tip, turn @ shown.torque, 0.45 * LENGTH * pixel, 1.6 * np.pi * share, 0.7 * WIDTH * pixel
         )
@@ -91,15 +94,23 @@ def _draw_arrows():
             batches.draw(batch)
 
 
-def gauge(shown):
-    high = scale.ceiling(1.25 * shown.limit)
-    fill = FORCE if shown.size <= shown.limit else BEYOND
-    title = f"{units.trim(shown.size, 2)} N"
-    return bars.Bar(title, 0.0, high, value=shown.size, fill=(*fill, 1.0), limit=shown.limit)
+def gauges(shown):
+    """Of force and torque."""
+    return (
+        _gauge(shown.size, shown.limit, FORCE, f"{units.trim(shown.size, 2)} N"),
+        _gauge(shown.moment, shown.limit * shown.lever, TORQUE, f"{units.trim(shown.moment, 1)} N·mm"),
+    )
 
 
-def _draw_gauge():
+def _gauge(value, limit, colour, title):
+    fill = colour if value <= limit else BEYOND
+    return bars.Bar(title, 0.0, scale.ceiling(1.25 * limit), value=value, fill=(*fill, 1.0), limit=limit)
+
+
+def _draw_gauges():
     if _shown is not None and bpy.context.region is not None:
         zoom = bpy.context.preferences.system.ui_scale
         toolbar = next((r.width for r in bpy.context.area.regions if r.type == "TOOLS"), 0)
-        bars.draw(kept, gauge(_shown), (toolbar + zoom * CORNER[0], zoom * CORNER[1]), zoom)
+        for k, gauge in enumerate(gauges(_shown)):
+            place = toolbar + zoom * (CORNER[0] + k * BESIDE), zoom * CORNER[1]
+            bars.draw(kept, gauge, place, zoom, f"gauge {k}")

@@ -1,12 +1,12 @@
 """The active plan in the 3D view while the plan tool is chosen: where its paths touch the part, the normals there and
-the tool's axes; and the contact under the pointer."""
+the tool's axes; and the contact under the pointer, or beside the tool of a device that sculpts."""
 
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-from ..bl import plan_store, turning, units
+from ..bl import pen_session, plan_store, turning, units
 from ..core import glyphs
 from . import batches, views
 
@@ -114,10 +114,42 @@ def under(context, at):
     return nearest(plan_store.plan(ob), view, at, NEAR * context.preferences.system.ui_scale)
 
 
+def beside(plan, place, reach):
+    """The contact nearest to a place (3,) in mm, or None where none is within `reach` mm of it."""
+    best, closest = None, reach
+    for k, path in enumerate(plan.paths):
+        gaps = np.linalg.norm(path.contacts - place, axis=2)
+        index, side = np.unravel_index(np.argmin(gaps), gaps.shape)
+        if gaps[index, side] <= closest:
+            best = Found(k, int(index), path.contacts[index, side], path.normals[index, side])
+            closest = float(gaps[index, side])
+    return best
+
+
+def at_tool(context):
+    """The contact of the active plan that a device's tool is at, within its diameter; None where no device sculpts."""
+    session, ob = pen_session.running, turning.plan_object(context)
+    if session is None or session.run.pose is None or ob is None:
+        return None
+    tip = (session.live.to_world @ np.append(session.run.pose[:3], 1.0))[:3] * units.mm_per_unit(context.scene)
+    return beside(plan_store.plan(ob), tip, session.diameter)
+
+
+def _draw_at_tool():
+    context = bpy.context
+    if pen_session.running is None or context.region_data is None:
+        return
+    try:
+        found = at_tool(context)
+    except ValueError:
+        return
+    if found is not None:
+        view = turning.sight(context, context.region, context.region_data)
+        _mark(found, view, (0, 0), view.project([found.point])[0], context.preferences.system.ui_scale)
+
+
 def draw_cursor(context, tool, xy):
     """Blender draws cursors over the finished view: following the pointer costs no new picture of the part."""
-    import gpu
-
     region, space = context.region, context.region_data
     if region is None or space is None or turning.held is not None:
         return
@@ -126,20 +158,26 @@ def draw_cursor(context, tool, xy):
         found = under(context, at)
     except ValueError:
         return
-    if found is None:
-        return
-    zoom = context.preferences.system.ui_scale
-    view = turning.sight(context, region, space)
+    if found is not None:
+        view = turning.sight(context, region, space)
+        _mark(found, view, (region.x, region.y), at, context.preferences.system.ui_scale)
+
+
+def _mark(found, view, corner, at, zoom):
+    """A ring and a pin at a contact, and beside `at` which it is; pixels of the region, whose `corner` is given."""
+    import gpu
+
     radius = 9 * zoom / view.pixels_per_unit(found.point)
     ring = view.project(glyphs.ring(found.point, found.normal, radius, 32))
     pin = view.project([found.point, found.point + 2.5 * radius * found.normal])
     with batches.state(), gpu.matrix.push_pop():
-        gpu.matrix.translate((region.x, region.y))
+        gpu.matrix.translate(corner)
         for k, (line, closed) in enumerate(((ring, True), (pin, False))):
             for name, width, colour in (("shadow", 3.4 * zoom, SHADOW), ("line", 1.8 * zoom, MARK)):
                 make = lambda p=line, w=width, c=closed: batches.flat(glyphs.ribbon(p, w, c))  # noqa: E731
                 batches.draw(kept.get(f"{name} {k}", (line.tobytes(), zoom), make), colour)
-    _label(f"Path {found.path + 1}, point {found.index}", (xy[0] + 14 * zoom, xy[1] + 12 * zoom), zoom)
+    place = np.add(corner, at) + np.array([14, 12]) * zoom
+    _label(f"Path {found.path + 1}, point {found.index}", place, zoom)
 
 
 def _label(text, place, zoom):
@@ -153,6 +191,7 @@ def _label(text, place, zoom):
 
 def attach():
     _in_views.add(_draw, "POST_VIEW")
+    _in_views.add(_draw_at_tool)
 
 
 def detach():

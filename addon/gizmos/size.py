@@ -70,7 +70,7 @@ def _place(ob):
     p, mm = ob.data.riffler, sculpts.shown_mm_per_unit(ob.data)
     aside = p.upper[0] + ASIDE * (p.upper[0] - p.lower[0])
     at = Vector((aside, 0.5 * (p.lower[1] + p.upper[1]), p.upper[2])) / mm
-    return ob.matrix_world @ at, sum(ob.matrix_world.to_scale()) / 3 / mm
+    return ob.matrix_world @ at, abs(ob.matrix_world.to_3x3().determinant()) ** (1 / 3) / mm
 
 
 CLASSES = (RIFFLER_GGT_size,)

@@ -104,10 +104,11 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
             return {"CANCELLED"}
         ob = bpy.data.objects[self._object]
         collections, matrix, name = ob.users_collection, ob.matrix_world.copy(), ob.name
+        mm = sculpts.shown_mm_per_unit(ob.data)
         made = []
         try:
             for piece in others:
-                new = sculpts.new_object(context, f"{name} Part", piece, matrix)
+                new = sculpts.new_object(context, f"{name} Part", piece, matrix, mm_per_unit=mm)
                 made.append(new)
                 sculpts.take_looks(new, ob)
                 for collection in collections:

@@ -10,6 +10,7 @@ import time
 
 import bpy
 
+from ..bl import events
 from ..core.job import RefreshClock, run_through, slice_budget
 from ..translations import local
 from . import shared
@@ -17,7 +18,10 @@ from . import shared
 TELL = 0.1  # s between two reports of progress
 TICK = {False: 0.01, True: 0.05}  # s from one step to the next of work in slices; from one look at a thread to the next
 
+AGAIN, SETTLED = 0.5, 10.0  # s between redraws of the sidebars after the end, and for how long
+
 CLASSES = ()
+_until = 0.0  # sidebars are drawn again
 _running = None  # the operator whose work runs in a window, if one's does
 
 
@@ -50,6 +54,7 @@ class LongWork:
             run_through(job, lambda share: wm.progress_update(100 * share))
             return self.finish(context, job)
         except shared.ERRORS as error:
+            self.cancel(context)
             return shared.fail(self, error)
         finally:
             wm.progress_end()
@@ -93,7 +98,7 @@ class LongWork:
             raise
 
     def cancel(self, context):
-        """Blender calls it too, when the window closes or another file is opened."""
+        """Nothing has come of it. Blender calls it too, when the window closes or another file is opened."""
         if self._job is None:
             return
         try:
@@ -148,6 +153,21 @@ class LongWork:
         wm.riffler.running = ""
         _status(context, None)
         shared.redraw_sidebars(context)
+        _settle()
+
+
+def _settle():
+    """The button that has begun the work is grey meanwhile, and Blender leaves one under the pointer as it is, however
+    often it is drawn: it is drawn until the pointer is elsewhere."""
+    global _until
+    _until = time.monotonic() + SETTLED
+    if not bpy.app.timers.is_registered(_redraw):
+        bpy.app.timers.register(_redraw, first_interval=AGAIN)
+
+
+def _redraw():
+    shared.redraw_sidebars(bpy.context)
+    return AGAIN if time.monotonic() < _until else None
 
 
 def _status(context, text):
@@ -159,3 +179,4 @@ def detach():
     """Whatever runs is cancelled."""
     if _running is not None:
         _running.cancel(bpy.context)
+    events.stop(_redraw)

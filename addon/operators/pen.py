@@ -10,10 +10,10 @@ import numpy as np
 import riffler
 
 from .. import properties
-from ..bl import chosen, events, pen_session, sculpts, working
+from ..bl import chosen, events, fixtures, pen_session, sculpts, working
 from ..core import brush, problems
 from ..core import units as names
-from ..drawing import force
+from ..drawing import force, pace
 from ..translations import local
 from . import shared
 
@@ -66,6 +66,7 @@ def session_options(context, ob, settings, mode="remove"):
         "mode": mode,
         "stiffness": clean(settings.stiffness),
         "material": riffler.Material(removal_constant=clean(settings.removal_constant)),
+        "obstacles": obstacles(context, ob),
         **chosen.limits(),
     }
     if settings.device == properties.RECORDING:
@@ -79,6 +80,14 @@ def session_options(context, ob, settings, mode="remove"):
         tip = np.append(0.5 * (lower + upper)[:2], upper[2] + clean(settings.gap))
     options["at"] = [*tip, 0, 0, 1]
     return options
+
+
+def obstacles(context, ob):
+    """riffler.Collider of the fixtures, in the sculpt's millimetres, or None."""
+    collection = context.scene.riffler.sculpt.fixtures
+    if collection is None:
+        return None
+    return fixtures.collider(context, collection, sculpts.from_world(ob), {ob.name})
 
 
 def device_of(settings):
@@ -162,6 +171,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
         settings, session = context.scene.riffler.sculpt, pen_session.running
         if settings.show_force:
             _shown = force.begin(names.clean(settings.limit), session.diameter, session.live.to_world)
+        pace.begin(session.live.stages)
         bpy.app.timers.register(_look, first_interval=FRAME)
         return {"FINISHED"}
 
@@ -238,6 +248,7 @@ def _leave():
     if _shown is not None:
         _shown = None
         force.end()
+    pace.end()
     _status(None)
     shared.redraw_sidebars(bpy.context)
 

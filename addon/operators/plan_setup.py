@@ -1,6 +1,7 @@
 """What a plan is made for: the part, the fixtures, and the tool with its shank and holder."""
 
 import bpy
+import numpy as np
 import riffler
 from bpy_extras.io_utils import ImportHelper
 
@@ -199,6 +200,31 @@ class RIFFLER_OT_plan_tool_save(bpy.types.Operator):
         return {"FINISHED"}
 
 
+SHANK, HOLDER = ("shank",), ("holder", "upper", "height")
+
+
+def sizes_of(tool):
+    """The fields of a tool's shank and holder, in mm, by name; none for what it does not have."""
+    sizes = {}
+    if tool.shank:
+        sizes.update(shank=2 * tool.shank[0][1], reach=tool.shank[-1][2])
+    if tool.holder:
+        low, high = tool.holder[0], tool.holder[-1]
+        sizes.update(reach=low[0], holder=2 * low[1], upper=2 * high[3], height=high[2] - low[0])
+    return sizes
+
+
+def _drawn_out(pieces, further):
+    """A shank with `further` mm of its uppermost piece out of the holder. ValueError where none of it is left."""
+    *others, (low, radius, high, upper) = pieces
+    high = names.clean(high + further)
+    if high <= low:
+        raise ValueError(
+            f"the shank's uppermost piece begins at {low:g} mm: give more reach, or another shank diameter"
+        )
+    return [*others, (low, radius, high, upper)]
+
+
 class RIFFLER_OT_plan_assembly(bpy.types.Operator):
     """Give the plan's tool a shank and a holder: what must not touch the part when the tool leans"""
 
@@ -217,27 +243,53 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
             tool = riffler.Tool.from_dict(context.scene.riffler.plan.tool_dict())
         except shared.ERRORS as error:
             return shared.fail(self, error)
-        self.shank = 2 * tool.shank[0][1] if tool.shank else tool.diameter
-        self.reach = tool.holder[0][0] if tool.holder else tool.length + 15
-        if tool.holder:
-            self.holder, self.upper = 2 * tool.holder[0][1], 2 * tool.holder[-1][3]
-            self.height = tool.holder[-1][2] - self.reach
+        self.shank, self.reach = tool.diameter, tool.length + 15
+        for key, value in sizes_of(tool).items():
+            setattr(self, key, value)
         return context.window_manager.invoke_props_dialog(self)
+
+    def draw(self, context):
+        shared.draw_fields(self, ("shank", "reach", "holder", "upper", "height"))
+        try:
+            tool = riffler.Tool.from_dict(context.scene.riffler.plan.tool_dict())
+        except shared.ERRORS:
+            return  # executing says it
+        sizes = sizes_of(tool)
+        if len(tool.shank) > 1 and self.shank and not self._as_it_is(sizes, SHANK):
+            self.layout.label(text="The shank's pieces become one: its diameter was changed", icon="INFO")
+        if len(tool.holder) > 1 and self.holder and not self._as_it_is(sizes, HOLDER):
+            self.layout.label(text="The holder's pieces become one: its sizes were changed", icon="INFO")
 
     def execute(self, context):
         settings = context.scene.riffler.plan
-        sizes = (self.shank, self.reach, self.holder, self.upper, self.height)
-        shank, reach, lower, upper, height = map(names.clean, sizes)
         try:
             tool = riffler.Tool.from_dict(settings.tool_dict())
-            if (shank or lower) and reach <= tool.length:
+            if (self.shank or self.holder) and names.clean(self.reach) <= tool.length:
                 raise ValueError(f"the holder must begin above the cutter, whose length is {tool.length:g} mm")
-            tool = tool.with_shank([(tool.length, shank / 2, reach, shank / 2)] if shank else [])
-            tool = tool.with_holder([(reach, lower / 2, reach + height, upper / 2)] if lower else [])
+            tool = self._with_pieces(tool)
         except shared.ERRORS as error:
             return shared.fail(self, error)
         settings.take(tool.to_dict())
         return {"FINISHED"}
+
+    def _with_pieces(self, tool):
+        """What has the sizes that the tool has keeps its pieces; a reach that was changed draws out the shank,
+        at its uppermost piece, and moves the holder."""
+        sizes = sizes_of(tool)
+        fields = (self.shank, self.reach, self.holder, self.upper, self.height)
+        shank, reach, lower, upper, height = map(names.clean, fields)
+        further = 0.0 if self._as_it_is(sizes, ("reach",)) else reach - sizes.get("reach", reach)
+        shanks = [(tool.length, shank / 2, reach, shank / 2)] if shank else []
+        if self._as_it_is(sizes, SHANK):
+            shanks = _drawn_out(tool.shank, further)
+        holders = [(reach, lower / 2, reach + height, upper / 2)] if lower else []
+        if self._as_it_is(sizes, HOLDER):
+            holders = [(names.clean(a + further), r, names.clean(b + further), s) for a, r, b, s in tool.holder]
+        return tool.with_shank(shanks).with_holder(holders)
+
+    def _as_it_is(self, sizes, keys):
+        """True where the fields are what the tool has, as far as single precision tells."""
+        return all(key in sizes and getattr(self, key) == np.float32(sizes[key]) for key in keys)
 
 
 CLASSES = (

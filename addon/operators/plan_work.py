@@ -14,6 +14,8 @@ def plan_poll(cls, context):
         return shared.deny(cls, "Select a plan first, or find paths on a part")
     if plan_object(context).library:
         return shared.deny(cls, "The plan is linked from another file: make it local first")
+    if plan_object(context).override_library:
+        return shared.deny(cls, "The plan overrides one of another file, which keeps no edits: make it local first")
     return not shared.busy(cls, context)
 
 

@@ -47,6 +47,7 @@ class RIFFLER_OT_recover(TakesJournal, long.LongWork, bpy.types.Operator):
 
     doing = "Recovering"
     cancelled = "Recovery cancelled: the journal is still there"
+    _lock = None
 
     def begin(self, context):
         live.end_all()
@@ -61,7 +62,8 @@ class RIFFLER_OT_recover(TakesJournal, long.LongWork, bpy.types.Operator):
 
     def cancel(self, context):
         super().cancel(context)
-        self._lock.release()
+        if self._lock is not None:
+            self._lock.release()
 
     def finish(self, context, job):
         volume, mask = job.result
@@ -76,7 +78,7 @@ class RIFFLER_OT_recover(TakesJournal, long.LongWork, bpy.types.Operator):
         except BaseException:
             self._lock.release()
             raise
-        keeping.park(self._lock)
+        keeping.park(self._lock, store.identity(ob.data))
         keeping.crashed(look=True)
         context.window_manager.riffler.notice = ""
         self.report({"INFO"}, f"{ob.name} is as it was when Blender was cut off: save the file")

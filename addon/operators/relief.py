@@ -10,34 +10,42 @@ from .. import properties
 from ..bl import forms, units
 from ..core import relief
 from ..core import units as names
-from ..core.cache import Content
-from .sculpt_work import SculptEdit
+from ..core.job import TaskJob
+from .sculpt_work import SculptWork
 
 FINEST = 1500  # places along a side: finer pictures than rays would be lost work
 REACH = 2.0  # pitches by which a relief reaches into what it joins
 
 
-class RIFFLER_OT_relief(properties.ReliefSettings, SculptEdit, bpy.types.Operator):
+class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operator):
     """Raise a picture on the sculpt, or engrave it: what is light is high, or deep"""
 
     bl_idname = "riffler.relief"
     bl_label = "Emboss Picture"
+    doing = "Embossing"
+    cancelled = "Not embossed: the sculpt is as it was"
 
     image: StringProperty(name="Picture", description="Name of an image in this file")
     place: StringProperty(
         name="Place", description="An object in whose plane z = 0 the picture lies, seen from where its z points"
     )
 
-    def edited(self, context, ob, content):
-        volume = content.volume.copy()
-        form = forms.volume_of(self._mesh(context, ob, volume), volume)
-        if content.mask is not None:
-            form.subtract(content.mask)
-        volume.add(form) if self.mode == "RAISE" else volume.subtract(form)
-        return Content(volume, content.cuts, content.mask)
+    def begin(self, context):
+        ob, self._before = self.take(context)
+        volume = self._before.volume
+        return TaskJob(forms.task_of(self._mesh(context, ob, volume), volume))
 
-    def tell(self, before, after):
-        changed = abs(after.volume.volume - before.volume.volume)
+    def finish(self, context, job):
+        before, form = self._before, job.result
+        volume = before.volume.copy()
+        if before.mask is not None:
+            form.subtract(before.mask)
+        volume.add(form) if self.mode == "RAISE" else volume.subtract(form)
+        self.keep(volume, before.cuts, before.mask)
+        self._tell_change(abs(volume.volume - before.volume.volume))
+        return {"FINISHED"}
+
+    def _tell_change(self, changed):
         if self.mode == "RAISE" and not changed:
             why = "the stock's box is full there, or protected. Engrave the picture inverted, or take a larger stock"
             self.report({"WARNING"}, f"Nothing was put on: {why}")

@@ -60,6 +60,7 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
         scale = sculpts.shown_mm_per_unit(sculpt.data)
         ob = bpy.data.objects.new(f"{sculpt.name} Mesh", bpy.data.meshes.new(f"{sculpt.name} Mesh"))
         meshes.fill(ob.data, np.asarray(mesh.vertices) / scale, mesh.triangles)
+        ob.data[attributes.ERROR] = float(error)
         sculpts.take_looks(ob, sculpt)
         for collection in sculpt.users_collection:
             collection.objects.link(ob)
@@ -67,12 +68,17 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
         sculpts.select_only(context, ob)
         if self.hide_sculpt:
             sculpt.hide_set(True)
-        count = names.format_count(len(mesh.triangles))
-        self.report({"INFO"}, f"{count} triangles, at most {names.trim(error, 5)} mm from the sculpt")
+        self.report({"INFO"}, said_of(ob.data))
         return {"FINISHED"}
 
     def draw(self, context):
         shared.draw_fields(self, properties.ResultSettings.__annotations__)
+
+
+def said_of(mesh):
+    """What a mesh is beside the sculpt that it was made of."""
+    count = names.format_count(len(mesh.polygons))
+    return f"{count} triangles, at most {names.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
 
 
 def _in_world(context, ob):

@@ -48,6 +48,8 @@ def sculpt_poll(cls, context):
         return deny(cls, "Select a sculpt first, or make a new stock")
     if not object_mode(cls, context):
         return False
+    if ob.override_library or ob.data.override_library:
+        return deny(cls, "The sculpt overrides one of another file, which keeps no edits: make it local first")
     if ob.library or ob.data.library:
         return deny(cls, "The sculpt is linked from another file: make it local first")
     return not busy(cls, context)

@@ -1,15 +1,20 @@
 """New stock, and its picture made anew."""
 
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 import riffler
 from mathutils import Matrix
+from riffler import tasks
 
 from .. import properties
 from ..bl import live, meshes, parts, sculpts, store, units
 from ..core import estimate
 from ..core import units as names
+from ..core.job import DoneJob, TaskJob
 from . import paths, shared
+from .long import LongWork
 
 
 def source_object(context):
@@ -23,58 +28,92 @@ def source_size(ob, scene):
     return tuple(float(d) * units.mm_per_unit(scene) for d in ob.dimensions)
 
 
-class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
+class _New(NamedTuple):
+    """The sculpt that the material becomes."""
+
+    name: str
+    frame: Matrix  # where it stands in the world
+    source: tuple = ()  # what it is made from: name and file, as bpy.data.objects takes them
+    found: dict | None = None  # of a mesh: what from_mesh reports
+
+
+class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operator):
     """Make a block of material, or take the active object as material"""
 
     bl_idname = "riffler.new_stock"
     bl_label = "New Stock"
     bl_options = {"REGISTER", "UNDO"}
+    doing = "Making stock"
+    cancelled = "No stock was made"
 
     @classmethod
     def poll(cls, context):
         return shared.object_mode(cls, context) and not shared.busy(cls, context)
 
     def invoke(self, context, event):
-        done = self.execute(context)
-        if done == {"FINISHED"} and context.area and context.area.type == "VIEW_3D":
-            region = next((r for r in context.area.regions if r.type == "WINDOW"), None)
-            if region:
-                with context.temp_override(region=region):
-                    bpy.ops.view3d.view_selected()
-        return done
+        """Only a mesh takes long; whatever else it is made from is there at once."""
+        long = self.source == "OBJECT" and not _is_its_volume(context, source_object(context))
+        return _viewed(context, super().invoke(context, event) if long else self.execute(context))
 
-    def execute(self, context):
+    def modal(self, context, event):
+        return _viewed(context, super().modal(context, event))
+
+    def begin(self, context):
+        live.end_all()
         make = {"BLOCK": self._block, "OBJECT": self._from_object, "RECORDING": self._from_recording}[self.source]
-        context.window_manager.progress_begin(0, 100)
-        try:
-            live.end_all()
-            ob = make(context)
-        except shared.ERRORS as error:
-            return shared.fail(self, error)
-        finally:
-            context.window_manager.progress_end()
+        self._new, job = make(context)
+        return job
+
+    def lost(self, context):
+        source = self._from()
+        if source is None or source.name not in context.view_layer.objects:
+            return f"No stock was made: {self._new.source[0]} was removed meanwhile"
+        return ""
+
+    def finish(self, context, job):
+        new, source, volume = self._new, self._from(), job.result
+        if new.found is not None:
+            self._check(source, volume)
+        ob = sculpts.new_object(context, new.name, volume, new.frame)
+        if source is not None:
+            if sculpts.is_sculpt(source):
+                sculpts.take_looks(ob, source)
+            source.hide_set(True)
         size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
         triangles = names.format_count(len(ob.data.polygons))
         self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles} triangles")
         return {"FINISHED"}
 
+    def _from(self):
+        """The object that the stock is made from, if it is made from one that is still there."""
+        return bpy.data.objects.get(self._new.source) if self._new.source else None
+
+    def _check(self, source, volume):
+        if volume.volume <= 0:
+            raise ValueError(f"{source.name} has no volume at this pitch: close it, or take a finer one")
+        if self._new.found.get("open_edges"):
+            count = names.format_count(self._new.found["open_edges"])
+            self.report({"WARNING"}, f"{source.name} is not closed: {count} open edges were closed as well as could be")
+
+    # ------------------------------------------------------------------ (what it becomes, the job that makes it)
     def _block(self, context):
         size = np.array([names.clean(s) for s in self.size])
         lower = {"CORNER": 0 * size, "TOP": -size * (0.5, 0.5, 1.0), "CENTRE": -0.5 * size}[self.origin]
         pitch = names.clean(self.pitch)
         estimate.check_surface("The block", size, estimate.box_area(size), pitch)
         volume = riffler.Volume.block(lower, lower + size, pitch, self.directions)
-        return sculpts.new_object(context, "Stock", volume, Matrix.Translation(context.scene.cursor.location))
+        return _New("Stock", _at_cursor(context)), DoneJob(volume)
 
     def _from_object(self, context):
         source = source_object(context)
         if source is None:
             raise ValueError("select the object that is to be the material: a mesh, curve, text, surface or metaball")
-        if sculpts.is_sculpt(source):
-            return self._from_sculpt(context, source)
         # Scale and shear become part of the shape, so that a millimetre of the sculpt is one along every axis.
         place, turn, _ = source.matrix_world.decompose()
         frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
+        return (self._from_sculpt if _is_its_volume(context, source) else self._from_mesh)(context, source, frame)
+
+    def _from_mesh(self, context, source, frame):
         to_stock = meshes.matrix(frame.inverted() @ source.matrix_world)
         to_stock[:3] *= units.mm_per_unit(context.scene)
         mesh = parts.surface(source, context.evaluated_depsgraph_get(), to_stock)
@@ -82,34 +121,19 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
         if not size.all():
             raise ValueError(f"{source.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
         estimate.check_surface(source.name, size, mesh.area, pitch)
-        wm, found = context.window_manager, {}
-        volume = riffler.Volume.from_mesh(
-            mesh, pitch, self.directions, progress=lambda share: wm.progress_update(100 * share), report=found
-        )
-        if volume.volume <= 0:
-            raise ValueError(f"{source.name} has no volume at this pitch: close it, or take a finer one")
-        if found.get("open_edges"):
-            count = names.format_count(found["open_edges"])
-            self.report({"WARNING"}, f"{source.name} is not closed: {count} open edges were closed as well as could be")
-        ob = sculpts.new_object(context, f"{source.name} Stock", volume, frame)
-        source.hide_set(True)
-        return ob
+        new = _New(f"{source.name} Stock", frame, sculpts.key_of(source), {})
+        return new, TaskJob(tasks.from_mesh(mesh, pitch, self.directions, report=new.found))
 
-    def _from_sculpt(self, context, source):
+    def _from_sculpt(self, context, source, frame):
         """Its volume itself: nothing is lost where the pitch stays the same."""
         volume = store.content(source.data).volume.resampled(names.clean(self.pitch), self.directions)
-        place, turn, _ = source.matrix_world.decompose()
-        frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
-        ob = sculpts.new_object(context, f"{source.name} Copy", volume, frame)
-        sculpts.take_looks(ob, source)
-        source.hide_set(True)
-        return ob
+        return _New(f"{source.name} Copy", frame, sculpts.key_of(source)), DoneJob(volume)
 
     def _from_recording(self, context):
         if not self.recording:
             raise ValueError("choose a recording (.rjournal)")
         volume = paths.stock_of_recording(bpy.path.abspath(self.recording))
-        return sculpts.new_object(context, "Stock", volume, Matrix.Translation(context.scene.cursor.location))
+        return _New("Stock", _at_cursor(context)), DoneJob(volume)
 
     def draw(self, context):
         layout = self.layout
@@ -123,6 +147,28 @@ class RIFFLER_OT_new_stock(properties.StockSettings, bpy.types.Operator):
             layout.prop(self, "origin")
         layout.prop(self, "pitch", text="Pitch (mm)")
         layout.prop(self, "directions")
+
+
+def _is_its_volume(context, ob):
+    """Of a sculpt: whether it stands in the world as its volume is, as large, unturned inside out and unmodified."""
+    if not sculpts.is_sculpt(ob) or any(modifier.show_viewport for modifier in ob.modifiers):
+        return False
+    shown, scene = sculpts.shown_mm_per_unit(ob.data), units.mm_per_unit(context.scene)
+    return not sculpts.distorted(ob) and not ob.matrix_world.is_negative and np.isclose(shown, scene, rtol=1e-6)
+
+
+def _at_cursor(context):
+    return Matrix.Translation(context.scene.cursor.location)
+
+
+def _viewed(context, done):
+    """Brings the new sculpt, where one was made, into the view that it was asked for in."""
+    if done == {"FINISHED"} and context.area and context.area.type == "VIEW_3D":
+        region = next((r for r in context.area.regions if r.type == "WINDOW"), None)
+        if region:
+            with context.temp_override(region=region):
+                bpy.ops.view3d.view_selected()
+    return done
 
 
 class RIFFLER_OT_fit_pitch(bpy.types.Operator):

@@ -11,7 +11,7 @@ import riffler
 from ..bl import fixtures, live, sculpts
 from ..core import brush, units
 from ..core.stroke import Sample
-from ..drawing import force, pointer
+from ..drawing import force, pace, pointer
 from ..translations import local
 from . import shared
 
@@ -91,6 +91,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             limit = units.clean(settings.limit)
             self._shown = force.begin(limit, self._brush.tool.diameter, self._run.to_world)
         pointer.held = self._brush
+        pace.begin(self._run.stages)
         self._timer = context.window_manager.event_timer_add(LOOK, window=context.window)
         context.window_manager.modal_handler_add(self)
         _held = self
@@ -201,6 +202,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         global _held
         _held = pointer.held = None
         force.end()
+        pace.end()
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
@@ -235,6 +237,7 @@ def detach():
     if _held is not None:
         _held._give_up(bpy.context)
     force.end()
+    pace.end()
     pointer.held = None
     pointer.kept.clear()
     force.kept.clear()

@@ -64,17 +64,14 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
         found = report.findings
         findings.write(settings.findings, [_entry(f, setup) for f in found[:MOST]])
         settings.index = -1
-        if setup.text:
-            settings.text = findings.text_of(settings.text, setup.name, setup.text)
-        elif settings.text is not None:
-            settings.text = None  # lines of another program lead astray
+        kept = _show_text(settings, setup)
         coloured = self._colour(context, report)
-        not_checked = " ".join([*report.not_checked, *coloured])
+        more = " ".join([*report.not_checked, *coloured, *kept])
         if found:
             settings.said = f"{setup.name}: {names.format_count(len(found))} finding{'s' * (len(found) > 1)}"
         else:
             settings.said = f"{setup.name}: nothing was found" + ("" if report.passed else ", not all was checked")
-        self.report({"INFO"} if report.passed else {"WARNING"}, f"{settings.said}. {not_checked}".strip())
+        self.report({"INFO"} if report.passed else {"WARNING"}, f"{settings.said}. {more}".strip())
         return {"FINISHED"}
 
     def _colour(self, context, report):
@@ -100,6 +97,15 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
 
     def draw(self, context):
         shared.draw_fields(self, ("source", "gouge", "rest", "coloured", "scale", "hide"))
+
+
+def _show_text(settings, setup):
+    """Gives the list the program's lines; returns what became of those of before, as sentences."""
+    if not setup.text:
+        settings.text = None  # lines of another program lead astray
+        return []
+    settings.text, edited = findings.text_of(settings.text, setup.name, setup.text)
+    return [f"The text {edited} was edited and is kept: the lines are in {settings.text.name}."] if edited else []
 
 
 def _left(context, surface, stock):

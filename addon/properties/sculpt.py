@@ -93,7 +93,8 @@ class RifflerSculpt(bpy.types.PropertyGroup):
     fixtures: PointerProperty(
         name="Fixtures",
         type=bpy.types.Collection,
-        description="The tool is lifted along its axis out of this collection's meshes; empty: nothing is in the way",
+        description="The tool stays out of this collection's meshes: the pointer's is lifted along its axis, a pen's "
+        "hand is pushed back; empty: nothing is in the way",
     )
     show_force: BoolProperty(
         name="Show force", default=True, description="Draw force, torque and a gauge while the tool cuts"
@@ -105,7 +106,8 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         max=1e5,
         precision=1,
         step=100,
-        description="In N: the gauge's mark, beyond which force is drawn in red",
+        description="In N: the gauge's mark, beyond which force is drawn in red; torque's is that at the tool's "
+        "diameter",
     )
     radius: FloatProperty(
         name="Radius",

@@ -5,7 +5,7 @@ import bpy
 from .. import properties
 from ..bl import attributes
 from ..operators import result
-from .panels import Sidebar, give
+from .panels import Sidebar, give, lines
 
 
 class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
@@ -24,6 +24,10 @@ class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
                 column.prop(settings, key)
         op = layout.operator(result.RIFFLER_OT_to_mesh.bl_idname, icon="MESH_DATA")
         give(op, settings, properties.ResultSettings)
+        made = context.object.data if context.object is not None and context.object.type == "MESH" else None
+        if made is not None and attributes.ERROR in made:
+            lines(layout, result.said_of(made), icon="INFO")
+            layout.label(text="Adjust Last Operation (F9) tries others")
         layout.separator()
         layout.prop(settings, "reference")
         layout.prop(settings, "scale")
@@ -31,7 +35,7 @@ class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
         op = row.operator(result.RIFFLER_OT_show_deviation.bl_idname, icon="COLOR")
         op.reference = settings.reference.name if settings.reference else ""
         op.scale = settings.scale
-        if context.object is not None and context.object.type == "MESH" and attributes.SCALE in context.object.data:
+        if made is not None and attributes.SCALE in made:
             row.operator(result.RIFFLER_OT_hide_deviation.bl_idname, text="", icon="X")
 
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..bl import live, sculpts
-from ..core import presets
+from ..core import presets, units
 from ..translations import CONTEXT
 from .panels import Sidebar, lines
 
@@ -72,9 +72,24 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
         run = live.of(sculpts.active(context))
         if run is None:
             return
-        times = run.stages.milliseconds()
-        if any(times.values()):
-            lines(layout, "A look: " + ", ".join(f"{name} {ms:.1f} ms" for name, ms in times.items()), icon="TIME")
+        if told := looks(run.stages):
+            lines(layout, *told, icon="TIME")
+
+
+def looks(stages):
+    """What a look takes, and what it moves, in lines as short as the panel is wide. None where nobody has looked."""
+    times, counts = stages.milliseconds(), stages.per_look()
+    whole = sum(times.values())
+    if not whole:
+        return []
+    shares = {name: f"{name} {100 * ms / whole:.0f} %" for name, ms in times.items()}
+    return [
+        f"A look: {whole:.1f} ms",
+        f"{shares['cut']}, {shares['mesh']}",
+        f"{shares['transfer']}, {shares['draw']}",
+        f"{counts['bricks']:.1f} tiles, {counts['chunks']:.1f} chunks",
+        f"{units.format_count(counts['triangles'])} triangles, {units.format_bytes(counts['bytes'])}",
+    ]
 
 
 class RIFFLER_MT_sculpt_pie(bpy.types.Menu):
