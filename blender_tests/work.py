@@ -1,6 +1,9 @@
 """An operator whose long work does what a test says, through the add-on's own shell for native tasks."""
 
+from contextlib import contextmanager
+
 import bpy
+from riffler import tasks
 
 import support
 
@@ -26,6 +29,16 @@ class Task:
         if isinstance(self.outcome, Exception):
             raise self.outcome
         return self.outcome
+
+
+@contextmanager
+def meshes_taken_by(task):
+    """What makes a volume of a mesh gets `task` instead of the native one."""
+    native, tasks.from_mesh = tasks.from_mesh, lambda *args, **kwargs: task
+    try:
+        yield
+    finally:
+        tasks.from_mesh = native
 
 
 class Stage:

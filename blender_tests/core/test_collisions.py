@@ -60,6 +60,11 @@ def test_runs_end_with_their_path():
     assert collisions.runs(frames, below, 0, ends=[2, 4]) == [(1, 3), (13, 14)]
 
 
+def test_runs_of_several_are_one_list_in_order():
+    assert collisions.union([[(40, 50)], [], [(1, 3), (45, 60), (70, 70)], [(3, 4)]]) == [(1, 4), (40, 60), (70, 70)]
+    assert collisions.union([]) == []
+
+
 @pytest.mark.parametrize("most", [1, 2, 5, 64])
 def test_too_many_runs_are_merged_over_the_least_gaps(most):
     rng = np.random.default_rng(4)

@@ -38,6 +38,8 @@ def test_a_short_arrow_is_a_smaller_head_and_none_is_nothing():
     assert np.abs(tiny[..., :2]).max() < 0.01
     assert glyphs.arrow((1, 2, 3), (1, 2, 3), 1.0).shape == (0, 3, 3)
     assert glyphs.arc_arrow((0, 0, 0), (0, 0, 1), 5, 0.0, 0.2).shape == (0, 3, 3)
+    bent = glyphs.arc_arrow((0, 0, 0), (0, 0, 1), 5, 0.002, 1.0).reshape(-1, 3)
+    assert np.ptp(bent, axis=0).max() < 0.03  # 0.01 long
 
 
 @pytest.mark.parametrize("angle", [0.05, 0.5, 2.0, 5.5])

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from addon.core.job import Cut, CutJob, RefreshClock, TaskJob, run_through, slice_budget
+from addon.core.job import Cut, CutJob, DoneJob, RefreshClock, TaskJob, run_through, slice_budget
 
 
 class Clock:
@@ -127,6 +127,12 @@ def test_run_through_tells_how_far_it_is_and_ends_where_the_slices_end():
     run_through(j, shares.append)
     assert len(volume.log) == 200 and j.text == "Move 200 of 200"
     assert len(shares) > 3 and shares == sorted(shares) and shares[0] > 0 and shares[-1] < 1
+
+
+def test_what_was_made_at_once_needs_no_step():
+    shares, j = [], DoneJob("made")
+    run_through(j, shares.append)
+    assert j.result == "made" and shares == [] and j.fraction == 1
 
 
 class Task:

@@ -35,6 +35,11 @@ def test_stages_tell_the_median_look_and_count():
     stages.count(bricks=3)
     assert stages.take_counts() == {"moves": 0, "bricks": 5, "chunks": 1, "triangles": 0, "bytes": 0}
     assert not any(stages.take_counts().values())
+    stages.add("draw", 0.5)
+    stages.looked()
+    assert stages.newest == {"cut": 0.0, "mesh": 0.0, "transfer": 0.0, "draw": 0.5}
+    assert stages.per_look()["bricks"] == pytest.approx(5 / 3)  # of the three looks that are kept
+    assert not any(Stages().per_look().values())
     assert Stages().milliseconds() == dict.fromkeys(("cut", "mesh", "transfer", "draw"), 0.0)
 
 

@@ -1,25 +1,40 @@
-"""What the documents call from a script is there: operators, their settings, and what those may be."""
+"""The documents' examples for Blender: what they call is there with its settings, and each page's run as one script in
+the scene that the page speaks of."""
 
 import ast
 import re
+import tempfile
 from pathlib import Path
 
 import bpy
+import numpy as np
+import plans
+import programs
+import riffler
 
 import support
 
 DOCS = Path(support.__file__).resolve().parent.parent / "docs"
+MARK = "<!-- not run: it runs in Blender's tests -->"  # what tools/check_docs.py says of them
+BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def blocks():
+    """(page, line of its first line, the line above its fence, text) of each Python example that is Blender's."""
+    for page in sorted(DOCS.glob("*.md")):
+        text = page.read_text()
+        for found in BLOCK.finditer(text):
+            if "bpy." in found[1]:
+                before = text[: found.start()].splitlines()
+                yield page.name, len(before) + 2, before[-1], found[1]
 
 
 def calls():
-    """(page, the call's text, operator, settings) of each bpy.ops.riffler.… in the Python examples."""
-    for page in sorted(DOCS.glob("*.md")):
-        for block in re.findall(r"^```python\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL):
-            if "bpy.ops.riffler." not in block:
-                continue
-            for node in ast.walk(ast.parse(block)):
-                if isinstance(node, ast.Call) and ast.unparse(node.func).startswith("bpy.ops.riffler."):
-                    yield page.name, ast.unparse(node), node.func.attr, node.keywords
+    """(page, the call's text, operator, settings) of each bpy.ops.riffler.… in the examples."""
+    for page, _, _, block in blocks():
+        for node in ast.walk(ast.parse(block)):
+            if isinstance(node, ast.Call) and ast.unparse(node.func).startswith("bpy.ops.riffler."):
+                yield page, ast.unparse(node), node.func.attr, node.keywords
 
 
 def test_operators_of_the_examples_take_what_they_are_given():
@@ -38,3 +53,94 @@ def test_operators_of_the_examples_take_what_they_are_given():
 
 def test_a_call_that_is_not_there_is_found():
     assert "gone_to_lunch" not in dir(bpy.ops.riffler)
+
+
+# ---------------------------------------------------------------------- their scripts
+
+
+def run(page):
+    """The page's examples in their order, with the lines' numbers as the page has them."""
+    lines = []
+    for name, first, _, text in blocks():
+        if name == page:
+            lines += [""] * (first - 1 - len(lines)) + text.splitlines()
+    exec(compile("\n".join(lines), str(DOCS / page), "exec"), {"bpy": bpy})
+
+
+def saved(folder):
+    """The scene has a file, beside which // is."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
+
+
+def engrave(folder):
+    """The name is cut along another tool's recording, on a stock like its own."""
+    support.scale(1)
+    saved(folder)
+    support.stock(pitch=0.25)
+    line = support.curve("Text", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    bpy.ops.riffler.tool_preset(name="Engraver 60°, ball R0.1")
+    bpy.ops.riffler.cut_curve(curve=line.name, depth=0.6)
+    bpy.ops.riffler.export_recording(filepath=str(folder / "name.rjournal"))
+    (first,) = support.content(bpy.context.object).cuts
+    ob = support.stock(pitch=0.25)
+    bpy.ops.riffler.tool_preset(name="Ball 3 mm")
+    run("engrave.md")
+    (cut,) = support.content(ob).cuts
+    assert cut.tool["diameter"] == 3 != first.tool["diameter"] and np.array_equal(cut.poses, first.poses)
+
+
+def planning(folder):
+    """The step, and a stock with half a millimetre on it: verifying finds that what no pencil cut takes is left."""
+    support.scale(1)
+    plans.part_object().name = "Part"
+    programs.stock()
+    saved(folder)
+    run("planning.md")
+    (ob,) = support.part("bl.plan_store").in_scene(bpy.context.scene)
+    plan = programs.content(ob)
+    assert {72, 100} <= set(plan.paths[0].keys)
+    read = riffler.Program.read(folder / "step.ngc", machine="linuxcnc-xyzac")
+    assert max(np.linalg.norm(read.poses - row, axis=1).min() for row in plan.cl[0]) < 2e-4
+    assert support.part("bl.simulating").active() is None
+    settings = programs.settings()
+    assert "step.ngc" in settings.said and settings.index == 0 and settings.findings[0].kind == "rest"
+
+
+def sessions(folder):
+    """The hand that is simulated presses its button for four seconds of eight; a busy machine takes the force away."""
+    support.scale(1)
+    ob = support.stock(size=(60, 60, 20))
+    saved(folder)
+    for _ in range(3):
+        run("sessions.md")
+        support.part("bl.live").end_all()
+        if cuts := support.content(ob).cuts:
+            break
+    path = min(folder.glob("Stock *.rjournal"))
+    assert len(riffler.Journal.read(path).strokes) == len(cuts) > 0
+
+
+SCENES = {"engrave.md": engrave, "planning.md": planning, "sessions.md": sessions}
+
+
+def test_every_example_has_a_scene_and_says_where_it_runs():
+    assert {page for page, *_ in blocks()} == set(SCENES)
+    for page, first, above, _ in blocks():
+        assert above == MARK, f"docs/{page}:{first - 1}: put {MARK} above it"
+
+
+def in_its_scene(page):
+    with tempfile.TemporaryDirectory() as folder:
+        SCENES[page](Path(folder))
+
+
+def test_the_example_of_engraving_runs():
+    in_its_scene("engrave.md")
+
+
+def test_the_examples_of_planning_run():
+    in_its_scene("planning.md")
+
+
+def test_the_example_of_sessions_runs():
+    in_its_scene("sessions.md")

@@ -240,6 +240,77 @@ def test_a_saved_file_has_the_last_stroke_and_opens_without_chunks():
     nothing_is_left()
 
 
+def test_a_file_that_cannot_be_opened_takes_no_work_with_it():
+    name = sculpt()
+    stroke(name, 2)
+    last = stroke(name, 3)
+    broken = support.out("broken.blend")
+    with open(broken, "wb") as file:
+        file.write(b"no .blend at all")
+    for k, path in enumerate((broken, support.out("there_is_none.blend"))):
+        support.refused(lambda path=path: bpy.ops.wm.open_mainfile(filepath=path))
+        assert live().content(bpy.data.objects[name]).volume.to_bytes() == last
+        live().end_all()  # where the add-on was told that another file would come, it has ended already
+        assert support.content(bpy.data.objects[name]).volume.to_bytes() == last
+        matches_its_volume(name)
+        nothing_is_left()
+        last = stroke(name, 5 + k)  # and it goes on
+
+
+def outlines():
+    views = support.part("bl.chunks").views()
+    return [space.shading.show_object_outline for _, _, space in views]
+
+
+def test_outlines_are_there_again_whatever_ends_the_work():
+    """No undo brings a view's settings back."""
+    views = [space.shading for _, _, space in support.part("bl.chunks").views()]
+    for shading, on in zip(views, [True, False] * len(views), strict=False):
+        shading.show_object_outline = on
+    before = outlines()
+    assert any(before), "this scene has no 3D view that could draw outlines"
+    name = sculpt()
+    for _ in range(2):
+        stroke(name, 1)
+        assert not any(outlines())
+        bpy.ops.ed.undo()
+        assert outlines() == before
+        bpy.ops.ed.redo()
+        assert not any(outlines())
+        bpy.ops.ed.undo()
+    stroke(name, 1)
+    live().end_all()
+    assert outlines() == before
+
+
+def test_chunks_that_a_person_deletes_end_the_work_and_the_sculpt_is_seen():
+    name = sculpt()
+    last = stroke(name, 1)
+    before = outlines()
+    for collection in [c for c in bpy.data.collections if support.part("bl.chunks").MARK in c]:
+        for ob in list(collection.objects):
+            bpy.data.objects.remove(ob)
+        bpy.data.collections.remove(collection)
+    live().end_all()
+    ob = bpy.data.objects[name]
+    assert not ob.hide_get() and support.content(ob).volume.to_bytes() == last
+    matches_its_volume(name)
+    assert all(now or not was for now, was in zip(outlines(), before, strict=True))
+
+
+def test_where_a_sculpt_was_hidden_it_stays_hidden():
+    name = sculpt()
+    ob, scene = bpy.data.objects[name], bpy.context.scene
+    other = scene.view_layers.new("Other")
+    ob.hide_set(True, view_layer=other)
+    support.push("hidden")
+    stroke(name, 1)
+    live().end_all()
+    ob = bpy.data.objects[name]
+    assert not ob.hide_get() and ob.hide_get(view_layer=scene.view_layers["Other"])
+    scene.view_layers.remove(scene.view_layers["Other"])
+
+
 def test_a_copy_of_what_is_shown_is_a_persons():
     """In the collection or out of it, with a mesh of its own or without one. What is shown itself goes, wherever it
     was put meanwhile."""

@@ -10,6 +10,7 @@ import bmesh
 import bpy
 import numpy as np
 import plans
+import programs
 
 import support
 
@@ -278,30 +279,36 @@ def exports():
     return {name: getattr(bpy.ops.riffler, f"export_{name}") for name in ("stl", "3mf", "nc", "recording")}
 
 
+def writes_only_where_it_may(name, call):
+    """An export: what folders it refuses, with which words; and that it writes where it may."""
+    folder = Path(support.out("locked"))
+    folder.mkdir(exist_ok=True)
+    path, access = folder / f"x.{name}", os.access
+    path.unlink(missing_ok=True)
+    refused(lambda: call(filepath="/nowhere/x", check_existing=False), "no folder /nowhere", "choose another")
+    os.access = lambda place, mode: str(place) != str(folder) and access(place, mode)  # the tests may run as root
+    try:
+        refused(lambda: call(filepath=str(path), check_existing=False), "may not be written", "another")
+    finally:
+        os.access = access
+    assert not path.exists()
+    assert call(filepath=str(path), check_existing=False) == {"FINISHED"} and path.stat().st_size > 100
+    path.unlink()
+
+
 def test_folders_that_are_missing_or_may_not_be_written():
     support.scale(1)
     ob = support.stock()
     line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
     bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT)
-    folder = Path(support.out("locked"))
-    folder.mkdir(exist_ok=True)
-    access = os.access
     for name, call in exports().items():
-        path = folder / f"x.{name}"
-        path.unlink(missing_ok=True)
-        refused(lambda c=call: c(filepath="/nowhere/x", check_existing=False), "no folder /nowhere", "choose another")
-        os.access = lambda place, mode: str(place) != str(folder) and access(place, mode)  # the tests may run as root
-        try:
-            refused(lambda c=call, p=path: c(filepath=str(p), check_existing=False), "may not be written", "another")
-        finally:
-            os.access = access
-        assert not path.exists()
-        assert call(filepath=str(path), check_existing=False) == {"FINISHED"} and path.stat().st_size > 100
-        path.unlink()
+        writes_only_where_it_may(name, call)
     assert support.content(ob).cuts
     pen = {"device": "simulated", "record": True, "folder": "/nowhere", "seconds": 1.0}
     refused(lambda: bpy.ops.riffler.pen_sculpt(**pen), "no folder /nowhere", "choose another")
     refused(lambda: bpy.ops.riffler.plan_tool_save(folder="/proc/x"), "/proc/x", "choose a folder that can be written")
+    programs.resolved()
+    writes_only_where_it_may("plan.ngc", bpy.ops.riffler.plan_nc)
 
 
 def test_a_sculpt_of_a_newer_version_is_kept_and_named():

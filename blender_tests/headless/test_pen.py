@@ -1,124 +1,31 @@
-"""Sculpting with a device: the simulated pen and recordings in real time, and a mouse as a device, stroke by stroke."""
+"""A device sculpts: its strokes, their undo, what they leave alone, and the journal that tells of them."""
 
 import json
 import time
-from pathlib import Path
 
 import bpy
 import numpy as np
 import riffler
 import sculpting
+from handling import (
+    NAME,
+    Hand,
+    folder,
+    journals,
+    lowered,
+    no_session,
+    nothing_is_left_but_redo,
+    now,
+    now_of,
+    sculpt,
+    sculpt_for,
+    sessions,
+    until_cut,
+    work,
+)
 from sculpting import is_shown, live, matches_its_volume, nothing_is_left
 
 import support
-
-FAST = {"device": "simulated", "gap": 0.0, "scale": 1.0, "removal_constant": 0.001}
-NAME = "Stock"
-
-
-def sculpt(directions="z"):
-    return bpy.data.objects[sculpting.sculpt(directions=directions)]
-
-
-def sculpt_for(seconds, **more):
-    return bpy.ops.riffler.pen_sculpt("EXEC_DEFAULT", True, seconds=seconds, tool=support.BALL, **{**FAST, **more})
-
-
-def until_cut(**more):
-    """A hand of its own needs some seconds, and a busy machine takes the force away now and then."""
-    for _ in range(4):
-        if sculpt_for(4.0, **more) == {"FINISHED"}:
-            return
-    raise AssertionError("the simulated hand has cut nothing four times")
-
-
-def sessions():
-    return support.part("bl.pen_session")
-
-
-def no_session():
-    assert sessions().running is None and not bpy.context.window_manager.riffler.sculpting
-    left = [ob.name for ob in bpy.data.objects if ob.name.startswith("Riffler Tool") and ob.visible_get()]
-    assert not left, left
-
-
-def work():
-    return live().of(bpy.data.objects[NAME])
-
-
-def now():
-    return live().content(bpy.data.objects[NAME]).volume.to_bytes()
-
-
-def folder(name):
-    path = Path(support.out(name))
-    path.mkdir(exist_ok=True)
-    for file in path.iterdir():
-        file.unlink()
-    return path
-
-
-def journals():
-    keeping = support.part("bl.keeping")
-    return [j for j in keeping._open if work() is not None and j is work().keeping.journal]
-
-
-def lowered(directions="z"):
-    """A sculpt with air above z = 16."""
-    ob = sculpt(directions)
-    run = live().begin(bpy.context, ob)
-    run.begin_stroke()
-    run.carve(riffler.Tool.flat(150, 40), np.array([[-80, 30, 16, 0, 0, 1], [140, 30, 16, 0, 0, 1.0]]))
-    run.finish_stroke(bpy.context, "lowered")
-    return ob
-
-
-class Hand:
-    """A session whose device is a mouse that a test moves: a stroke is a groove along x, 1 mm deep, or in mode "add" a
-    ridge on what is `lowered`."""
-
-    def __init__(self, ob, record=None, mode="remove"):
-        tool = support.part("operators.pen").tool_for(mode, riffler.Tool.ball(6, 30), 0.5)
-        self.pen, self._time = riffler.pen.Pointer("mouse"), 0.0
-        self.pen.set_frame(origin=(0, 0, 17 if mode == "add" else 20), depth=1.0)
-        self._give(-10, 0, 0)
-        options = {"material": riffler.Material(removal_constant=1e-5), "stiffness": 5.0, "mode": mode}
-        self.session = sessions().PenSession(bpy.context, ob, self.pen, tool, options, record)
-        support.push("Sculpt with Pen")
-
-    def _give(self, x, y, pressed):
-        self._time += 0.004
-        self.pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=self._time)
-        time.sleep(0.004)
-
-    def down(self, y, first=5, last=45):
-        """The hand comes and cuts; it does not let go."""
-        self._give(first, y, 0)
-        time.sleep(0.02)
-        for x in np.arange(first, last, 1.0):
-            self._give(x, y, 1)
-
-    def up(self, x=60, y=0):
-        for _ in range(5):
-            self._give(x, y, 0)
-
-    def look(self, done, seconds=20.0):
-        end = time.monotonic() + seconds
-        while not done():
-            assert time.monotonic() < end, "nothing came of it"
-            if not self.session.look():
-                return False
-            time.sleep(0.005)
-        return True
-
-    def stroke(self, y):
-        """The bytes of the volume after it."""
-        self.session.look()
-        before = self.session.count
-        self.down(y)
-        self.up(y=y)
-        assert self.look(lambda: self.session.count > before and not self.session.run.in_stroke)
-        return now()
 
 
 def test_a_stroke_with_the_simulated_pen_is_in_volume_mesh_recording_and_cuts():
@@ -188,14 +95,6 @@ def test_each_stroke_is_an_undo_step_and_a_walk_back_and_on_has_the_volumes_to_t
     live().end_all()
     matches_its_volume(NAME)
     nothing_is_left()
-
-
-def now_of(ob):
-    return live().content(ob).volume.to_bytes()
-
-
-def nothing_is_left_but_redo():
-    assert not support.part("bl.chunks").shown() and bpy.data.objects[NAME].visible_get()
 
 
 def test_an_undo_in_the_middle_of_a_stroke_takes_that_stroke_back_and_the_hand_goes_on():
@@ -449,198 +348,3 @@ def test_a_state_that_memory_has_no_more_is_told_by_the_sessions_journal():
     hand.session.finish()
     live().end_all()
     nothing_is_left()
-
-
-def test_a_session_that_cuts_nothing_changes_nothing():
-    ob = sculpt()
-    key, before = support.part("bl.store").identity(ob.data), now()
-    place = folder("air")
-    assert sculpt_for(0.3, gap=500.0, record=True, folder=str(place)) == {"CANCELLED"}
-    no_session()
-    live().end_all()
-    assert support.part("bl.store").identity(ob.data) == key and now() == before
-    assert not list(place.iterdir())
-    matches_its_volume(NAME)
-    nothing_is_left()
-
-
-def test_a_recording_is_a_device_and_ends_by_itself():
-    sculpt()
-    x = np.linspace(0, 1, 500)
-    journal = riffler.Journal()
-    journal.add_tool(1, {"kind": "ball", "diameter": 6.0, "length": 30.0})
-    poses = np.c_[10 + 40 * x, 30 + 0 * x, 19 + 0 * x, 0 * x, 0 * x, 1 + 0 * x]
-    journal.add_stroke(1, poses, times=2 * x)
-    path = support.out("hand.rjournal")
-    journal.write(path)
-    begin = time.monotonic()
-    assert sculpt_for(60.0, device="recording", recording=path, stiffness=5.0) == {"FINISHED"}
-    assert time.monotonic() - begin < 30
-    no_session()
-    live().end_all()
-    low = np.min([c.poses[:, 2].min() for c in support.content(bpy.data.objects[NAME]).cuts])
-    assert 18.9 < low < 19.6, low
-    matches_its_volume(NAME)
-    nothing_is_left()
-
-
-def test_what_is_shown_follows_and_somebody_who_removes_it_spoils_nothing():
-    ob = sculpt()
-    hand = Hand(ob)
-    assert ob.hide_get() and bpy.context.object == ob
-    hand.down(20)
-    assert hand.look(lambda: hand.session.run.in_stroke)
-    is_shown(NAME)
-    tool = bpy.data.objects["Riffler Tool"]
-    assert np.allclose(tool.matrix_world.translation, hand.session.run.pose[:3], atol=1e-4)
-    pushed = hand.session.run.push
-    assert pushed.shape == (2, 3) and np.isfinite(pushed).all()
-    chunks = [c for c in support.part("bl.chunks").collection_of(ob.riffler.mark).objects if "riffler_chunk" in c]
-    for thing in (tool, *chunks[::2]):
-        bpy.data.objects.remove(thing)
-    hand.up()
-    assert hand.look(lambda: hand.session.count == 1)
-    last = hand.stroke(40)
-    hand.session.finish()
-    no_session()
-    live().end_all()
-    assert now() == last
-    matches_its_volume(NAME)
-    nothing_is_left()
-
-
-def test_the_force_on_the_tool_is_against_its_way_and_the_materials():
-    """Removal force: the constant times what is taken in a second, against the motion (docs/methods.md)."""
-    sculpt()
-    hand, pushes = Hand(bpy.data.objects[NAME]), []
-    run = hand.session.run
-    take = run._take
-    columns = ("tool_forces", "poses", "starts", "removed", "dt")
-    run._take = lambda frame: (take(frame), pushes.append([getattr(frame, column) for column in columns]))
-    hand.down(20)
-    hand.up()
-    assert hand.look(lambda: hand.session.count == 1)
-    force, ends, starts, removed, dt = (np.concatenate([p[k] for p in pushes]) for k in range(5))
-    cut = removed > 1e-3
-    assert cut.sum() > 10
-    way = (ends - starts)[:, :3]
-    along = np.einsum("ij,ij->i", force[cut][:, :3], way[cut])
-    assert (along[1:] < 0).all()
-    sizes = np.linalg.norm(force[cut][1:, :3], axis=1)
-    assert np.allclose(sizes, 1e-5 * removed[cut][1:] / dt[cut][1:], rtol=0.2)
-    hand.session.finish()
-    live().end_all()
-
-
-def test_saving_ends_it_first_and_a_file_has_no_picture_of_it():
-    sculpt()
-    hand = Hand(bpy.data.objects[NAME])
-    hand.stroke(10)
-    hand.down(30)  # in the middle of a stroke
-    assert hand.look(lambda: hand.session.run.in_stroke)
-    path = support.out("during.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=path)
-    assert hand.session.ended and hand.session.count == 2
-    made = now()
-    bpy.ops.wm.open_mainfile(filepath=path)
-    no_session()
-    nothing_is_left()
-    assert now() == made
-    matches_its_volume(NAME)
-
-
-def test_another_file_ends_it():
-    hand = Hand(sculpt())
-    hand.down(10)
-    assert hand.session.look()
-    bpy.ops.wm.read_homefile()
-    assert hand.session.ended
-    no_session()
-    nothing_is_left()
-
-
-def test_a_sculpt_that_is_removed_ends_it_and_an_undo_brings_both_back_but_the_session():
-    ob = sculpt()
-    hand = Hand(ob)
-    last = hand.stroke(10)
-    bpy.data.objects.remove(ob)
-    assert not hand.session.look() and hand.session.ended
-    no_session()
-    nothing_is_left()
-    support.push("removed")
-    bpy.ops.ed.undo()
-    assert now() == last
-    no_session()
-    is_shown(NAME)
-    live().end_all()
-    matches_its_volume(NAME)
-
-
-def test_a_sculpt_that_is_changed_meanwhile_keeps_that():
-    ob = sculpt()
-    hand = Hand(ob)
-    hand.stroke(10)
-    volume = riffler.Volume.block((0, 0, 0), (60, 60, 10), 0.5, "z")
-    support.part("bl.sculpts").commit(ob.data, support.part("core.cache").Content(volume), 1.0)
-    assert not hand.session.look()
-    no_session()
-    assert support.content(ob).volume.volume == 36000
-    nothing_is_left()
-
-
-def test_a_device_that_fails_ends_it_and_what_was_made_stays():
-    sculpt()
-    hand = Hand(bpy.data.objects[NAME])
-    first = hand.stroke(10)
-    work().volume.subtract(riffler.Volume.block((0, 0, 0), (60, 60, 20), 0.5, "z"))  # somebody spoils it
-    try:
-        hand.session.look()
-    except RuntimeError as error:
-        assert "somebody else" in str(error)
-        hand.session.fail(error)
-    no_session()
-    support.push("spoiled")
-    bpy.ops.ed.undo()
-    assert now() == first
-    is_shown(NAME)
-    live().end_all()
-    nothing_is_left()
-
-
-def test_nothing_else_takes_the_sculpt_meanwhile_and_disabling_the_addon_ends_it():
-    ob = sculpt()
-    name = ob.name
-    hand = Hand(ob)
-    last = hand.stroke(10)
-    assert not bpy.ops.riffler.cut_curve.poll() and not bpy.ops.riffler.new_stock.poll()
-    assert not bpy.ops.riffler.stroke.poll()
-    assert bpy.ops.riffler.pen_sculpt.poll() and bpy.ops.riffler.pen_stop.poll()
-    assert bpy.ops.riffler.pen_stop() == {"FINISHED"} and hand.session.ended
-    assert not bpy.ops.riffler.pen_stop.poll() and bpy.ops.riffler.cut_curve.poll() is not None
-    no_session()
-    hand = Hand(ob)
-    bpy.ops.preferences.addon_disable(module=support.MODULE)
-    assert hand.session.ended
-    bpy.ops.preferences.addon_enable(module=support.MODULE)
-    assert bpy.data.objects[name].visible_get() and now() == last
-    no_session()
-    nothing_is_left()
-
-
-def test_what_is_refused_changes_nothing():
-    ob = sculpt()
-    key, co = support.part("bl.store").identity(ob.data), support.coordinates(ob.data)
-    for settings, word in (
-        ({"device": "riffler-pen"}, "plugged in"),
-        ({"device": "recording", "recording": ""}, "recording"),
-        ({"device": "recording", "recording": "/nowhere/x.rjournal"}, "x.rjournal"),
-        ({"record": True, "folder": "//"}, "save the .blend"),
-        ({"record": True, "folder": "/nowhere"}, "/nowhere"),
-        ({"stiffness": 1e-3, "start": "CURSOR", "tool": '{"kind": "spoon"}'}, "spoon"),
-    ):
-        support.refused(lambda s=settings: bpy.ops.riffler.pen_sculpt(seconds=0.2, **{**FAST, **s}), word)
-        no_session()
-        nothing_is_left()
-    support.refused(lambda: bpy.ops.riffler.pen_sculpt(tool=support.BALL), "seconds")
-    assert support.part("bl.store").identity(ob.data) == key
-    assert np.array_equal(support.coordinates(ob.data), co)

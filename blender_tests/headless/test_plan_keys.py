@@ -148,6 +148,26 @@ def test_colliding_frames_are_marked_and_looked_at_again_where_keys_change():
     assert state(ob).colliding == [] and markers() == [(5, "mine")] and state(ob).looks == looks
 
 
+def test_marks_of_one_plan_stay_where_another_is_looked_at():
+    part = plans.part_object()
+    first, second = (plans.on_timeline(chosen=plans.paths()[:1]) for _ in range(2))
+    bpy.context.scene.riffler.plan.part = part
+    insert(pair(first)[0], 73, (0, 1, 0.2))
+    support.select(first)
+    bpy.ops.riffler.plan_check()
+    marked = markers()
+    assert len(marked) == 1 and len(state(first).colliding) == 1
+    support.select(second)
+    bpy.ops.riffler.plan_check()
+    assert state(second).colliding == [] and markers() == marked
+    insert(pair(second)[0], 20, (0, 1, 0.2))
+    assert len(state(second).colliding) == 1 and markers()[0][0] == state(second).colliding[0][0] < marked[0][0]
+    remove(pair(second)[0], 20)
+    assert markers() == marked
+    remove(pair(first)[0], 73)
+    assert markers() == []
+
+
 def test_only_paths_whose_keys_changed_are_looked_at():
     part = plans.part_object()
     ob = plans.on_timeline()

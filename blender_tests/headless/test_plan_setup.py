@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -212,6 +213,48 @@ def test_shank_and_holder_are_put_on_and_saved():
     bpy.ops.riffler.plan_assembly(shank=0, holder=0)
     bare = riffler.Tool.from_dict(settings().tool_dict())
     assert bare.shank == [] and bare.holder == []
+
+
+STEPPED = [(50, 10, 60, 25), (60, 25, 65, 25), (65, 15, 100, 15)]
+NECKED = [(25, 2, 35, 3), (35, 3, 50, 3)]
+
+
+def assembled(**changed):
+    """Shank and holder of a stepped tool, once the dialog with its sizes was closed by OK, those `changed`."""
+    tool = riffler.Tool.ball(diameter=6, length=25).with_shank(NECKED).with_holder(STEPPED)
+    settings().take(tool.to_dict())
+    sizes = {"shank": 4, "reach": 50, "holder": 20, "upper": 30, "height": 50}
+    assert bpy.ops.riffler.plan_assembly(**{**sizes, **changed}) == {"FINISHED"}
+    tool = riffler.Tool.from_dict(settings().tool_dict())
+    return tool.shank, tool.holder
+
+
+def test_a_stepped_shank_or_holder_keeps_its_pieces_where_its_sizes_stay():
+    assert assembled() == (NECKED, STEPPED)
+    shank, holder = assembled(reach=57.3)
+    assert shank == [(25, 2, 35, 3), (35, 3, 57.3, 3)]
+    assert holder == [(57.3, 10, 67.3, 25), (67.3, 25, 72.3, 25), (72.3, 15, 107.3, 15)]
+    assert assembled(upper=32) == (NECKED, [(50, 10, 100, 16)])
+    assert assembled(shank=6) == ([(25, 3, 50, 3)], STEPPED)
+    assert assembled(shank=0) == ([], STEPPED) and assembled(holder=0) == (NECKED, [])
+    support.refused(lambda: assembled(reach=33), "begins at 35 mm", "more reach")
+
+
+def test_the_dialog_says_which_pieces_become_one():
+    assembled()
+    operator = support.part("operators.plan_setup").RIFFLER_OT_plan_assembly
+
+    def said(**changed):
+        told = []
+        layout = SimpleNamespace(prop=lambda *_: None, label=lambda text, icon: told.append(text))
+        sizes = {"shank": 4.0, "reach": 50.0, "holder": 20.0, "upper": 30.0, "height": 50.0, **changed}
+        drawn = SimpleNamespace(layout=layout, **sizes)
+        drawn._as_it_is = lambda *a: operator._as_it_is(drawn, *a)
+        operator.draw(drawn, bpy.context)
+        return " ".join(text.split("'")[0] for text in told)
+
+    assert (said(), said(reach=60.0), said(shank=0.0, holder=0.0)) == ("", "", "")
+    assert said(shank=6.0, upper=32.0) == "The shank The holder" and said(height=40.0) == "The holder"
 
 
 def test_a_folder_that_cannot_be_written_is_named():

@@ -106,7 +106,7 @@ def test_journals_are_written_into_the_folder_that_was_chosen():
         sculpting.stroke(sculpting.sculpt(), 1)
         assert len([p for p in place.iterdir() if p.is_dir()]) == 1
         support.part("bl.live").end_all()
-        support.part("bl.keeping").drop()
+        support.part("bl.keeping").leave()
 
 
 def test_journals_are_found_in_the_old_folder_too():

@@ -127,6 +127,37 @@ def test_killed_in_mid_stroke_without_a_file_and_recovered_as_a_new_object():
         is_whole("Stock", said)
 
 
+def test_what_was_recovered_and_is_in_no_file_is_offered_again():
+    with fresh() as root:
+        killed()
+        support.scale(1)
+        keeping().crashed(look=True)
+        support.push("before")
+        assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
+        bpy.ops.ed.undo()
+        bpy.ops.wm.save_as_mainfile(filepath=support.out("undone.blend"))
+        assert len(list(root.iterdir())) == 1 and len(keeping().crashed()) == 1, "the panel does not offer it"
+        assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
+        bpy.ops.wm.open_mainfile(filepath=support.out("undone.blend"))  # without saving
+        assert len(list(root.iterdir())) == 1 and len(keeping().crashed(look=True)) == 1
+
+
+def test_a_recovery_that_fails_leaves_the_journal_to_others():
+    with fresh():
+        killed()
+        support.scale(1)
+        found = keeping().crashed(look=True)[0]
+        stock = found.folder / "stock.rvol"
+        whole = stock.read_bytes()
+        stock.write_bytes(whole[: len(whole) // 2])
+        for _ in range(2):
+            support.refused(lambda: bpy.ops.riffler.recover("EXEC_DEFAULT", True), "stock.rvol")
+            assert len(keeping().crashed(look=True)) == 1
+        stock.write_bytes(whole)
+        assert bpy.ops.riffler.recover("EXEC_DEFAULT", True) == {"FINISHED"}
+        bpy.ops.wm.save_as_mainfile(filepath=support.out("recovered_late.blend"))
+
+
 def test_killed_in_mid_stroke_and_recovered_into_the_sculpt_of_the_file():
     path = support.out("cut_off.blend")
     with fresh():
@@ -352,6 +383,8 @@ def test_a_sculpt_that_has_gone_on_since_is_left_alone():
 
 
 def test_a_folder_that_cannot_be_written_stops_no_hand():
+    with fresh():
+        pass
     before = keeping().folder
     blocked = Path(support.out("blocked"))
     blocked.write_text("a file where the folder should be")

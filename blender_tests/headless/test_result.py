@@ -33,14 +33,20 @@ def test_a_mesh_is_made_with_the_error_that_is_said():
     mesh = riffler.Mesh(co.astype(float), tri)
     assert mesh.audit()["open_edges"] == 0
     # against the dense surface, both ways: smoothing and decimating each keep their tolerance
-    assert max(np.abs(mesh.deviation(exact)).max(), np.abs(exact.deviation(mesh)).max()) < 0.03 + 1e-5
+    error = max(np.abs(mesh.deviation(exact)).max(), np.abs(exact.deviation(mesh)).max())
+    assert 1e-4 < error < 0.03 + 1e-5
+    assert abs(made.data["riffler_error"] - error) < 1e-5  # coordinates are float32 in Blender
+    said = support.part("operators.result").said_of(made.data)
+    assert f"{len(tri):,}".replace(",", "\u00a0") in said, said
+    assert abs(float(said.partition("at most ")[2].partition(" mm")[0]) - error) < 2e-5, said
 
 
 def test_without_decimation_and_smoothing_the_mesh_is_the_sculpts():
     ob = sculpt()
     exact = support.content(ob).volume.to_mesh()
     assert bpy.ops.riffler.to_mesh(tolerance=0.0, hide_sculpt=False) == {"FINISHED"}
-    assert len(bpy.context.object.data.polygons) == len(exact.triangles) and not ob.hide_get()
+    made = bpy.context.object.data
+    assert len(made.polygons) == len(exact.triangles) and not ob.hide_get() and made["riffler_error"] == 0
 
 
 def test_3mf_and_stl_hold_the_same_surface():

@@ -286,3 +286,44 @@ def test_plans_are_looked_for_once_among_many_objects():
     home.objects.link(ob)
     keyed.update()
     assert store.in_scene(bpy.context.scene) == [ob]
+
+
+def overridden(name):
+    """The library override of an object of this file, in a new one; active, and the only one selected."""
+    path = support.out("overridden.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile()
+    with bpy.data.libraries.load(path, link=True) as (_, into):
+        into.objects = [name]
+    ob = into.objects[0].override_create()
+    bpy.context.collection.objects.link(ob)
+    support.select(ob)
+    return ob
+
+
+def test_an_overridden_plan_is_changed_only_once_it_is_local():
+    """The plan's data is not what an override keeps: edits would be lost when the file is opened again."""
+    store = support.part("bl.plan_store")
+    ob = overridden(plans.on_timeline().name)
+    plan = store.plan(ob)
+    for call in ("plan_to_timeline", "plan_key", "plan_resolve"):
+        support.refused(getattr(bpy.ops.riffler, call), "overrides", "make it local")
+    try:
+        store.write(ob, plan)
+    except ValueError as error:
+        assert f"{ob.name} overrides" in str(error) and "make it local" in str(error)
+    else:
+        raise AssertionError("edits of an override were taken")
+    bpy.ops.object.make_local(type="SELECT_OBJECT")
+    ob = bpy.context.object
+    assert bpy.ops.riffler.plan_to_timeline() == {"FINISHED"}
+    path, name = support.out("local.blend"), ob.name
+    store.write(ob, riffler.plan.Plan(plan.paths[:1], plan.tool))
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert len(store.plan(bpy.data.objects[name]).paths) == 1
+
+
+def test_an_overridden_sculpt_is_not_cut():
+    overridden(support.stock().name)
+    support.refused(bpy.ops.riffler.cut_curve, "overrides", "make it local")

@@ -2,6 +2,8 @@
 
 import bpy
 import numpy as np
+import riffler
+import work
 
 import support
 
@@ -74,6 +76,34 @@ def test_a_mirrored_object_is_material_too():
     assert abs(support.content(bpy.context.object).volume.volume - 1000) < 1e-6
 
 
+def test_of_a_sculpt_the_stock_is_what_is_seen():
+    """Its volume itself where it stands unscaled; mirrored, larger or with a modifier, its surface."""
+    support.scale(1)
+    for scale, modifier, exact in (((1, 1, 1), "", True), ((-1, 1, 1), "", False), ((2, 2, 2), "", False),
+                                   ((1, 1, 1), "MIRROR", False)):  # fmt: skip
+        for ob in list(bpy.data.objects):
+            bpy.data.objects.remove(ob)
+        source = support.stock(size=(10, 6, 4), pitch=0.5, directions="xyz", origin="CORNER")
+        source.location, source.scale, source.rotation_euler.z = (3, 5, 7), scale, 0.4
+        if modifier:
+            source.modifiers.new(modifier, modifier)
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        box = box_of(source.evaluated_get(depsgraph))
+        before = support.content(source).volume
+        assert bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz") == {"FINISHED"}
+        made = bpy.context.object
+        assert made != source and source.hide_get()
+        assert np.allclose(box_of(made), box, atol=0.02), (scale, modifier, box_of(made), box)
+        assert (support.content(made).volume.to_bytes() == before.to_bytes()) == exact
+
+
+def box_of(ob):
+    """Of its vertices, in the world."""
+    at = np.array(ob.matrix_world) @ np.column_stack([support.coordinates(ob.data), np.ones(len(ob.data.vertices))]).T
+    return np.array([at[:3].min(axis=1), at[:3].max(axis=1)])
+
+
 def test_what_is_refused_changes_nothing():
     before = len(bpy.data.objects), len(bpy.data.meshes), len(bpy.data.images)
     bpy.ops.mesh.primitive_plane_add(size=0.01)
@@ -85,6 +115,63 @@ def test_what_is_refused_changes_nothing():
     support.refused(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5), "select the object")
     support.refused(lambda: support.stock(size=(1e5, 1e5, 1e5), pitch=0.001, directions="xyz"))
     assert (len(bpy.data.objects), len(bpy.data.meshes) - 1, len(bpy.data.images)) == before
+
+
+def seen():
+    """What there is, what of it is seen and selected, and what is active."""
+    kinds = bpy.data.objects, bpy.data.meshes, bpy.data.images
+    chosen = [(ob.name, ob.hide_get(), ob.select_get()) for ob in bpy.context.view_layer.objects]
+    return [len(kind) for kind in kinds], chosen, bpy.context.object.name
+
+
+def of_mesh():
+    return bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, source="OBJECT", pitch=0.5, directions="z")
+
+
+def test_a_mesh_whose_work_is_cancelled_or_fails_leaves_nothing_behind():
+    support.scale(1)
+    bpy.ops.mesh.primitive_cube_add(size=10)
+    support.push("cube")
+    before = seen()
+    for error in (riffler.Cancelled("cancelled"), RuntimeError("no thread"), MemoryError("too fine")):
+        with work.meshes_taken_by(work.Task(looks=2, outcome=error)):
+            support.refused(of_mesh, str(error))
+        assert seen() == before, error
+    nothing = riffler.Volume.block((0, 0, 0), (10, 10, 10), 0.5, "z")
+    nothing.subtract(nothing.copy())
+    with work.meshes_taken_by(work.Task(looks=2, outcome=nothing)):
+        support.refused(of_mesh, "has no volume at this pitch")
+    assert seen() == before
+    assert of_mesh() == {"FINISHED"} and bpy.context.object.name.endswith("Stock")
+
+
+def test_stock_of_a_mesh_is_one_undo_step():
+    support.scale(1)
+    bpy.ops.mesh.primitive_cube_add(size=10)
+    name = bpy.context.object.name
+    support.push("cube")
+    before = seen()
+    assert of_mesh() == {"FINISHED"}
+    bpy.ops.ed.undo()
+    assert seen() == before
+    bpy.ops.ed.redo()
+    assert bpy.data.objects[name].hide_get() and bpy.context.object.name == f"{name} Stock"
+
+
+def test_a_linked_mesh_is_hidden_itself_and_not_one_that_is_called_as_it_is():
+    support.scale(1)
+    bpy.ops.mesh.primitive_cube_add(size=10)
+    own = bpy.context.object
+    own.name = "Part"
+    path = support.out("linked.blend")
+    bpy.data.libraries.write(path, {own}, fake_user=True)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.objects = ["Part"]
+    linked = wanted.objects[0]
+    bpy.context.collection.objects.link(linked)
+    support.select(linked)
+    assert of_mesh() == {"FINISHED"}
+    assert linked.hide_get() and not own.hide_get()
 
 
 def test_fit_pitch():

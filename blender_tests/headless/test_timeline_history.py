@@ -171,6 +171,38 @@ def test_a_copy_of_the_tool_is_nobody_s_and_a_deleted_tool_is_made_again():
     assert pair(ob)[1] == ghost and close(seen(ob, 73)[1], np.array((0, -0.3, 1)) / np.sqrt(1.09))
 
 
+def duplicated(*objects):
+    """What Shift D makes of the first of them, with the others."""
+    bpy.ops.object.select_all(action="DESELECT")
+    for ob in objects:
+        ob.select_set(True)
+    bpy.context.view_layer.objects.active = objects[0]
+    bpy.ops.object.duplicate()
+    update()
+    return bpy.context.object
+
+
+def test_a_copy_of_a_plan_leaves_the_original_s_animation_alone():
+    """The motion cannot be selected: a copy of the plan, with its tool or alone, points to the original's."""
+    for with_tool in (True, False):
+        bpy.ops.wm.read_homefile()
+        ob = plans.on_timeline()
+        tool, ghost = pair(ob)
+        before = seen(ob, 73)[1]
+        copy = duplicated(ob, *[tool] * with_tool)
+        own = copy[support.part("bl.timeline").TOOL]
+        assert copy != ob and (own != tool) == with_tool and pair(copy) is None and pair(ob) == (tool, ghost)
+        if with_tool:
+            insert(own, 73, (0, -0.3, 1))
+            assert close(seen(ob, 73)[1], before) and indices(ob)[0] == [0, 144]
+        support.select(copy)
+        assert bpy.ops.riffler.plan_to_timeline() == {"FINISHED"}
+        assert pair(copy)[1] != ghost and (pair(copy)[0] == own) == with_tool
+        insert(pair(copy)[0], 73, (0, -0.3, 1))
+        assert indices(copy)[0] == [0, 72, 144] and indices(ob)[0] == [0, 144]
+        assert close(seen(copy, 73)[1], np.array((0, -0.3, 1)) / np.sqrt(1.09)) and close(seen(ob, 73)[1], before)
+
+
 def test_other_paths_are_not_given_keys_that_were_not_meant_for_them():
     ob = plans.on_timeline()
     store = support.part("bl.plan_store")

@@ -6,6 +6,7 @@ from pathlib import Path
 import bpy
 import leftovers
 import numpy as np
+import riffler
 
 import support
 
@@ -146,6 +147,35 @@ def test_fixtures_keep_the_tool_out():
     row = top[:, 59]  # y = 14.875
     assert abs(row[np.searchsorted(x, 12)] - 19) < 0.01
     assert row[(x > 23.1) & (x < 26.9)].min() == 20, "it went through the clamp"
+
+
+def test_a_mirrored_fixture_is_as_solid_as_any():
+    """The tool is wholly inside it, and touches none of its faces."""
+    support.scale(1)
+    ob = support.stock(pitch=0.5)
+    jaws = bpy.data.collections.new("Jaws")
+    bpy.context.scene.collection.children.link(jaws)
+    bpy.ops.mesh.primitive_cube_add(size=120, location=(30, 15, 20))
+    jaw = bpy.context.object
+    jaws.objects.link(jaw)
+    bpy.context.view_layer.objects.active = ob
+    pose = np.array([[20, 15, 10, 0, 0, 1.0], [24, 15, 10, 0, 0, 1.0]])
+    for scale in ((1, 1, 1), (-1, 1, 1), (-1, -1, -1)):
+        jaw.scale = scale
+        bpy.context.view_layer.update()
+        solid = support.part("bl.fixtures").collider(bpy.context, jaws, support.part("bl.sculpts").from_world(ob))
+        _, report = riffler.plan.lift(riffler.Tool.ball(6, 30), pose, solid, tolerance=0.001)
+        assert not report["free"].any() or np.all(report["lift"] > 60), scale
+
+
+def test_handles_of_a_mirrored_sculpt_are_as_large_as_of_any():
+    support.scale(1)
+    ob = support.stock(pitch=0.5)
+    place = support.part("gizmos.size")._place
+    for scale, expected in (((1, 1, 1), 1), ((-1, 1, 1), 1), ((-2, -2, -2), 2), ((1, 1, 0), 0)):
+        ob.scale = scale
+        bpy.context.view_layer.update()
+        assert abs(place(ob)[1] - expected) < 1e-6, scale
 
 
 def test_undo_takes_a_stroke_back():

@@ -241,3 +241,27 @@ def test_the_legend_is_of_the_mesh_that_is_coloured():
     # the colours at its ends are those of the mesh
     of = support.part("core.colours").of_distance(np.array([-0.4, 0.0, 0.4]), 0.4)
     assert np.allclose([bar.colours[k][1] for k in (0, 8, 16)], of[:, :3])
+
+
+def test_an_edited_text_is_kept_where_it_is_verified_again():
+    prepared()
+    path, _ = nc(slip=60)
+    other, _ = nc(name="other.ngc")
+
+    def verified(path):
+        assert bpy.ops.riffler.verify(source="FILE", filepath=path) == {"FINISHED"}
+        return programs.settings().text
+
+    first = verified(path)
+    assert verified(other) == first, "nobody has edited it"
+    mine = first.as_string().replace("G1", "G1 (mine)", 1)
+    first.from_string(mine)
+    second = verified(path)
+    assert second != first and first.as_string() == mine and second.name != first.name
+    assert second.lines[2].body == Path(path).read_text().splitlines()[2]
+    assert verified(other) == second == verified(path) and first.as_string() == mine
+    assert (first.name, second.name) == ("other.ngc", "verify.ngc")
+    findings = support.part("bl.findings")
+    second.write("G0 X0")
+    third, edited = findings.text_of(second, second.name, "G0 Z50")
+    assert third != second and edited == second.name != third.name and third.as_string().strip() == "G0 Z50"

@@ -171,7 +171,7 @@ class Play:
 
 
 def main():
-    support.JOB = harness.job
+    support.JOB, support.Skip = harness.job, harness.Skip
     bpy.context.preferences.view.show_splash = False
     script = Path(harness.job["files"][0])
     if "\nINSTALL = False\n" not in script.read_text():  # before the script, which may import riffler

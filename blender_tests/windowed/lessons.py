@@ -209,11 +209,13 @@ def activate(ob):
     bpy.context.view_layer.objects.active = ob
 
 
-def interpreted(path):
-    """LinuxCNC's interpreter accepts the program; where there is none that is said."""
+def interpreted(path, rows):
+    """LinuxCNC's interpreter accepts the program and finds so many feed moves at least; where there is none, that is a
+    test that was skipped."""
     judge = harness.load(HERE.parent / "headless" / "test_plan_nc.py")
     try:
-        return judge.interpreted(Path(path))
+        feeds = judge.interpreted(Path(path))
     except support.Skip as reason:
-        harness.say(note=f"{Path(path).name} was not judged: {reason}")
-        return None
+        harness.say(name=f"{Path(path).name}, interpreted", outcome="skipped", seconds=0, message=str(reason))
+        return
+    assert len(feeds) >= rows, (len(feeds), rows)

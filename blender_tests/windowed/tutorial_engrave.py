@@ -23,7 +23,7 @@ def steps(screen):
     with screen.override():
         assert bpy.ops.riffler.export_recording(filepath=recording) == {"FINISHED"}
         assert bpy.ops.riffler.export_nc(filepath=support.out("name.ngc"), post="3-axis") == {"FINISHED"}
-    lessons.interpreted(support.out("name.ngc"))
+    lessons.interpreted(support.out("name.ngc"), sum(len(cut.poses) - 1 for cut in support.content(first).cuts))
     yield from replayed(screen, first, curve, recording)
 
 

@@ -61,6 +61,7 @@ def egg(screen):
     yield 0.5
     yield from lessons.picture(screen, "first-chip-3", lessons.view_box(screen))
     yield from lessons.press(screen, "riffler.new_stock")
+    yield lambda: "Sphere Stock" in bpy.data.objects
     made = bpy.context.object
     assert made.name == "Sphere Stock" and bpy.data.objects["Sphere"].hide_get()
     exact = 4 / 3 * np.pi * np.prod(HALF)

@@ -72,6 +72,7 @@ def embossed(screen, ob):
     removed = SIDE * SIDE * DEEP - lessons.volume(ob).volume
     exact = DEPTH * WIDTH**2 * (1 - heights.mean())
     assert abs(removed / exact - 1) < 0.02, (removed, exact)
+    yield 1.2  # the button is drawn again
     yield from lessons.picture(screen, "relief-2", lessons.view_box(screen))
 
 
@@ -102,6 +103,7 @@ def masked(screen, ob):
     yield from lessons.tool(screen, "builtin.select_box")
     yield lambda: ob.visible_get()
     yield from lessons.press(screen, "riffler.mask_form", share=0.25)
+    yield lambda: lessons.module("bl.store").content(ob.data).mask is not None
     circle.hide_set(True)
     yield 0.5
     mask = lessons.module("bl.store").content(ob.data).mask

@@ -29,6 +29,17 @@ def open_tab(screen, panel="RIFFLER_PT_sculpt"):
     assert drawn, "the tab was not found"
 
 
+def stock(screen, pitch):
+    """A block of 60 × 60 × 20 mm from the origin on, and a ball of 8 mm at hand."""
+    with screen.override():
+        bpy.ops.riffler.millimetres()
+        tool = bpy.context.scene.riffler.tool
+        tool.kind, tool.diameter = "ball", 8.0
+        bpy.ops.riffler.new_stock(
+            "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, 20), pitch=pitch, directions="xyz"
+        )
+
+
 def running():
     return bpy.context.window_manager.riffler.running
 

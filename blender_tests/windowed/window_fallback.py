@@ -18,6 +18,8 @@ def steps(screen):
     message = "/lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.38' not found (required by riffler/_core.so)"
     (folder / "riffler" / "__init__.py").write_text(f"raise ImportError({message!r})")
     sys.path.insert(0, str(folder))
+    if harness.job["mode"] == "legacy":  # that zip has a core in it, which loads
+        harness.job["mode"] = "source"
     support.MODULE = harness.install()
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     cut = harness.load(Path(__file__).with_name("window_cut.py"))

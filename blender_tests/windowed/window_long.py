@@ -31,7 +31,8 @@ def steps(screen):
     with work.Stage() as stage:
         yield from watched(screen, stage)
         yield from cancelled(screen, stage)
-        yield from failed(screen, stage)
+        yield from stock_of_a_mesh(screen)
+        yield from failed(screen, stage)  # what it reports stays in the window, and takes the next Esc
         yield from lost(screen, stage)
     yield from disabled(screen)
     yield from another_file(screen)
@@ -91,11 +92,50 @@ def lost(screen, stage):
     assert stage.task.cancelled and "restore" not in stage.log
 
 
+def begin_stock(screen):
+    with screen.override():
+        how = {"source": "OBJECT", "pitch": 0.5, "directions": "xyz"}
+        assert bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, **how) == {"RUNNING_MODAL"}
+    assert progress().running == "Making stock"
+
+
+def stock_of_a_mesh(screen):
+    """Esc, and the mesh being removed, leave no stock; what was made is seen, and is one undo step."""
+    with screen.override():
+        bpy.ops.riffler.millimetres()
+        bpy.ops.mesh.primitive_uv_sphere_add("EXEC_DEFAULT", True, radius=20, location=(200, 0, 0))
+        bpy.context.object.name = "Ball"
+        bpy.ops.ed.undo_push(message="Ball")
+    task = work.Task()
+    with work.meshes_taken_by(task):
+        begin_stock(screen)
+        task.share = 0.4
+        yield lambda: abs(progress().percent - 40) < 1e-3
+        screen.key("ESC")
+        yield ended
+    assert task.cancelled and "Ball Stock" not in bpy.data.objects and not bpy.data.objects["Ball"].hide_get()
+    begin_stock(screen)
+    yield ended
+    assert bpy.context.object.name == "Ball Stock" and bpy.data.objects["Ball"].hide_get()
+    view = screen.area.spaces.active.region_3d
+    yield lambda: abs(view.view_location.x - 200) < 1
+    screen.key("Z", ctrl=True)
+    yield lambda: "Ball Stock" not in bpy.data.objects
+    assert not bpy.data.objects["Ball"].hide_get()
+    task = work.Task()
+    with work.meshes_taken_by(task):
+        begin_stock(screen)
+        bpy.data.objects.remove(bpy.data.objects["Ball"])
+        yield ended
+    assert task.cancelled and not any("Stock" in ob.name for ob in bpy.data.objects)
+
+
 def long_cut(screen):
     """A cut that is under way and can be seen, of a new stock; returns the stock's state before it."""
     with screen.override():
         bpy.ops.riffler.millimetres()
-        bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, size=(100, 60, 30), pitch=0.25, directions="xyz")
+        how = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.25, "directions": "xyz"}
+        bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, **how)
     name, before = cut.spiral(6, 250_000, "Long"), cut.state()
     bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
     faces = len(bpy.data.objects["Stock"].data.polygons)

@@ -65,14 +65,9 @@ def prepare(screen):
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_pen")
     yield from cut.open_tab(screen)
+    cut.stock(screen, 0.25)
+    bpy.context.scene.riffler.sculpt.limit = 0.2
     with screen.override():
-        bpy.ops.riffler.millimetres()
-        settings = bpy.context.scene.riffler
-        settings.tool.kind, settings.tool.diameter = "ball", 8.0
-        settings.sculpt.limit = 0.2
-        bpy.ops.riffler.new_stock(
-            "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, TOP), pitch=0.25, directions="xyz"
-        )
         bpy.ops.ed.undo_push(message="Stock")
     screen.to_view()
     yield 2.0

@@ -142,4 +142,4 @@ def cut_off(screen):
     with screen.override():
         bpy.ops.view3d.view_all()
     yield 1.0
-    yield from screen.picture("22-recovered")
+    yield from screen.picture("22-recovered", vary=["VIEW_3D"])  # whenever it was killed

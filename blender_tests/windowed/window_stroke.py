@@ -168,13 +168,8 @@ def steps(screen):
     cut_panel = harness.load(Path(__file__).with_name("window_pen.py"))
     cut_panel.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_sculpt_tool")
     yield from cut.open_tab(screen)
+    cut.stock(screen, 0.25)
     with screen.override():
-        bpy.ops.riffler.millimetres()
-        tools = bpy.context.scene.riffler.tool
-        tools.kind, tools.diameter = "ball", 8.0
-        bpy.ops.riffler.new_stock(
-            "INVOKE_DEFAULT", True, source="BLOCK", origin="CORNER", size=(60, 60, 20), pitch=0.25, directions="xyz"
-        )
         bpy.ops.ed.undo_push(message="Stock")
     screen.area.spaces.active.region_3d.view_distance *= 0.8
     yield 2.0
@@ -201,6 +196,9 @@ def steps(screen):
     assert abs(removed / expected - 1) < 0.03, (removed, expected)  # a pixel is 0.1 mm or so
     text, at = module("operators.stroke").last, volume().to_bytes()
     stages = run().stages.milliseconds()
+    assert all(stages.values()) and stages["draw"] > stages["cut"], stages  # in software; a card would be quicker
+    told = module("ui.sculpt_panel").looks(run().stages)
+    assert "draw 9" in told[2] and " tiles, " in told[3] and not told[3].startswith("0.0"), told
     support.figure("stroke of 8 mm on 60×60×20 mm at 0.25 mm, a look, ms", {k: round(v, 2) for k, v in stages.items()})
 
     # more, so that the cursor has something to stand on

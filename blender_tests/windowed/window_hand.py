@@ -1,0 +1,144 @@
+"""A person's mouse and keyboard on a sculpt, from outside, by xdotool: a drag carves, Ctrl Z and Ctrl Shift Z, a drag
+that Esc gives up, Ctrl S; the file is opened again, has the sculpt to the byte, and the next drag carves on."""
+
+import tempfile
+from pathlib import Path
+
+import bpy
+import harness
+import numpy as np
+from sculpting import matches_its_volume, nothing_is_left
+
+import support
+
+REAL_EVENTS = True
+NAME = "Stock"
+
+strokes = harness.load(Path(__file__).with_name("window_stroke.py"))
+run, pixel = strokes.run, strokes.pixel
+
+
+def content():
+    return strokes.volume().to_bytes()
+
+
+def held():
+    return support.part("drawing.pointer").held is not None
+
+
+def drag(screen, first, last, release=True):
+    """A stroke between two places (mm of the stock); what the stroke was told of begins and ends at their pixels."""
+    a, b = pixel(screen, first), pixel(screen, last)
+    screen.move(*a)
+    yield 0.3
+    screen.button("PRESS")
+    yield held  # the sculpt's first stroke takes a while to begin
+    for share in np.linspace(0, 1, 12)[1:]:
+        screen.move(*(a + share * (b - a)).round())
+        yield 0.05
+    if not release:
+        return
+    screen.button("RELEASE")
+    yield lambda: not held()
+    yield 0.5
+    _, samples, _ = support.part("core.brush").read(support.part("operators.stroke").last)
+    region = screen.region()
+    for sample, wanted in ((samples[0], a), (samples[-1], b)):
+        assert (sample.x + region.x, sample.y + region.y) == tuple(wanted), (sample, wanted)
+        assert sample.pressure == 1, "a mouse has none"
+
+
+def typed(screen, expected, **modifiers):
+    """Z with modifiers, which must bring the volume `expected` (bytes)."""
+    screen.key("Z", **modifiers)
+    yield lambda: content() == expected
+    yield 0.5
+
+
+def begin(screen, path):
+    """A stock in a file of its own, and the tool."""
+    bpy.context.preferences.system.viewport_aa = "OFF"  # two thirds of a software renderer's time
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    strokes.cut.stock(screen, 0.5)
+    strokes.tool(screen, "riffler.carve")
+    strokes.settings().depth = 1.5
+    with screen.override():
+        bpy.ops.ed.undo_push(message="Stock")
+        bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    yield 2.0
+
+
+def save(screen, path):
+    """Ctrl S, which asks nothing, as the file has a name."""
+    before = path.stat().st_mtime_ns
+    assert bpy.data.is_dirty, "a stroke is a change that Blender asks about when it is closed"
+    screen.key("S", ctrl=True)
+    yield lambda: not bpy.data.is_dirty
+    assert path.stat().st_mtime_ns > before
+    yield 0.5
+
+
+def reopen(screen, path):
+    """By way of a new file, so that nothing is left but what the file has."""
+    with screen.override():
+        bpy.ops.wm.read_homefile()
+    yield 1.0
+    assert NAME not in bpy.data.objects
+    nothing_is_left()
+    with screen.override():
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+    yield 2.0
+    assert run() is None
+    nothing_is_left()
+    matches_its_volume(NAME)
+    tool = screen.window.workspace.tools.from_space_view3d_mode("OBJECT").idname
+    assert tool == "riffler.carve", tool
+
+
+def steps(screen):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "hand.blend"
+        yield from begin(screen, path)
+        yield from carved_and_undone(screen)
+        yield from give_up(screen)
+        carved = content()
+        yield from save(screen, path)
+        assert content() == carved
+        yield from reopen(screen, path)
+        assert content() == carved, "the file has another volume than was carved"
+        yield from carve_on(screen)
+
+
+def carved_and_undone(screen):
+    """Two strokes, of which Ctrl Z takes back one after the other, and Ctrl Shift Z brings both back."""
+    states = [content()]
+    for y in (15, 45):
+        yield from drag(screen, (15, y, 20), (45, y, 20))
+        states.append(content())
+    assert len(set(states)) == 3, "a stroke has carved nothing"
+    for expected in states[1::-1]:
+        yield from typed(screen, expected, ctrl=True)
+    for expected in states[1:]:
+        yield from typed(screen, expected, ctrl=True, shift=True)
+
+
+def give_up(screen):
+    """Esc while the button is held: all is as it was, and the button's release is nobody's."""
+    before = content()
+    yield from drag(screen, (15, 30, 20), (45, 30, 20), release=False)
+    yield lambda: content() != before
+    screen.key("ESC")
+    yield lambda: not held()
+    screen.button("RELEASE")
+    yield 1.0
+    assert content() == before and not held()
+
+
+def carve_on(screen):
+    """A stroke on what was opened, across those in the file; Ctrl Z takes back that one alone."""
+    saved, whole = content(), strokes.volume().volume
+    yield from drag(screen, (30, 10, 20), (30, 50, 20))
+    assert run() is not None and strokes.volume().volume < whole
+    carved = content()
+    yield from typed(screen, saved, ctrl=True)
+    yield from typed(screen, carved, ctrl=True, shift=True)
