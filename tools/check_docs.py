@@ -1,6 +1,7 @@
-"""Checks the Markdown documents: relative links and anchors lead somewhere, Python examples and `riffler` command lines
-run. All ```python blocks of a document run as one script, then the lines of its ```sh blocks that start with `riffler`,
-in an empty folder. A block under the line `<!-- not run: reason -->` is left out, and the reason printed.
+"""Checks the Markdown documents: relative links and anchors lead somewhere, every picture of docs/images is shown,
+Python examples and `riffler` command lines run. All ```python blocks of a document run as one script, then the lines of
+its ```sh blocks that start with `riffler`, in an empty folder. A block under the line `<!-- not run: reason -->` is
+left out, and the reason printed; Blender's run in blender_tests/headless/test_documents.py.
 
     tools/check_docs.py [FILE ...]
 """
@@ -88,6 +89,12 @@ def link_problems(document: Document, documents: dict[Path, Document]) -> list[s
     return problems
 
 
+def picture_problems(documents: dict[Path, Document]) -> list[str]:
+    shown = {(d.path.parent / target).resolve() for d in documents.values() for _, target in d.links}
+    pictures = sorted(f for f in (ROOT / "docs" / "images").rglob("*") if f.is_file())
+    return [f"{path.relative_to(ROOT)}: no document shows it" for path in pictures if path not in shown]
+
+
 def example_problems(document: Document) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         steps = []
@@ -109,7 +116,7 @@ def entry() -> None:
     every += (path for folder in ("docs", "addon", "device") for path in (ROOT / folder).rglob("*.md"))
     documents = {path: read(path) for path in sorted(every)}
     wanted = [Path(name).resolve() for name in sys.argv[1:]] or list(documents)
-    problems = []
+    problems = [] if sys.argv[1:] else picture_problems(documents)
     for path in wanted:
         document = documents[path]
         problems += link_problems(document, documents) + example_problems(document)
