@@ -179,6 +179,8 @@ Twist SculptStep::advance(const Part& part, Result& result) {
 }
 
 void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result) {
+  // Of a tool that stands, too: where it is held because a slow cut left queries no time, it would be held for ever.
+  cut_seconds_ = 0;
   // A tool that stands has cut there before: what a journal replays is poses that differ.
   if (!stock_ || (to.tip == tool_.tip && to.axis == tool_.axis)) return;
   const Clock::time_point start = Clock::now();

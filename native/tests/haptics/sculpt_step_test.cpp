@@ -364,6 +364,26 @@ TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
   EXPECT_GT(held, 0);
 }
 
+/// The cuts of a large ball are far over the budget; the time that they leave to queries is none.
+TEST(SculptStep, AToolThatIsHeldAfterASlowCutIsNotHeldForEver) {
+  const Tool ball = cutters::ball(30, 60);
+  Volume volume = block(0.2, "xyz");
+  MoveCarver carver(volume, ball, {});
+  const Collider part(box({0, 0, -18}, {40, 40, -15.02}), {}, {.spacing = 0.1});
+  SculptSettings settings = springs_only();
+  settings.budget = 4e-4, settings.missed = 1e-3;
+  SculptStep step(settings, ball, &carver, &part);
+  const auto grip = [](double t) { return Pose{{10 + 20 * t, 20, -15}, kUp}; };
+  step.place(grip(0));
+  int all = 0, in_a_row = 0, longest = 0;
+  follow(step, 200, grip, [&](int, const SculptStep::Result& r) {
+    all += r.held, in_a_row = r.held ? in_a_row + 1 : 0;
+    longest = std::max(longest, in_a_row);
+  });
+  EXPECT_GT(all, 0);
+  EXPECT_LT(longest, 100) << "of 200 steps";
+}
+
 TEST(SculptStep, AsksForNoMemoryOnceItIsWarm) {
   const Tool tool = cutters::ball(6, 20).with_holder({{24, 12, 40, 12}});
   Volume volume = block(0.2);
