@@ -24,9 +24,10 @@ def sculpt_for(seconds, **more):
 
 
 def until_cut(**more):
-    """A hand of its own needs some seconds, and a busy machine takes the force away now and then."""
-    for _ in range(4):
-        if sculpt_for(4.0, **more) == {"FINISHED"}:
+    """A hand of its own needs some seconds, and a busy machine takes the force away now and then and gives it few steps:
+    each try has twice the time of the one before."""
+    for seconds in (4.0, 8.0, 16.0, 32.0):
+        if sculpt_for(seconds, **more) == {"FINISHED"}:
             return
     raise AssertionError("the simulated hand has cut nothing four times")
 
@@ -99,10 +100,15 @@ class Hand:
         self.pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=self._time)
 
     def _go(self, x, y, pressed):
-        """There, and a step has been made with it; or the session has ended."""
+        """There, and a step has been made with it that cuts where it is pressed: after a late one the session takes
+        what it does away for half a second. Or the session has ended."""
         self._give(x, y, pressed)
-        there = self.pen.state().pose
-        return self.look(lambda: self._felt is not None and np.array_equal(self._felt, there))
+        there, run = self.pen.state().pose, self.session.run
+        return self.look(
+            lambda: self._felt is not None
+            and np.array_equal(self._felt, there)
+            and (not pressed or run.state in ("ramp", "active"))
+        )
 
     def down(self, y, first=5, last=45):
         """The hand comes and cuts; it does not let go."""
