@@ -1,6 +1,7 @@
 """Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core touches neither Python
-nor what it is judged by, the pen's C files touch nothing but each other, and addon/core never touches Blender. Prints
-every line that breaks a rule and exits 1."""
+nor what it is judged by, the pen's C files touch nothing but each other, and addon/core never touches Blender. And a
+source includes its own header first, which shows that the header stands alone. Prints every line that breaks a rule and
+exits 1."""
 
 from __future__ import annotations
 
@@ -90,14 +91,27 @@ def device_problems() -> list[str]:
     return problems
 
 
+def header_problems() -> list[str]:
+    """Only headers without a source are compiled by themselves (cmake/headers.cmake)."""
+    problems = []
+    for topic in [*topics(), "reference"]:
+        for source in sorted((ROOT / "native" / topic).glob("*.cpp")):
+            own = source.with_suffix(".hpp")
+            found = [INCLUDE.match(line) for line in source.read_text().splitlines()]
+            first = next((match[2] for match in found if match), None)
+            if own.exists() and first != f"{topic}/{own.name}":
+                problems.append(f"{source.relative_to(ROOT)}: includes {first} before {topic}/{own.name}")
+    return problems
+
+
 def addon_problems() -> list[str]:
     core = ROOT / "addon" / "core"
     return [f"{place}: addon/core imports Blender" for place, line in lines(core, ".py") if IMPORTS_BLENDER.match(line)]
 
 
 def entry() -> None:
-    problems = core_problems() + beside_problems() + device_problems() + addon_problems()
-    print("\n".join(problems) or "layers: every include points upwards")
+    problems = core_problems() + beside_problems() + device_problems() + header_problems() + addon_problems()
+    print("\n".join(problems) or "layers: every include points upwards, every source includes its own header first")
     sys.exit(bool(problems))
 
 
