@@ -5,6 +5,7 @@ tools/test.py [cpp python docs blender]      (all without arguments)
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 
@@ -17,7 +18,8 @@ def cpp() -> None:
 
 
 def python() -> None:
-    run(PYTHON, "-m", "pytest", "native/tests/python")
+    processes = min(4, len(os.sched_getaffinity(0)))  # many of them use all cores themselves
+    run(PYTHON, "-m", "pytest", "-n", str(processes), "--dist", "loadfile", "native/tests/python")
 
 
 def docs() -> None:
