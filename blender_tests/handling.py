@@ -24,8 +24,8 @@ def sculpt_for(seconds, **more):
 
 
 def until_cut(**more):
-    """A hand of its own needs some seconds, and a busy machine takes the force away now and then and gives it few steps:
-    each try has twice the time of the one before."""
+    """A hand of its own needs some seconds, and a busy machine takes the force away now and then and gives it few
+    steps: each try has twice the time of the one before."""
     for seconds in (4.0, 8.0, 16.0, 32.0):
         if sculpt_for(seconds, **more) == {"FINISHED"}:
             return
