@@ -82,8 +82,7 @@ lint:  ## Check style, layers, and that every header stands alone
 	$(python) -m ruff format --check .
 	find native device -name '*.[ch]pp' -o -name '*.[ch]' | xargs .venv/bin/clang-format --dry-run -Werror
 	$(python) tools/check_layers.py
-	$(python) tools/preset.py release riffler_core_verify_interface_header_sets \
-	  riffler_reference_verify_interface_header_sets
+	$(python) tools/preset.py release all_verify_interface_header_sets
 
 format:  ## Bring all sources into style
 	@$(ready)

@@ -1,5 +1,5 @@
 # Every header stands alone. Where a source of its name includes it first (tools/check_layers.py looks), compiling that
-# shows it; what `headers` has beside those, `make lint` compiles by itself: target `target`_verify_interface_header_sets.
+# shows it; what `headers` has beside those, `make lint` compiles by itself: target all_verify_interface_header_sets.
 function(verify_headers target headers)
   set(alone "")
   foreach(header IN LISTS headers)
