@@ -6,11 +6,11 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntProperty
 
-from ..bl import plan_collisions, plan_curves, plan_states, plan_store, replan, surroundings, timeline, units
+from ..bl import plan_collisions, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import keys, quaternions
 from . import shared
-from .plan_work import TimelineWork, plan_poll, tell, timeline_poll
+from .plan_work import TimelineWork, plan_poll, tell, tell_all, timeline_poll
 
 
 class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
@@ -228,18 +228,20 @@ class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
     cancelled = "Stopped looking for collisions"
 
     def begin(self, context):
-        ob, _ = self.take(context)
-        self._near, self._known = surroundings.now(context, ob), {}
+        ob, plan = self.take(context)
+        taken = surroundings.take(context, ob)
+        self._notes = plan_fit.notes(context, plan, taken)
+        self._near, self._known = taken.result(), {}
         return plan_collisions.clearance_job(ob, self._near, self._known)
 
     def finish(self, context, job):
         now = plan_states.state(self.ob)
         now.near, now.clearances, now.job = self._near, self._known, None
         found = plan_collisions.show(context.scene, self.ob, job)
+        done = f"No collision at {job.computed} poses"
         if found:
-            self.report({"WARNING"}, f"The tool collides at {sum(b - a + 1 for a, b in found)} frames, marked below")
-        else:
-            self.report({"INFO"}, f"No collision at {job.computed} poses")
+            done = f"The tool collides at {sum(b - a + 1 for a, b in found)} frames, marked below"
+        tell_all(self, done, self._notes, bool(found))
         return {"FINISHED"}
 
 

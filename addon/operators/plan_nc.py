@@ -8,14 +8,14 @@ import riffler
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import findings, plan_states, plan_store, programs, replan, surroundings, timeline, units
+from ..bl import findings, plan_fit, plan_states, plan_store, programs, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import locating, problems
 from ..core import units as names
 from ..core.job import ChainJob
 from ..properties.plan import MACHINES
 from . import shared
-from .plan_work import PlanWork, part_poll, plan_poll
+from .plan_work import PlanWork, part_poll, plan_poll, tell_all
 
 EXTENSIONS = {"heidenhain": ".h", "apt": ".apt"}
 
@@ -40,6 +40,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
     def begin(self, context):
         ob, plan = self.take(context)
         taken = surroundings.take(context, ob)
+        self._notes = plan_fit.notes(context, plan, taken)
         clearance = units.clean(context.scene.riffler.plan.clearance)
         self._mark = taken.fingerprint(plan.tool, clearance)
         same = plan.provenance.get(programs.RESOLVED) == self._mark
@@ -73,17 +74,20 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         plan = replace(plan, cl=cl, provenance={**plan.provenance, programs.RESOLVED: self._mark})
         plan_store.write(ob, plan)
         findings.write(ob.riffler.plan.findings, locating.ordered(kept))
-        said = ""
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
-            said = f". {plan_states.state(ob).difference}"
+        self._tell(ob, blocked)
+        return {"FINISHED"}
+
+    def _tell(self, ob, blocked):
         count = names.format_count(len(self._paths))
         if blocked:
-            why = f"{blocked} of {count} paths still collide: turn their keys, or take another tool"
-            self.report({"WARNING"}, why)
+            done = f"{blocked} of {count} paths still collide: turn their keys, or take another tool"
         else:
-            self.report({"INFO"}, f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free{said}")
-        return {"FINISHED"}
+            done = f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free"
+            if timeline.pair(ob) is not None:
+                done += f". {plan_states.state(ob).difference}"
+        tell_all(self, done, self._notes, blocked > 0)
 
 
 class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
@@ -141,19 +145,23 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
             written = program.write(path, post=self.post, tolerance=plan.tolerance or 0.01, options=chosen)
         except shared.ERRORS as error:
             return shared.fail(self, error)
-        self._tell(ob, path, program, written)
+        self._tell(context, ob, path, written)
         return {"FINISHED"}
 
-    def _tell(self, ob, path, program, written):
+    def _tell(self, context, ob, path, written):
         done = f"{bpy.path.basename(path)}: {names.format_count(written['blocks'])} blocks"
-        level = "INFO"
+        note = plan_fit.tool_note(context.scene.riffler.plan, plan_store.plan(ob).tool)
+        notes = [note] if note else []
         if timeline.pair(ob) is not None:
             difference = plan_states.state(ob).difference
-            done, level = f"{done}. {difference}", "INFO" if difference.small else "WARNING"
+            if difference.small:
+                done = f"{done}. {difference}"
+            else:
+                notes.append(str(difference))
         if len(written["rewinds"]):
             rows = ", ".join(str(int(r)) for r in np.atleast_1d(written["rewinds"])[:4])
-            done, level = f"{done}. The tool leaves the material to turn an axis back, at rows {rows}", "WARNING"
-        self.report({level}, done)
+            notes.append(f"The tool leaves the material to turn an axis back, at rows {rows}")
+        tell_all(self, done, notes)
 
     def draw(self, context):
         shared.draw_fields(self, ("post", "feed", "spindle", "options"))

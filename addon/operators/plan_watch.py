@@ -21,6 +21,7 @@ QUIET = 0.4  # s without a change, before a part is looked at
 class Verdict:
     part: str  # what is wrong with the part, or nothing
     edited: int  # paths whose curves are not what the plan says
+    tool: riffler.Tool | None = None  # that it was planned with
 
 
 _known = {}  # name of a plan → _key of the time, Verdict
@@ -31,7 +32,8 @@ _changed = 0.0
 def judge(context, ob):
     """The Verdict on a plan, now. ValueError where the plan cannot be read."""
     plan = plan_store.plan(ob)
-    return Verdict(_part(context, ob, plan), plan_curves.edited(ob, plan, units.mm_per_unit(context.scene)))
+    edited = plan_curves.edited(ob, plan, units.mm_per_unit(context.scene))
+    return Verdict(_part(context, ob, plan), edited, plan.tool)
 
 
 def gone(context, ob):

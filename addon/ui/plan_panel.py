@@ -5,11 +5,11 @@ import bpy
 import riffler
 
 from .. import properties
-from ..bl import libraries, parts, plan_store, tool_pictures, versions
+from ..bl import libraries, parts, plan_fit, plan_store, tool_pictures, versions
 from ..bl.turning import plan_object
 from ..core import library
 from ..core import units as names
-from ..operators import plan_find, plan_setup, plan_watch, shared
+from ..operators import plan_find, plan_setup, plan_tool, plan_watch, shared
 from .panels import Sidebar, give, lines
 from .pen_panel import wrapped
 
@@ -87,6 +87,9 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
             edits = f"Curves that were edited or are gone: {names.format_count(verdict.edited)}. The plan is as it was."
             lines(layout, *wrapped(context, edits), icon="ERROR")
             layout.operator(plan_find.RIFFLER_OT_plan_show.bl_idname, icon="FILE_REFRESH")
+        if verdict.tool is not None and (note := plan_fit.tool_note(context.scene.riffler.plan, verdict.tool)):
+            lines(layout, *wrapped(context, f"{note}."), icon="ERROR")
+            layout.operator(plan_tool.RIFFLER_OT_plan_use_tool.bl_idname, icon="TOOL_SETTINGS")
 
     def _next(self, layout, context, ob):
         """What is missing for a search, and what comes next."""

@@ -1,0 +1,96 @@
+"""What a plan is looked at with: a tool that is not the panel's, a part that is not what it was; and what is said."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import numpy as np
+import plans
+import programs
+import riffler
+from keyed import pair, state
+
+import support
+
+SHORT = riffler.Tool.ball(6, 10)
+WIDE = SHORT.with_holder([(12, 30, 40, 30)])  # its holder stands in the wall however it leans
+
+
+def settings():
+    return bpy.context.scene.riffler.plan
+
+
+def take(tool):
+    settings().take(tool.to_dict())
+
+
+def said(call):
+    """What is reported of a call that ends well."""
+    return support.printed(lambda: call() == {"FINISHED"} or print("not finished"))
+
+
+def write():
+    path = support.out("fit.ngc")
+    Path(path).unlink(missing_ok=True)
+    return said(lambda: bpy.ops.riffler.plan_nc(filepath=path))
+
+
+# ---- the tool
+
+
+def test_a_holder_that_was_changed_after_the_search_is_said():
+    ob = programs.resolved()
+    take(plans.TOOL)
+    for text in (said(bpy.ops.riffler.plan_resolve), said(bpy.ops.riffler.plan_check), write()):
+        assert "Warning" not in text, text
+    take(plans.TOOL.named("Another name"))
+    assert "Warning" not in write()
+    take(plans.TOOL.with_holder([]))
+    for text in (said(bpy.ops.riffler.plan_resolve), said(bpy.ops.riffler.plan_check), write()):
+        assert "Warning" in text and "Use This Tool" in text, text
+    take(riffler.Tool.ball(4, 25))
+    assert "paths of its own" in said(bpy.ops.riffler.plan_check)
+    assert programs.content(ob).tool == plans.TOOL
+
+
+def test_shank_and_holder_are_exchanged_and_the_keys_stay():
+    ob = programs.plan(programs.valley(programs.LEANING, (0, -0.3, 1)), timeline=False)
+    support.part("bl.plan_store").write(ob, replace(programs.content(ob), tool=SHORT))
+    bpy.ops.riffler.plan_to_timeline()
+    bpy.ops.riffler.plan_resolve()
+    before, rows = programs.content(ob), len(pair(ob)[0].data.vertices)
+    bpy.ops.riffler.plan_check()
+    assert not state(ob).colliding
+    take(WIDE)
+    assert bpy.ops.riffler.plan_use_tool() == {"FINISHED"}
+    plan = programs.content(ob)
+    assert plan.tool == WIDE and ob.riffler.plan.tool == WIDE.name
+    assert list(plan.paths[0].keys) == list(before.paths[0].keys)
+    assert np.array_equal(plan.paths[0].axes, before.paths[0].axes)
+    assert not any(r is not None for r in plan.cl) and not ob.riffler.plan.findings
+    assert len(pair(ob)[0].data.vertices) != rows  # it is seen on the timeline
+    assert state(ob).colliding  # marks follow
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "may collide", "Resolve")
+    assert "Use This Tool" not in said(bpy.ops.riffler.plan_resolve)
+
+
+def test_another_cutter_is_no_other_holder():
+    ob = programs.plan(timeline=False)
+    before = support.part("bl.plan_store").identity(ob)
+    take(riffler.Tool.ball(4, 25))
+    support.refused(bpy.ops.riffler.plan_use_tool, "another cutter", "Find Again")
+    assert support.part("bl.plan_store").identity(ob) == before
+    take(plans.TOOL.with_holder([]))
+    assert bpy.ops.riffler.plan_use_tool() == {"FINISHED"} and not programs.content(ob).tool.holder
+
+
+def test_the_panel_knows_the_plan_s_tool():
+    ob = programs.plan(timeline=False)
+    verdict = support.part("operators.plan_watch").judge(bpy.context, ob)
+    note = support.part("bl.plan_fit").tool_note
+    take(plans.TOOL)
+    assert note(settings(), verdict.tool) == ""
+    take(plans.TOOL.with_holder([]))
+    assert "Use This Tool" in note(settings(), verdict.tool)
+    settings().tool = "[]"
+    assert note(settings(), verdict.tool) == ""
