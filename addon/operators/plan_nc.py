@@ -82,7 +82,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
     def _tell(self, ob, blocked):
         count = names.format_count(len(self._paths))
         if blocked:
-            done = f"{blocked} of {count} paths still collide: turn their keys, or take another tool"
+            done = f"{blocked} of {count} paths still collide: turn their keys, or delete them to leave a path out"
         else:
             done = f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free"
             if timeline.pair(ob) is not None:
@@ -150,8 +150,9 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
 
     def _tell(self, context, ob, path, written):
         done = f"{bpy.path.basename(path)}: {names.format_count(written['blocks'])} blocks"
-        note = plan_fit.tool_note(context.scene.riffler.plan, plan_store.plan(ob).tool)
-        notes = [note] if note else []
+        plan = plan_store.plan(ob)
+        said = (programs.left_out(plan), plan_fit.tool_note(context.scene.riffler.plan, plan.tool))
+        notes = [note for note in said if note]
         if timeline.pair(ob) is not None:
             difference = plan_states.state(ob).difference
             if difference.small:
