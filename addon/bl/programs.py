@@ -12,7 +12,7 @@ import riffler
 
 from ..core import course, problems
 from ..core import units as names
-from . import live, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
+from . import live, plan_fit, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
 
 RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
 
@@ -42,13 +42,15 @@ def ready(context, ob, plan):
         raise ValueError(f"{ob.name} has no paths: find some first")
     if not wanted(plan):
         raise ValueError("No path has an orientation: set a key first")
+    taken = surroundings.take(context, ob)
+    if moved := plan_fit.part_note(plan, taken):
+        raise ValueError(moved)
     missing = unresolved(plan)
     if missing:
         raise ValueError(
             f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no way, or delete the keys of "
             "a path that is to be left out"
         )
-    taken = surroundings.take(context, ob)
     clearance = units.clean(context.scene.riffler.plan.clearance)
     if plan.provenance.get(RESOLVED) != taken.fingerprint(plan.tool, clearance):
         raise ValueError("Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve")
@@ -64,7 +66,6 @@ def numbered(paths):
 def of_plan(context, ob, plan, feed, spindle):
     """The riffler.Program of all paths that are to be cut, in their order, in the scene's millimetres."""
     taken, chosen = ready(context, ob, plan), wanted(plan)
-    part = surroundings.part_of(context.scene, ob).name
     settings = context.scene.riffler.plan
     return riffler.Program.from_cl(
         [plan.cl[k] for k in chosen],
@@ -74,12 +75,17 @@ def of_plan(context, ob, plan, feed, spindle):
         occupied=taken.bounds,
         provenance={
             "plan": ob.name,
-            "part": f"{part} {plan.part.get('sha256', '')[:16]}".strip(),
+            "part": f"{taken.who[0]} {taken.prints[0][:16]}",
             "paths": f"{len(chosen)}, {names.trim(sum(plan.paths[k].length for k in chosen), 1)} mm",
             "clearance": f"{names.trim(units.clean(settings.clearance), 4)} mm",
             "plan id": plan_store.identity(ob)[:16],
         },
     )
+
+
+def write(program, plan, path, post, chosen):
+    """Writes a plan's program as NC code; what Program.write says of it."""
+    return program.write(path, post=post, tolerance=plan.tolerance or 0.01, options=chosen)
 
 
 def options(text):
@@ -201,7 +207,7 @@ def _plan(context):
     if timeline.pair(ob) is not None:
         where = course.of_paths(program.poses, _played_paths(context, ob, plan))
     chosen = options(settings.options)
-    program, text = _with_lines(program, settings.post, chosen)
+    program, text = _with_lines(program, plan, settings.post, chosen)
     return _new(ob.name, program, where, text=text, machine=settings.post, options=chosen, plan=ob.name)
 
 
@@ -212,12 +218,12 @@ def _played_paths(context, ob, plan):
     return [(played[k].poses, played[k].frames) for k in wanted(plan) if k < len(played) and len(played[k])]
 
 
-def _with_lines(program, post, chosen):
-    """The program with the lines that its rows have as NC code, and that code; neither where the machine's language is
-    not one that is read."""
+def _with_lines(program, plan, post, chosen):
+    """A plan's program with the lines that its rows have as NC code, and that code; neither where the machine's
+    language is not one that is read."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.ngc"
-        program.write(path, post=post, options=chosen)
+        write(program, plan, path, post, chosen)
         text = path.read_text(encoding="utf-8", errors="replace")
         try:
             read = riffler.Program.read(path, machine=post, options=_of_reading(chosen))

@@ -142,7 +142,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
             program = programs.of_plan(context, ob, plan, units.clean(self.feed), units.clean(self.spindle))
             path = bpy.path.abspath(self.filepath)
             problems.check_target(path)
-            written = program.write(path, post=self.post, tolerance=plan.tolerance or 0.01, options=chosen)
+            written = programs.write(program, plan, path, self.post, chosen)
         except shared.ERRORS as error:
             return shared.fail(self, error)
         self._tell(context, ob, path, written)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -33,6 +34,66 @@ def write():
     path = support.out("fit.ngc")
     Path(path).unlink(missing_ok=True)
     return said(lambda: bpy.ops.riffler.plan_nc(filepath=path))
+
+
+# ---- the part
+
+
+def found_on_the_step():
+    """A resolved plan that knows its part by its surface, as those that were searched for do."""
+    ob = programs.plan()
+    mesh = support.part("bl.parts").in_world(bpy.context, ob.riffler.plan.part)
+    plan = replace(programs.content(ob), part=riffler.plan.part_of(mesh, "Step"))
+    support.part("bl.plan_store").write(ob, plan)
+    bpy.ops.riffler.plan_resolve()
+    return ob
+
+
+def shift(ob, z):
+    ob.location.z = z
+    bpy.context.view_layer.update()
+
+
+def test_a_part_that_was_moved_since_is_said_and_makes_no_code():
+    ob = found_on_the_step()
+    take(plans.TOOL)
+    part = ob.riffler.plan.part
+    assert "Warning" not in write()
+    header = Path(support.out("fit.ngc")).read_text()
+    assert f"Step {programs.content(ob).part['sha256'][:16]}" in header
+    shift(part, -0.5)
+    for call in (bpy.ops.riffler.plan_resolve, bpy.ops.riffler.plan_check):
+        text = said(call)
+        assert "Warning" in text and "Step was moved or changed since" in text, text
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "move it back", "Find Again")
+    programs.stock()
+    bpy.context.view_layer.objects.active = ob
+    support.refused(lambda: bpy.ops.riffler.simulate(source="PLAN"), "Step was moved or changed since")
+    shift(part, 0)
+    assert "Warning" not in said(bpy.ops.riffler.plan_resolve) and "Warning" not in write()
+
+
+def test_a_part_that_nobody_knows_the_surface_of_may_lie_anywhere():
+    """Its code says which it is."""
+    ob = programs.plan()
+    shift(ob.riffler.plan.part, -0.5)
+    bpy.ops.riffler.plan_resolve()
+    write()
+    mesh = support.part("bl.parts").in_world(bpy.context, ob.riffler.plan.part)
+    assert f"Step {riffler.plan.part_of(mesh, '')['sha256'][:16]}" in Path(support.out("fit.ngc")).read_text()
+
+
+def test_what_is_verified_is_the_code_that_is_written():
+    """Its lines are those of the file: both are written to the plan's tolerance."""
+    ob = programs.plan(programs.valley(programs.LEANING, (0, -0.2, 1), programs.LEANING))
+    support.part("bl.plan_store").write(ob, replace(programs.content(ob), tolerance=0.2))
+    bpy.ops.riffler.plan_resolve()
+    programs.stock()
+    bpy.context.view_layer.objects.active = ob
+    settings().post = "linuxcnc-xyzac"
+    write()
+    setup = support.part("bl.programs").take(bpy.context, SimpleNamespace(source="PLAN", frame="WORLD"))
+    assert setup.text == Path(support.out("fit.ngc")).read_text()
 
 
 # ---- the tool
