@@ -75,8 +75,11 @@ _changes = 0  # that Blender told of
 
 
 def part_of(scene, ob=None):
-    """What a plan's object was made on, or what plans are made on now."""
-    return (ob.riffler.plan.part if ob is not None else None) or scene.riffler.plan.part
+    """What a plan's object was made on, while that is in the scene; otherwise what plans are made on now."""
+    own = ob.riffler.plan.part if ob is not None else None
+    if own is not None and scene.objects.get(own.name) == own:
+        return own
+    return scene.riffler.plan.part
 
 
 def take(context, ob):

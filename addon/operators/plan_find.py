@@ -4,7 +4,7 @@ import bpy
 import riffler
 
 from .. import properties
-from ..bl import live, parts, plan_curves, plan_store, units
+from ..bl import live, parts, plan_curves, plan_store, surroundings, units
 from ..core import units as names
 from ..core.job import TaskJob
 from . import shared
@@ -39,7 +39,9 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
     def poll(cls, context):
         if not shared.object_mode(cls, context):
             return False
-        if why := parts.unfit(context.scene.riffler.plan.part, context.scene):
+        mine, own = context.scene.riffler.plan.part, surroundings.part_of(context.scene, plan_store.active(context))
+        why = parts.unfit(mine, context.scene)
+        if why and parts.unfit(own, context.scene):  # a plan's own part is enough to find its paths again
             return shared.deny(cls, why)
         return not shared.busy(cls, context)
 

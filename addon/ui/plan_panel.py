@@ -75,7 +75,8 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
     def _plan(self, layout, context, ob):
         p = ob.riffler.plan
         layout.label(text=ob.name, icon="CURVE_DATA", translate=False)
-        part = p.part.name if p.part else "a part that is gone"
+        own = plan_watch.part_of(context.scene, ob)
+        part = own.name if own else "a part that is gone"
         count = f"Paths: {names.format_count(p.paths)}, {names.trim(p.length, 1)} mm"
         lines(layout, count, *wrapped(context, f"On {part} with {p.tool}"))
         verdict = plan_watch.known(context, ob)

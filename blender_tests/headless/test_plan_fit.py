@@ -83,6 +83,44 @@ def test_a_part_that_nobody_knows_the_surface_of_may_lie_anywhere():
     assert f"Step {riffler.plan.part_of(mesh, '')['sha256'][:16]}" in Path(support.out("fit.ngc")).read_text()
 
 
+def delete(ob):
+    """As X does: what points to it still does."""
+    support.select(ob)
+    bpy.ops.object.delete()
+
+
+def test_a_part_that_was_deleted_and_brought_back_is_the_part():
+    """The same model imported again, and set as the part. Another one is not taken for it."""
+    ob = found_on_the_step()
+    take(plans.TOOL)
+    judge = support.part("operators.plan_watch").judge
+    delete(ob.riffler.plan.part)
+    for call in (bpy.ops.riffler.plan_resolve, bpy.ops.riffler.plan_check, bpy.ops.riffler.plan_find):
+        support.refused(call, "Step was deleted", "set another part")
+    assert judge(bpy.context, ob).part == "The part, Step, is gone from the scene"
+    new = plans.part_object()
+    support.select(new)
+    bpy.ops.riffler.plan_part()
+    bpy.context.view_layer.objects.active = ob
+    assert judge(bpy.context, ob).part == ""
+    for text in (said(bpy.ops.riffler.plan_resolve), said(bpy.ops.riffler.plan_check), write()):
+        assert "Warning" not in text and "deleted" not in text, text
+    shift(new, 1)
+    assert "and Step.001 is not the same" in judge(bpy.context, ob).part
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "Find Again")
+
+
+def test_a_plan_whose_own_part_is_there_is_found_again_without_the_scene_s():
+    ob = found_on_the_step()
+    settings().part = None
+    bpy.context.view_layer.objects.active = ob
+    assert bpy.ops.riffler.plan_find(replace=ob.name) == {"FINISHED"}
+    support.refused(bpy.ops.riffler.plan_find, "There is no part")
+    delete(ob.riffler.plan.part)
+    bpy.context.view_layer.objects.active = ob
+    support.refused(lambda: bpy.ops.riffler.plan_find(replace=ob.name), "There is no part")
+
+
 def test_what_is_verified_is_the_code_that_is_written():
     """Its lines are those of the file: both are written to the plan's tolerance."""
     ob = programs.plan(programs.valley(programs.LEANING, (0, -0.2, 1), programs.LEANING))
