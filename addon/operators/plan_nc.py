@@ -13,6 +13,7 @@ from ..bl.turning import plan_object
 from ..core import locating, problems
 from ..core import units as names
 from ..core.job import ChainJob
+from ..core.surroundings import guarded
 from ..properties.plan import MACHINES
 from . import shared
 from .plan_work import PlanWork, part_poll, plan_poll, tell_all
@@ -44,19 +45,20 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         clearance = units.clean(context.scene.riffler.plan.clearance)
         self._mark = taken.fingerprint(plan.tool, clearance)
         same = plan.provenance.get(programs.RESOLVED) == self._mark
-        turned = [k for k, path in enumerate(plan.paths) if len(path.axes)]
+        turned = programs.wanted(plan)
         if not turned:
             raise ValueError("No path has an orientation: set a key first")
         open_ones = set(programs.unresolved(plan)) if same else set(turned)
         self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
         self._found = []
         collider = taken.result().collider
-        sizes = {"clearance": clearance, "tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
+        tool = guarded(plan.tool, clearance)  # the cutter touches what it cuts
+        sizes = {"tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
 
         def start(k):
             def go(before):
                 self._found += [before] if before is not None else []
-                return riffler.tasks.cutter_locations(plan.paths[k], plan.tool, collider, **sizes)
+                return riffler.tasks.cutter_locations(plan.paths[k], tool, collider, **sizes)
 
             return go
 
@@ -66,8 +68,8 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         ob, plan = self.ob, plan_store.plan(self.ob)
         cl = list(plan.cl) or [None] * len(plan.paths)
         kept = [e for e in findings.read(ob.riffler.plan.findings) if e["path"] not in self._paths]
-        blocked = 0
-        for k, (rows, report) in zip(self._paths, [*self._found, job.result], strict=True):
+        found, blocked = [*self._found, job.result], 0
+        for k, (rows, report) in zip(self._paths, found, strict=True):
             cl[k] = rows if report.ok else None  # what collides anywhere is no program
             blocked += not report.ok
             kept += locating.entries(k, plan.paths[k].centres, rows, report)
@@ -76,18 +78,20 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         findings.write(ob.riffler.plan.findings, locating.ordered(kept))
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
-        self._tell(ob, blocked)
+        free = [report for _, report in found if report.ok]
+        self._tell(ob, blocked, locating.left(free, plan.tolerance or 0.01))
         return {"FINISHED"}
 
-    def _tell(self, ob, blocked):
+    def _tell(self, ob, blocked, left):
         count = names.format_count(len(self._paths))
         if blocked:
             done = f"{blocked} of {count} paths still collide: turn their keys, or delete them to leave a path out"
         else:
             done = f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free"
+            done += f", but {left}" if left else ""
             if timeline.pair(ob) is not None:
                 done += f". {plan_states.state(ob).difference}"
-        tell_all(self, done, self._notes, blocked > 0)
+        tell_all(self, done, self._notes, blocked > 0 or left != "")
 
 
 class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):

@@ -68,7 +68,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
     )
     tool: StringProperty(name="Tool", description="Cutter, shank and holder as JSON", default="")
     source: StringProperty(name="From", description="The file that the tool was taken from; empty: the presets")
-    clearance: length("Clearance", 0.0, "That the whole tool keeps from part and fixtures beside its cut, in mm")
+    clearance: length("Clearance", 0.0, "That shank and holder keep from part and fixtures, in mm")
     feed: length("Feed", 800.0, "mm/min at the tip", 0.001, 1e6)
     spindle: FloatProperty(name="Spindle", default=12000.0, min=0.0, max=1e6, precision=0, description="rev/min")
     show: EnumProperty(

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -143,6 +144,28 @@ def test_blocked_paths_stay_unresolved_and_name_their_points():
     lines = programs.listed(ob.riffler.plan.findings)
     assert lines[0]["kind"] == "blocked" and "points from 0" in lines[0]["name"]
     support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "path 1 may collide", "left out")
+
+
+def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
+    """The valley's finish is the same with 0.3 mm of it; where the shank is too near for 15 mm the tool is lifted, and
+    that is said."""
+    settings = bpy.context.scene.riffler.plan
+    ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
+    short = riffler.Tool.ball(6, 10).with_shank([(10, 3, 40, 3)])
+    support.part("bl.plan_store").write(ob, replace(programs.content(ob), tool=short))
+    settings.take(short.to_dict())
+    bpy.ops.riffler.plan_resolve()
+    (before,) = programs.content(ob).cl
+    settings.clearance = 0.3
+    said = support.printed(bpy.ops.riffler.plan_resolve)
+    assert np.array_equal(programs.content(ob).cl[0], before) and "Warning" not in said, said
+    settings.clearance = 15
+    said = support.printed(bpy.ops.riffler.plan_resolve)
+    (lifted,) = programs.content(ob).cl
+    up = np.linalg.norm(lifted[:, :3] - before[:, :3], axis=1).max()
+    assert len(lifted) == len(before) and up > 1
+    assert "Warning" in said and f"1 path is free, but {len(lifted)} rows are lifted by up to {up:.3f}" in said, said
+    assert "material stays" in said
 
 
 def test_paths_without_keys_are_not_cut_and_that_is_said():
