@@ -18,34 +18,23 @@ RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cut
 
 
 # ------------------------------------------------------------------ of a plan
-def wanted(plan):
-    """Numbers, from 0, of the paths that are to be cut: those with an orientation."""
-    return [k for k, path in enumerate(plan.paths) if len(path.axes)]
-
-
 def left_out(plan):
-    """The others, as a sentence, or nothing."""
-    others = sorted({*range(len(plan.paths))} - {*wanted(plan)})
+    """Which paths are not to be cut, as a sentence, or nothing."""
+    others = sorted({*range(len(plan.paths))} - {*plan_store.wanted(plan)})
     have = "has no keys and is" if len(others) == 1 else "have no keys and are"
     return f"{numbered(others).capitalize()} {have} not cut" if others else ""
-
-
-def unresolved(plan):
-    """Numbers, from 0, of the paths that are to be cut without cutter locations that are free all the way."""
-    cl = list(plan.cl) or [None] * len(plan.paths)
-    return [k for k in wanted(plan) if cl[k] is None or not len(cl[k])]
 
 
 def ready(context, ob, plan):
     """The surroundings.Taken of a plan that may become a program. ValueError with the remedy where it may not."""
     if not plan.paths:
         raise ValueError(f"{ob.name} has no paths: find some first")
-    if not wanted(plan):
+    if not plan_store.wanted(plan):
         raise ValueError("No path has an orientation: set a key first")
     taken = surroundings.take(context, ob)
     if moved := plan_fit.part_note(plan, taken):
         raise ValueError(moved)
-    missing = unresolved(plan)
+    missing = plan_store.unresolved(plan)
     if missing:
         raise ValueError(
             f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no way, or delete the keys of "
@@ -65,7 +54,7 @@ def numbered(paths):
 
 def of_plan(context, ob, plan, feed, spindle):
     """The riffler.Program of all paths that are to be cut, in their order, in the scene's millimetres."""
-    taken, chosen = ready(context, ob, plan), wanted(plan)
+    taken, chosen = ready(context, ob, plan), plan_store.wanted(plan)
     settings = context.scene.riffler.plan
     return riffler.Program.from_cl(
         [plan.cl[k] for k in chosen],
@@ -204,7 +193,7 @@ def _plan(context):
     settings, plan = context.scene.riffler.plan, plan_store.plan(ob)
     program = of_plan(context, ob, plan, units.clean(settings.feed), units.clean(settings.spindle))
     where = _timed(context.scene, program)
-    if timeline.pair(ob) is not None:
+    if timeline.pair(ob) is not None and replan.fits(ob, plan):
         where = course.of_paths(program.poses, _played_paths(context, ob, plan))
     chosen = options(settings.options)
     program, text = _with_lines(program, plan, settings.post, chosen)
@@ -215,7 +204,7 @@ def _played_paths(context, ob, plan):
     """[(rows, frames)] of the paths that are to be cut, as a plan plays them on the timeline."""
     replan.sync(context.scene, ob)
     played = [e.motion for e in plan_states.state(ob).motions]
-    return [(played[k].poses, played[k].frames) for k in wanted(plan) if k < len(played) and len(played[k])]
+    return [(played[k].poses, played[k].frames) for k in plan_store.wanted(plan) if k < len(played) and len(played[k])]
 
 
 def _with_lines(program, plan, post, chosen):

@@ -60,6 +60,7 @@ def sync(scene, plan_ob):
         plan = plan_store.plan(plan_ob)
         if not fits(plan_ob, plan):
             now.problems.append(OTHER_PATHS)
+            _nothing_plays(scene, plan_ob)
             return
         plan = _take_keys(plan_ob, plan, tool, now)
         bake(scene, plan_ob, plan)
@@ -90,7 +91,16 @@ def _take_keys(plan_ob, plan, tool, now):
     if now.changes:
         plan = replace(plan, paths=paths, cl=cl)
         plan_store.write(plan_ob, plan)
+        plan_ob.riffler.plan.forget(now.changes)
     return plan
+
+
+def _nothing_plays(scene, plan_ob):
+    """What is seen on the timeline is of paths that are no more: nothing is said of it, and no frame of it marked."""
+    now = state(plan_ob)
+    now.motions, now.difference = [], playback.Difference()
+    if now.near is not None:
+        plan_collisions.look(scene, plan_ob)
 
 
 def _oriented(path, wanted):

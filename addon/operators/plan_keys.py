@@ -168,6 +168,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
     paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
     paths[path], cl[path] = turned, None
     plan_store.write(ob, replace(plan, paths=paths, cl=cl))
+    ob.riffler.plan.forget({path})
     replan.sync(scene, ob)
 
 
@@ -229,6 +230,10 @@ class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
 
     def begin(self, context):
         ob, plan = self.take(context)
+        if not replan.fits(ob, plan):
+            raise ValueError(replan.OTHER_PATHS)
+        if not plan_states.state(ob).motions:
+            raise ValueError("; ".join(plan_states.state(ob).problems) or "Nothing plays: use Plan to Timeline")
         taken = surroundings.take(context, ob)
         self._notes = plan_fit.notes(context, plan, taken)
         self._near, self._known = taken.result(), {}

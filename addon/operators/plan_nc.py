@@ -45,10 +45,10 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         clearance = units.clean(context.scene.riffler.plan.clearance)
         self._mark = taken.fingerprint(plan.tool, clearance)
         same = plan.provenance.get(programs.RESOLVED) == self._mark
-        turned = programs.wanted(plan)
+        turned = plan_store.wanted(plan)
         if not turned:
             raise ValueError("No path has an orientation: set a key first")
-        open_ones = set(programs.unresolved(plan)) if same else set(turned)
+        open_ones = set(plan_store.unresolved(plan)) if same else set(turned)
         self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
         self._found = []
         collider = taken.result().collider

@@ -128,7 +128,15 @@ class RifflerPlanObject(bpy.types.PropertyGroup):
     part: PointerProperty(type=bpy.types.Object)
     paths: IntProperty()
     length: FloatProperty()
+    keyed: IntProperty()
+    resolved: IntProperty(default=-1)  # of those with keys; -1: in a file from before it was counted
     tool: StringProperty()
     curves: CollectionProperty(type=RifflerPathCurve)
     findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
     index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")
+
+    def forget(self, paths):
+        """What was found on paths, by their numbers from 0, that are others now."""
+        for k in reversed(range(len(self.findings))):
+            if self.findings[k].path in paths:
+                self.findings.remove(k)

@@ -9,7 +9,7 @@ import numpy as np
 import plans
 import programs
 import riffler
-from keyed import pair, state
+from keyed import insert, pair, state
 
 import support
 
@@ -132,6 +132,56 @@ def test_what_is_verified_is_the_code_that_is_written():
     write()
     setup = support.part("bl.programs").take(bpy.context, SimpleNamespace(source="PLAN", frame="WORLD"))
     assert setup.text == Path(support.out("fit.ngc")).read_text()
+
+
+# ---- paths that are others now
+
+
+def test_paths_that_are_found_again_leave_nothing_of_the_old_ones():
+    """Their findings, what plays and the marks of what collides: all of it was on the paths of before."""
+    ob = programs.plan(programs.valley(programs.LEANING, programs.INTO))
+    bpy.ops.riffler.plan_resolve(max_lift=0.01)
+    bpy.ops.riffler.plan_check()
+    scene = bpy.context.scene
+    assert state(ob).colliding and len(scene.timeline_markers) and ob.riffler.plan.findings and state(ob).motions
+    text = said(lambda: bpy.ops.riffler.plan_find(replace=ob.name, tool=support.BALL, passes=2, stepover=0.5))
+    assert "Warning" in text and "put it on the timeline again" in text, text
+    assert not ob.riffler.plan.findings and not len(scene.timeline_markers)
+    assert not state(ob).motions and not state(ob).colliding
+    for again in (False, True):
+        if again:
+            blend, name = support.out("again.blend"), ob.name
+            bpy.ops.wm.save_as_mainfile(filepath=blend)
+            bpy.ops.wm.open_mainfile(filepath=blend)
+            ob = bpy.data.objects[name]
+            bpy.context.view_layer.objects.active = ob
+        support.refused(bpy.ops.riffler.plan_check, "put it on the timeline again")
+    assert bpy.ops.riffler.plan_to_timeline() == {"FINISHED"} and bpy.ops.riffler.plan_check() == {"FINISHED"}
+    assert len(state(ob).motions) == 3 and not state(ob).problems
+
+
+def test_what_was_found_on_a_path_goes_with_a_key_that_changes():
+    ob = programs.plan(programs.valley(programs.INTO), programs.valley(programs.INTO))
+    paths = lambda: {e["path"] for e in programs.listed(ob.riffler.plan.findings)}  # noqa: E731
+    bpy.ops.riffler.plan_resolve(max_lift=0.01)
+    assert paths() == {0, 1}
+    insert(pair(ob)[0], 73, programs.LEANING)  # in the graph editor
+    assert paths() == {1}
+    bpy.ops.riffler.plan_key(axis=programs.LEANING, path=2, point=5)
+    assert paths() == set()
+
+
+def test_how_many_paths_are_resolved_is_kept_for_the_panel():
+    said = support.part("ui.verify_panel").resolved
+    ob = programs.plan(programs.valley(programs.LEANING), plans.ring(), programs.valley(programs.INTO))
+    p = ob.riffler.plan
+    assert said(p) == "0 of 3 paths resolved, 1 without keys"
+    bpy.ops.riffler.plan_resolve(max_lift=0.01)
+    assert said(p) == "1 of 3 paths resolved, 1 without keys"
+    bpy.ops.riffler.plan_least_tilt(paths="ALL", axes="GIVEN", axis=programs.LEANING)
+    assert said(p) == "0 of 3 paths resolved"
+    p.resolved = -1  # of a file from before it was counted
+    assert said(p) == ""
 
 
 # ---- the tool
