@@ -91,6 +91,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
             done += f", but {left}" if left else ""
             if timeline.pair(ob) is not None:
                 done += f". {plan_states.state(ob).difference}"
+                self._notes += plan_states.state(ob).problems
         tell_all(self, done, self._notes, blocked > 0 or left != "")
 
 
@@ -159,6 +160,9 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
         notes = [note for note in said if note]
         if timeline.pair(ob) is not None:
             difference = plan_states.state(ob).difference
+            notes += plan_states.state(
+                ob
+            ).problems  # a key that was refused is seen on the timeline, and not in the code
             if difference.small:
                 done = f"{done}. {difference}"
             else:

@@ -168,6 +168,19 @@ def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
     assert "material stays" in said
 
 
+def test_a_key_that_was_refused_is_said_with_the_code():
+    """It is on the timeline, and the program has the orientation of before."""
+    ob = programs.resolved()
+    bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
+    (before,) = programs.content(ob).cl
+    assert "Warning" not in support.printed(write)
+    insert(pair(ob)[0], 73, -np.array(programs.LEANING))
+    assert np.array_equal(programs.content(ob).cl[0], before)
+    for call in (write, bpy.ops.riffler.plan_resolve):
+        said = support.printed(call)
+        assert "Warning" in said and "it stays as it was" in said, said
+
+
 def test_paths_without_keys_are_not_cut_and_that_is_said():
     """The second of three has none, the third is blocked until it has none either."""
     ob = programs.plan(programs.valley(programs.LEANING), plans.ring(), programs.valley(programs.INTO))
