@@ -54,7 +54,7 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
             plan_store.write(ob, plan)
             if plan_curves.of(ob):  # as many points as the paths have now
                 plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
-            context.scene.frame_end = max(context.scene.frame_end, layout.last)
+            timeline.show_range(context.scene, self.first, layout.last)
             replan.sync(context.scene, ob)
         except shared.ERRORS as error:
             return shared.fail(self, error)
@@ -216,7 +216,7 @@ class RIFFLER_OT_plan_key_jump(bpy.types.Operator):
         if not len(there):
             return shared.fail(self, ValueError(f"There is no key {'before' if self.back else 'after'} this frame"))
         frame = float(there[-1] if self.back else there[0])
-        context.scene.frame_set(int(frame // 1), subframe=frame % 1)
+        timeline.go_to(context.scene, frame)
         return {"FINISHED"}
 
 

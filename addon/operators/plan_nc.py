@@ -83,16 +83,15 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         return {"FINISHED"}
 
     def _tell(self, ob, blocked, left):
-        count = names.format_count(len(self._paths))
+        count, played = names.format_count(len(self._paths)), timeline.pair(ob) is not None
+        notes = [*self._notes, *(plan_states.state(ob).problems if played else [])]
         if blocked:
             done = f"{blocked} of {count} paths still collide: turn their keys, or delete them to leave a path out"
         else:
             done = f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free"
             done += f", but {left}" if left else ""
-            if timeline.pair(ob) is not None:
-                done += f". {plan_states.state(ob).difference}"
-                self._notes += plan_states.state(ob).problems
-        tell_all(self, done, self._notes, blocked > 0 or left != "")
+            done += f". {plan_states.state(ob).difference}" if played else ""
+        tell_all(self, done, notes, blocked > 0 or left != "")
 
 
 class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
@@ -160,9 +159,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
         notes = [note for note in said if note]
         if timeline.pair(ob) is not None:
             difference = plan_states.state(ob).difference
-            notes += plan_states.state(
-                ob
-            ).problems  # a key that was refused is seen on the timeline, and not in the code
+            notes += plan_states.state(ob).problems  # a refused key is on the timeline, and not in the code
             if difference.small:
                 done = f"{done}. {difference}"
             else:

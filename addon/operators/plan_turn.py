@@ -232,7 +232,7 @@ class PointsAt:
 
     def _go(self, context):
         spot, frame = _spot(context, plan_object(context), self.path, self.point)
-        context.scene.frame_set(int(frame // 1), subframe=frame % 1)
+        timeline.go_to(context.scene, frame)
         return spot, frame
 
 

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import properties
-from ..bl import programs, simulating
+from ..bl import programs, simulating, timeline
 from ..core import units as names
 from . import shared
 
@@ -39,7 +39,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
             simulating.end()
             return shared.fail(self, error)
         first, last = now.course.first, now.course.last
-        context.scene.frame_end = max(context.scene.frame_end, last)
+        timeline.show_range(context.scene, first, last)
         count = names.format_count(len(setup.program.poses))
         self.report({"INFO"}, f"{setup.name}: {count} rows at frames {first} to {last}. Esc in the view ends it")
         return {"FINISHED"}
