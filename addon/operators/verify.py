@@ -14,6 +14,7 @@ from ..bl import attributes, events, findings, meshes, parts, plan_store, progra
 from ..core import poses
 from ..core import units as names
 from ..core.job import TaskJob
+from ..core.surroundings import check_fixture
 from . import shared, simulate
 from .long import LongWork
 
@@ -150,10 +151,16 @@ def _around(context, setup):
     plan_ob = context.scene.objects.get(setup.plan) if setup.plan else plan_store.active(context)
     ob = surroundings.part_of(context.scene, plan_ob)
     to_stock = np.linalg.inv(setup.to_world)
-    held = [_moved(parts.in_world(context, f), to_stock) for f in parts.fixtures(context.scene.riffler.plan, ob)]
+    held = [_fixture(context, f, to_stock) for f in parts.fixtures(context.scene.riffler.plan, ob)]
     if ob is None:
         return "", None, held
     return ob.name, _moved(parts.in_world(context, ob), to_stock), held
+
+
+def _fixture(context, ob, to_stock):
+    mesh = parts.in_world(context, ob)
+    check_fixture(mesh, ob.name)
+    return _moved(mesh, to_stock)
 
 
 def _moved(mesh, matrix):

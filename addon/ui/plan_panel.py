@@ -125,7 +125,11 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
         row.prop(settings, "fixtures", text="")
         row.operator(plan_setup.RIFFLER_OT_plan_fixtures_add.bl_idname, text="", icon="ADD")
         row.operator(plan_setup.RIFFLER_OT_plan_fixtures_remove.bl_idname, text="", icon="REMOVE")
-        held = [ob.name for ob in parts.fixtures(settings, settings.part)]
+        try:
+            held = [ob.name for ob in parts.fixtures(settings, settings.part)]
+        except ValueError as error:
+            lines(layout, *wrapped(context, f"{error}."), icon="ERROR")
+            return
         if held:
             lines(layout, *wrapped(context, f"Stays clear of {', '.join(held)}"))
 
