@@ -15,6 +15,7 @@ import riffler
 
 from ..core.surroundings import Making, Surroundings
 from . import events, parts, units
+from .plan_states import scene_of
 
 CLASSES = ()
 
@@ -112,7 +113,7 @@ def ask(context, ob):
 def known(ob):
     """The same if they are there and nothing has changed since, otherwise None."""
     kept = _kept.get(ob.name)
-    return kept.made if kept is not None and not kept.doubtful else None
+    return kept.made if kept is not None and not suspect(SceneContext(scene_of(ob)), ob) else None
 
 
 def suspect(context, ob):
@@ -126,7 +127,15 @@ def suspect(context, ob):
 
 def version(ob):
     """Another one wherever it may be worth asking again, or the surroundings are others."""
-    return ("made", _kept[ob.name].number) if known(ob) is not None else ("changed", _changes)
+    return ("made", _kept[ob.name].number) if known(ob) is not None else ("changed", _changes, _who(scene_of(ob), ob))
+
+
+def _who(scene, ob):
+    """What Taken.who has, or why there is nothing to be had."""
+    try:
+        return _objects(SceneContext(scene), ob)[2]
+    except ValueError as error:
+        return (str(error),)
 
 
 def _objects(context, ob):

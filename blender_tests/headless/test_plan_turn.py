@@ -153,6 +153,28 @@ def test_surroundings_are_made_once_and_again_where_something_moved():
     assert surroundings.now(bpy.context, ob).collider is not None and surroundings.made == made + 3
 
 
+def test_a_fixture_that_comes_or_goes_makes_what_is_known_old():
+    """As + does it to a collection that is there: no object that is known of says that it has changed."""
+    ob = plans.on_timeline(chosen=plans.paths()[:1])
+    settings, surroundings = bpy.context.scene.riffler.plan, support.part("bl.surroundings")
+    settings.part = plans.part_object()
+    bpy.context.scene.frame_set(73)
+    assert look(ob, (0, -0.6, 0.8)).free
+    version = surroundings.version(ob)
+    clamp = bpy.data.objects.new("Clamp", plans.part_object().data)
+    settings.fixtures = bpy.data.collections.new("Fixtures")
+    bpy.context.scene.collection.children.link(settings.fixtures)
+    for change in (settings.fixtures.objects.link, settings.fixtures.objects.unlink):
+        known = surroundings.known(ob)
+        assert known is not None
+        change(clamp)
+        assert surroundings.known(ob) is None and surroundings.version(ob) != version
+        assert surroundings.now(bpy.context, ob) is not known
+        version = surroundings.version(ob)
+    settings.part = None
+    assert surroundings.known(ob) is None and surroundings.version(ob) != version
+
+
 def test_a_map_is_made_when_somebody_looks_and_again_only_where_the_point_is_another():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=plans.paths()[:1])
