@@ -17,7 +17,7 @@ import riffler
 
 from ..core import keys, motion, playback
 from ..core.surroundings import nothing
-from . import events, plan_collisions, plan_states, plan_store, surroundings, timeline, units
+from . import events, plan_collisions, plan_states, plan_store, simulating, surroundings, timeline, units
 from .plan_states import Baked, on_timeline, rendering, scene_of, state
 
 CLASSES = ()
@@ -66,6 +66,8 @@ def sync(scene, plan_ob):
         bake(scene, plan_ob, plan)
     except ERRORS as error:
         now.problems.append(str(error))
+    if now.changes:
+        simulating.drop_outdated()
 
 
 def _take_keys(plan_ob, plan, tool, now):

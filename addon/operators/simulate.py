@@ -3,7 +3,7 @@
 import bpy
 
 from .. import properties
-from ..bl import programs, simulating, timeline
+from ..bl import programs, replan, simulating, timeline
 from ..core import units as names
 from . import shared
 
@@ -31,6 +31,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
     def execute(self, context):
         try:
             simulating.end()
+            replan.flush()  # the program is that of the keys as they are now
             setup = programs.take(context, self)
             now = simulating.begin(context, setup)
             if now is None:
