@@ -13,6 +13,8 @@ from ..core import record
 from ..core.cache import ContentCache
 from . import packed, sculpts
 
+RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
+
 
 @dataclass
 class _Kept:

@@ -14,7 +14,7 @@ from ..core import course, problems
 from ..core import units as names
 from . import live, plan_fit, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
 
-RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
+RESOLVED = plan_store.RESOLVED
 
 
 # ------------------------------------------------------------------ of a plan

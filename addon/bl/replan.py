@@ -2,8 +2,8 @@
 
 The keyframes are what counts: the plan's keys and the animation follow from them, whoever has changed them and in
 which way, Blender's own tools, a script, undo or a file that was opened. Nothing here is an undo step: what follows
-from an edit goes with that edit, and after an undo it is made again from the keyframes that came back. So one Ctrl Z
-takes back a key and what it did.
+from an edit goes with that edit, and after an undo it is made again from the keyframes that came back, cutter locations
+from memory. So one Ctrl Z takes back a key and what it did.
 
 In a window this happens when nothing has changed for a tenth of a second; without one timers never run, and it happens
 at once.
@@ -81,12 +81,14 @@ def _take_keys(plan_ob, plan, tool, now):
     reading = keys.read(layout_of(plan_ob, plan), frames, quats)
     now.problems += reading.problems
     paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
+    mark = plan.provenance.get(plan_store.RESOLVED)
     for k, path in enumerate(plan.paths):
         change = keys.change(path.keys, reading.keys[k])
         if not change:
             continue
         try:
-            paths[k], cl[k] = _oriented(path, change.keys), None
+            before = now.resolved.get(k, path, change.keys, mark)
+            paths[k], cl[k] = before or (_oriented(path, change.keys), None)
             now.changes[k] = change
         except ValueError as error:
             now.problems.append(f"Path {k + 1}, {error}; it stays as it was")
@@ -127,6 +129,7 @@ def bake(scene, plan_ob, plan):
             along = _motion(path, rows, track, plan.tool)
             entries.append(Baked(path, rows, ends, along, motion.played(along)))
             now.baked += 1
+            now.resolved.put(k, path, rows, plan.provenance.get(plan_store.RESOLVED))
     mm = units.mm_per_unit(scene)
     timeline.bake(ghost, *motion.joined([e.played for e in entries]), mm)
     play = timeline.player(ghost, mm) if any(len(e.motion) for e in entries) else None
