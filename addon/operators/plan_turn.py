@@ -252,8 +252,8 @@ class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_point_key(PointsAt, bpy.types.Operator):
-    """Set a key at this point of the path: the free orientation that leans least, or, where there is no part to look
-    at, the one it has"""
+    """Set a key at this point of the path: the free orientation that leans least, and none where none is free. Only
+    where there is no part to look at, the one it has"""
 
     bl_idname = "riffler.plan_point_key"
     bl_label = "Set Free Key at Point"
@@ -276,7 +276,7 @@ class RIFFLER_OT_plan_point_key(PointsAt, bpy.types.Operator):
             return spot.axis, "There is no part: the orientation is the one it was"
         found = looking.free_orientations(context.scene, surroundings.now(context, spot.ob), spot)
         if found.suggestion is None:
-            return spot.axis, f"No orientation is free here: {found.reason}"
+            raise ValueError(f"No orientation is free here: {found.reason}: no key was set")
         return found.suggestion, ""
 
 

@@ -108,6 +108,27 @@ def test_points_are_gone_to_and_free_keys_set_there():
     assert close(paths(ob)[0].keys[72], np.array((0, -1, 1)) / math.sqrt(2), 1e-9)
 
 
+def test_where_nothing_is_free_no_key_is_set():
+    """A plate over the step's whole floor, 5 mm above the ball's tip."""
+    part = plans.part_object()
+    ob = plans.on_timeline(chosen=plans.paths()[:1])
+    settings = bpy.context.scene.riffler.plan
+    settings.part, settings.fixtures = part, bpy.data.collections.new("Fixtures")
+    bpy.context.scene.collection.children.link(settings.fixtures)
+    mesh = bpy.data.meshes.new("Plate")
+    x, y, z = np.meshgrid((-50, 110), (-50, 90), (13, 20), indexing="ij")
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    mesh.from_pydata(np.c_[x.ravel(), y.ravel(), z.ravel()].tolist(), [], faces)
+    settings.fixtures.objects.link(bpy.data.objects.new("Plate", mesh))
+    update()
+    store = support.part("bl.plan_store")
+    identity, frame = store.identity(ob), bpy.context.scene.frame_current
+    call = lambda: bpy.ops.riffler.plan_point_key(path=1, point=72)  # noqa: E731
+    support.refused(call, "No orientation is free here", "no key was set")
+    assert store.identity(ob) == identity and bpy.context.scene.frame_current == frame
+    assert len(curves(pair(ob)[0])[0].keyframe_points) == 2
+
+
 def look(ob, axis):
     surroundings, looking, turning = (support.part(f"bl.{name}") for name in ("surroundings", "looking", "turning"))
     spot = turning.spot(bpy.context.scene, ob)
