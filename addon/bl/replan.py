@@ -17,7 +17,7 @@ import riffler
 
 from ..core import keys, motion, playback
 from ..core.surroundings import nothing
-from . import events, plan_collisions, plan_states, plan_store, simulating, surroundings, timeline, units
+from . import events, plan_collisions, plan_states, plan_store, simulating, timeline, units
 from .plan_states import Baked, on_timeline, rendering, scene_of, state
 
 CLASSES = ()
@@ -140,7 +140,7 @@ def bake(scene, plan_ob, plan):
         now.difference = now.difference.worse(entry.difference or playback.Difference())
     now.motions = entries
     timeline.settle(scene, tool, ghost, afresh=True)
-    if now.near is not None:
+    if now.near is not None and plan_collisions.asked(plan_ob):
         plan_collisions.look(scene, plan_ob)
 
 
@@ -167,6 +167,7 @@ def _due():
         return WAIT
     for plan_ob in on_timeline():
         sync(scene_of(plan_ob), plan_ob)
+    _look_later(on_timeline())
     return None
 
 
@@ -188,6 +189,9 @@ def _on_update(scene, depsgraph):
     plans = on_timeline()
     if not plans or depsgraph.mode == "RENDER":
         return
+    if not all(state(p).synced for p in plans):  # of another name now, or appended
+        _soon()
+        return
     ids = [u.id.original for u in depsgraph.updates]
     if any(isinstance(i, bpy.types.Action) for i in ids) and _changed(plans):
         _soon()
@@ -204,8 +208,7 @@ def _look_later(plans):
     fixtures that it moves one by one are not to be looked at each time."""
     if bpy.app.background:
         return
-    asked = [p for p in plans if state(p).near is not None]
-    if any(surroundings.suspect(surroundings.SceneContext(scene_of(p)), p) for p in asked):
+    if any(plan_collisions.outdated(p) for p in plans):
         _later(plan_collisions.look_again)
 
 
