@@ -22,7 +22,8 @@ CLASSES = ()
 
 @dataclass
 class Taken:
-    """Surfaces in millimetres of the scene. `prints`: their hashes."""
+    """Surfaces in millimetres of the scene, and the task (as a riffler.Task is one) that makes surroundings of them.
+    `prints`: their hashes."""
 
     who: tuple  # names of part and fixtures, and the scene's millimetres
     part: riffler.Mesh
@@ -36,6 +37,19 @@ class Taken:
     def begin(self):
         if self.made is None and self.making is None:
             self.making = Making(self.part, self.who[0], self.fixtures)
+
+    @property
+    def done(self):
+        """Asked now and then, from the first time on it is made; where it is, `result` does not wait."""
+        self.begin()
+        return self.making is None or self.making.done
+
+    @property
+    def share(self):
+        return 1.0 if self.making is None else self.making.share
+
+    def cancel(self):
+        """It goes on: whoever asks next has it."""
 
     def result(self):
         """The core.surroundings.Surroundings, however long they take."""
@@ -106,8 +120,7 @@ def ask(context, ob):
     kept = _kept.get(ob.name)
     if kept is None or kept.doubtful or kept.who != _objects(context, ob)[2]:
         kept = take(context, ob)
-    kept.begin()
-    return kept.result() if kept.making is None or kept.making.done else None
+    return kept.result() if kept.done else None
 
 
 def known(ob):

@@ -150,6 +150,12 @@ class Making:
             self._collide()
         return all(task.done for task in self._colliders)
 
+    @property
+    def share(self) -> float:
+        """Of the work that is done, 0 … 1."""
+        begun = [*self._volumes, *(self._colliders or ())]
+        return sum(task.share for task in begun) / (2 * len(self._volumes) + 1)
+
     def result(self) -> Surroundings:
         """Waits for it; raises what went wrong."""
         if self._colliders is None:

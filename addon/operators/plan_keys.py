@@ -9,6 +9,7 @@ from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntPrope
 from ..bl import plan_collisions, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import keys, quaternions
+from ..core.job import AfterJob
 from . import shared
 from .plan_work import TimelineWork, plan_poll, tell, tell_all, timeline_poll
 
@@ -236,8 +237,11 @@ class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
             raise ValueError("; ".join(plan_states.state(ob).problems) or "Nothing plays: use Plan to Timeline")
         taken = surroundings.take(context, ob)
         self._notes = plan_fit.notes(context, plan, taken)
-        self._near, self._known = taken.result(), {}
-        return plan_collisions.clearance_job(ob, self._near, self._known)
+        return AfterJob(taken, self._look, in_background=False)
+
+    def _look(self, near):
+        self._near, self._known = near, {}
+        return plan_collisions.clearance_job(self.ob, near, self._known)
 
     def finish(self, context, job):
         now = plan_states.state(self.ob)

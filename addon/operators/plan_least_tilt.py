@@ -10,6 +10,7 @@ from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntPrope
 from ..bl import findings, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
 from ..core import keys, locating, tilting
 from ..core import units as names
+from ..core.job import AfterJob
 from ..core.surroundings import guarded
 from . import plan_keys, shared
 from .plan_work import TimelineWork
@@ -79,14 +80,18 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             return tilting.SearchesJob([tilting.Given(path, axis) for path in chosen])
         taken, clearance = surroundings.take(context, ob), units.clean(context.scene.riffler.plan.clearance)
         self._notes = plan_fit.notes(context, plan, taken)
-        rule = tilting.Rule(
-            tool=guarded(plan.tool, clearance),
-            collider=taken.result().collider,
-            tolerance=plan.tolerance or 0.01,
-            count=self.count,
-            limit=None if self.limit >= math.pi - 1e-6 else (axis, float(self.limit)),
-        )
-        return tilting.SearchesJob([tilting.Search(path, rule) for path in chosen])
+        sizes = {
+            "tool": guarded(plan.tool, clearance),
+            "tolerance": plan.tolerance or 0.01,
+            "count": self.count,
+            "limit": None if self.limit >= math.pi - 1e-6 else (axis, float(self.limit)),
+        }
+
+        def search(near):
+            rule = tilting.Rule(collider=near.collider, **sizes)
+            return tilting.SearchesJob([tilting.Search(path, rule) for path in chosen])
+
+        return AfterJob(taken, search)
 
     def _chosen(self, context, ob, plan):
         """Numbers of the paths, from 0. ValueError where there are none."""

@@ -12,7 +12,7 @@ from ..bl import findings, plan_fit, plan_states, plan_store, programs, replan, 
 from ..bl.turning import plan_object
 from ..core import locating, problems
 from ..core import units as names
-from ..core.job import ChainJob
+from ..core.job import AfterJob, ChainJob
 from ..core.surroundings import guarded
 from ..properties.plan import MACHINES
 from . import shared
@@ -51,10 +51,11 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         open_ones = set(plan_store.unresolved(plan)) if same else set(turned)
         self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
         self._found = []
-        collider = taken.result().collider
         tool = guarded(plan.tool, clearance)  # the cutter touches what it cuts
         sizes = {"tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
+        return AfterJob(taken, lambda near: self._all(plan, tool, near.collider, sizes))
 
+    def _all(self, plan, tool, collider, sizes):
         def start(k):
             def go(before):
                 self._found += [before] if before is not None else []
