@@ -1,6 +1,9 @@
 """What the tests in Blender share. JOB, MODULE and Skip are set by the harness."""
 
+import ctypes
 import importlib
+import os
+import sys
 from pathlib import Path
 
 import bpy
@@ -114,6 +117,27 @@ def refused(call, *words):
         assert all(w in text for w in words), text
         return text
     raise AssertionError("no error was reported")
+
+
+def printed(call):
+    """What Blender prints while it runs, which are the operators' reports where no window shows them."""
+    path, kept = Path(out("printed.txt")), os.dup(1)
+    _flush()
+    with path.open("w") as file:
+        os.dup2(file.fileno(), 1)
+        try:
+            call()
+        finally:
+            _flush()
+            os.dup2(kept, 1)
+            os.close(kept)
+    return path.read_text()
+
+
+def _flush():
+    """Blender prints some by itself, and some by Python."""
+    sys.stdout.flush()
+    ctypes.CDLL(None).fflush(None)
 
 
 def figure(name, value):

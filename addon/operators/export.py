@@ -9,7 +9,6 @@ from .. import properties
 from ..bl import live, programs, sculpts
 from ..core import poses, problems, threemf_out
 from ..core import units as names
-from ..translations import local
 from . import paths, shared
 
 
@@ -49,8 +48,9 @@ class ExportSurface(Export):
     )
 
     def write(self, context, ob, path):
-        if live.of(ob) is None and sculpts.edited(ob.data):
-            self.report({"WARNING"}, local("The mesh was edited: what is written is the volume, without the edits"))
+        if live.of(ob) is None:
+            shared.tell_edits(self, ob.data, lost=False)
+        shared.tell_modifiers(self, ob)
         surface = live.content(ob).volume.to_mesh()
         if self.world:
             surface = placed(surface, sculpts.to_world_mm(ob, context.scene))

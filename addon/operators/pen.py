@@ -14,7 +14,6 @@ from ..bl import chosen, events, fixtures, pen_session, sculpts, working
 from ..core import brush, problems
 from ..core import units as names
 from ..drawing import force, pace
-from ..translations import local
 from . import shared
 
 FRAME = 1 / 30  # s from one look to the next
@@ -179,10 +178,8 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
         ob = sculpts.active(context)
         try:
             mode = mode_of(context, self.mode)
-            if sculpts.edited(ob.data) and not sculpts.behind(ob.data):
-                self.report(
-                    {"WARNING"}, local("The mesh had been edited: the pen starts from the volume, the edits are gone")
-                )
+            if not sculpts.behind(ob.data):
+                shared.tell_edits(self, ob.data)
             depth = names.clean(context.scene.riffler.sculpt.depth)
             tool = tool_for(mode, riffler.Tool.from_dict(self.tool_dict(context)), depth)
             folder, options = recordings(self), session_options(context, ob, self, mode)

@@ -21,9 +21,11 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
     bl_label = "To Mesh"
     doing = "Making a mesh"
     cancelled = "No mesh was made"
+    leaves_mesh = True
 
     def begin(self, context):
-        _, content = self.take(context)
+        ob, content = self.take(context)
+        shared.tell_modifiers(self, ob)
         iterations, tolerance = self.iterations, units.clean(self.tolerance)
 
         def first(_):

@@ -150,8 +150,11 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
 
 
 def _is_its_volume(context, ob):
-    """Of a sculpt: whether it stands in the world as its volume is, as large, unturned inside out and unmodified."""
-    if not sculpts.is_sculpt(ob) or any(modifier.show_viewport for modifier in ob.modifiers):
+    """Of a sculpt: whether what is seen in the world is its volume, as large, not turned inside out, and neither
+    modified nor edited."""
+    if not sculpts.is_sculpt(ob) or sculpts.modified(ob):
+        return False
+    if live.of(ob) is None and sculpts.changed(ob.data):
         return False
     shown, scene = sculpts.shown_mm_per_unit(ob.data), units.mm_per_unit(context.scene)
     return not sculpts.distorted(ob) and not ob.matrix_world.is_negative and np.isclose(shown, scene, rtol=1e-6)

@@ -12,7 +12,6 @@ from ..bl import fixtures, live, sculpts
 from ..core import brush, units
 from ..core.stroke import Sample
 from ..drawing import force, pace, pointer
-from ..translations import local
 from . import shared
 
 LOOK = 1 / 30  # s from one look to the next
@@ -114,12 +113,9 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
     def _take_up(self, context):
         ob = sculpts.active(context)
         self._fresh = live.of(ob) is None
-        edited = self._fresh and sculpts.edited(ob.data)
+        if self._fresh:
+            shared.tell_edits(self, ob.data)
         self._run = live.begin(context, ob)
-        if edited:
-            self.report(
-                {"WARNING"}, local("The mesh had been edited: the stroke starts from the volume, the edits are gone")
-            )
 
     def _start(self, context, view):
         ob = sculpts.active(context)

@@ -1,9 +1,7 @@
 """What is said where something cannot be: every refusal names the remedy, and nothing is changed or lost."""
 
-import ctypes
 import os
 import struct
-import sys
 from pathlib import Path
 
 import bmesh
@@ -158,27 +156,6 @@ def from_object(**more):
     return bpy.ops.riffler.new_stock(source="OBJECT", **{"pitch": 0.5, "directions": "z", **more})
 
 
-def printed(call):
-    """What Blender prints while it runs, which are the operators' reports where no window shows them."""
-    path, kept = Path(support.out("printed.txt")), os.dup(1)
-    flush()
-    with path.open("w") as file:
-        os.dup2(file.fileno(), 1)
-        try:
-            call()
-        finally:
-            flush()
-            os.dup2(kept, 1)
-            os.close(kept)
-    return path.read_text()
-
-
-def flush():
-    """Blender prints some by itself, and some by Python."""
-    sys.stdout.flush()
-    ctypes.CDLL(None).fflush(None)
-
-
 def test_objects_without_volume():
     support.scale(1)
     bpy.ops.mesh.primitive_plane_add(size=20)
@@ -203,10 +180,10 @@ def opened(ob):
 def test_an_open_object_is_closed_and_that_is_said():
     support.scale(1)
     opened(cube())
-    assert "is not closed: 4 open edges" in printed(from_object)
+    assert "is not closed: 4 open edges" in support.printed(from_object)
     assert abs(support.content(bpy.context.object).volume.volume - 8000) < 1
     cube(location=(50, 0, 0))
-    assert "Warning" not in printed(from_object)
+    assert "Warning" not in support.printed(from_object)
 
 
 def test_metres_taken_for_millimetres_are_refused_at_once():
@@ -233,7 +210,7 @@ def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
     bpy.context.view_layer.update()
     assert "Clear > Scale" in distorted(ob)
     line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
-    assert "Clear > Scale" in printed(lambda: bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT))
+    assert "Clear > Scale" in support.printed(lambda: bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT))
     above = bpy.data.objects.new("Above", None)
     bpy.context.collection.objects.link(above)
     ob.scale, ob.parent, above.scale = (1, 1, 1), above, (1, 3, 1)

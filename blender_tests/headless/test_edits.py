@@ -1,0 +1,123 @@
+"""What Blender's own tools have done to a sculpt's mesh is seen by whatever takes the sculpt up, and said."""
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+import support
+
+LOST, LEFT_OUT = "the edits are gone", "without the edits"
+
+
+def ball():
+    """A sphere of radius 20 as a sculpt."""
+    support.scale(1)
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=20, segments=64, ring_count=32)
+    bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz")
+    return bpy.context.object
+
+
+def pull(ob, centre, by=3.0, radius=8.0):
+    """As a brush of sculpt mode does."""
+    co = support.coordinates(ob.data)
+    fall = np.clip(1 - np.linalg.norm(co - centre, axis=1) / radius, 0, 1)[:, None]
+    co += (by * fall * np.asarray(centre) / np.linalg.norm(centre)).astype(np.float32)
+    ob.data.vertices.foreach_set("co", co.ravel())
+    ob.data.update()
+
+
+def test_every_local_pull_is_seen():
+    ob, sculpts = ball(), support.part("bl.sculpts")
+    whole, missed = support.coordinates(ob.data), 0
+    assert not sculpts.changed(ob.data)
+    places = np.random.default_rng(5).normal(size=(40, 3))
+    for centre in 20 * places / np.linalg.norm(places, axis=1)[:, None]:
+        pull(ob, centre)
+        assert sculpts.changed(ob.data)
+        missed += not sculpts.edited(ob.data)
+        ob.data.vertices.foreach_set("co", whole.ravel())
+        assert not sculpts.changed(ob.data)
+    assert missed > 10  # which the panel's cheap look does not see
+
+
+def local_pull():
+    """A sculpt that was pulled where the cheap look sees nothing."""
+    ob, sculpts = ball(), support.part("bl.sculpts")
+    pull(ob, (12.0, 9.0, 13.0))
+    assert sculpts.changed(ob.data) and not sculpts.edited(ob.data)
+    return ob
+
+
+def test_whatever_changes_the_sculpt_says_that_the_edits_go():
+    import sculpting
+
+    line = support.curve("Line", [(-30, 0, 18), (30, 0, 18)], mm_per_unit=1.0)
+    calls = {
+        "cut": lambda: bpy.ops.riffler.cut_curve(curve=line.name, tool=support.BALL),
+        "pitch": lambda: bpy.ops.riffler.resample(pitch=1.0),
+        "crop": lambda: bpy.ops.riffler.crop(point=(0, 0, 15), normal=(0, 0, 1)),
+        "mask": lambda: bpy.ops.riffler.mask_invert(),
+        "units": lambda: bpy.ops.riffler.millimetres(),
+    }
+    for name, call in calls.items():
+        local_pull()
+        said = support.printed(call)
+        assert LOST in said and "Take Edits" in said, (name, said)
+        assert "edits" not in support.printed(lambda: bpy.ops.riffler.mask_invert()), name
+    local_pull()
+    support.push("pull")
+    assert LOST in support.printed(lambda: bpy.ops.riffler.stroke(stroke=STROKE))
+    assert "edits" not in support.printed(lambda: bpy.ops.riffler.stroke(stroke=STROKE))
+    sculpting.live().end_all()
+
+
+STROKE = (
+    '{"view": {"matrix": [0.02, 0, 0, 0, 0, 0.02, 0, 0, 0, 0, -0.01, 0, 0, 0, 0, 1], "size": [200, 200]}, '
+    '"rows": [[90, 100], [95, 100], [110, 100]]}'
+)
+
+
+def test_what_is_made_of_the_volume_says_that_the_edits_are_not_in_it():
+    ob = local_pull()
+    path = support.out("edited.stl")
+    assert LEFT_OUT in support.printed(lambda: bpy.ops.riffler.export_stl(filepath=path))
+    assert LEFT_OUT in support.printed(lambda: bpy.ops.riffler.to_mesh(tolerance=0.0, hide_sculpt=False))
+    support.select(ob)
+    assert bpy.ops.riffler.take_edits() == {"FINISHED"}
+    bend = ob.modifiers.new("Bend", "SIMPLE_DEFORM")
+    for seen in (True, False):
+        bend.show_viewport = seen
+        support.select(ob)
+        for call in (
+            lambda: bpy.ops.riffler.export_stl(filepath=path),
+            lambda: bpy.ops.riffler.to_mesh(tolerance=0.0, hide_sculpt=False),
+        ):
+            said = support.printed(call)
+            assert LEFT_OUT not in said and ("has modifiers" in said) == seen, said
+            support.select(ob)
+
+
+def test_stock_from_an_edited_sculpt_is_what_is_seen():
+    ob = local_pull()
+    before = support.content(ob).volume.volume
+    assert "edits" not in support.printed(
+        lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz")
+    )
+    made = bpy.context.object
+    assert made != ob and support.content(made).volume.volume > before + 50
+
+
+def test_a_file_of_an_older_add_on_has_no_checksum_to_go_by():
+    ob, sculpts = local_pull(), support.part("bl.sculpts")
+    ob.data.riffler.shown_crc = ""
+    assert not sculpts.changed(ob.data)
+    path = support.out("edits.blend")
+    bpy.ops.riffler.rebuild()
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    ob = bpy.context.object
+    assert ob.data.riffler.shown_crc and not sculpts.changed(ob.data)
+    pull(ob, (12.0, 9.0, 13.0))
+    assert sculpts.changed(ob.data)
+    Path(path).unlink()
