@@ -69,7 +69,7 @@ class RifflerMesh(bpy.types.PropertyGroup):
     shown: IntVectorProperty(size=2)
     shown_of: StringProperty(description="Content id of the volume that the mesh was made of")
     shown_at: FloatVectorProperty(size=24)
-    shown_crc: StringProperty(description="Checksum of all coordinates as they were shown; older files have none")
+    shown_crc: StringProperty()  # of all coordinates as they were shown; files of older add-ons have none
     lower: FloatVectorProperty()
     upper: FloatVectorProperty()
     pitch: FloatProperty()
