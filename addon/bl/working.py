@@ -77,11 +77,12 @@ class Live:
         self._identities = {store.identity(ob.data)}  # under which the file has states of this work
         self.stages = Stages()
         self.volume, self.mask, self.cuts = content.volume.copy(), _copy(content.mask), list(content.cuts)
+        self.shaped = content.shaped  # by other means than cuts
         self._mesher, self._stale = None, False  # stale: it has another state than the volume
         self.maps, self.centre = symmetry.maps(), 0.5 * (self.volume.lower + self.volume.upper)
         self.strength = 0.5  # of dabs that soften
         self.awake, self._away = True, leaving.Away()
-        self._strokes, self._begin = [], None  # of the stroke that is being made
+        self._strokes, self._begin, self._softened = [], None, False  # of the stroke that is being made
         self._masked, self._painted = [], []  # where the mask has changed since the last look, and in this stroke
         self.token = ""
         self._facts = None  # (token, of it)
@@ -136,16 +137,16 @@ class Live:
         ob = self.object
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
-        self._strokes, self._painted = [], []
+        self._strokes, self._painted, self._softened = [], [], False
         self._begin = self.volume.copy(), _copy(self.mask)
         self._next = uuid.uuid4().hex  # the token of the state that the stroke makes
         versions.lighten(ob.data)
-        self.keeping.begin_stroke(ob, self.token, Content(self._begin[0], self.cuts, self._begin[1]))
+        self.keeping.begin_stroke(ob, self.token, Content(self._begin[0], self.cuts, self._begin[1], self.shaped))
 
     def begin_device_stroke(self):
         """What a device has begun to take belongs to a stroke."""
         content = snapshots.get(self.token).content
-        self._strokes, self._painted = [], []
+        self._strokes, self._painted, self._softened = [], [], False
         self._begin, self._next = (content.volume.copy(), _copy(content.mask)), uuid.uuid4().hex
         versions.lighten(self.object.data)
 
@@ -194,6 +195,7 @@ class Live:
             self._painted.append(self._masked[-1])
             return self.mask.carve(tool, poses, dt=dt, mode="add" if mode == "mask" else "remove")
         if mode == "soften":
+            self._softened = True
             self.volume.soften(poses[:, :3], 0.5 * tool.diameter, self.strength, self.mask)
             return None
         return self.volume.carve(tool, poses, dt=dt, mode=mode, protect=self.mask)
@@ -233,7 +235,9 @@ class Live:
         begin, self._begin = self._begin, None
         if begin is None or (begin[0].revision == self.volume.revision and _revision(begin[1]) == _revision(self.mask)):
             return False
-        self.cuts = [*self.cuts, *(Cut(tool, np.vstack(rows), mode=mode) for _, tool, mode, rows in self._strokes)]
+        beside = self.mask is not None
+        self.cuts = [*self.cuts, *(Cut(t, np.vstack(rows), mode=m, masked=beside) for _, t, m, rows in self._strokes)]
+        self.shaped |= self._softened
         self.show()
         ob = self.object
         self._remember(ob, self._next)
@@ -251,9 +255,12 @@ class Live:
             self.keeping.cancelled()
             self.show()
 
+    def _content(self):
+        return Content(self.volume.copy(), self.cuts, _copy(self.mask), self.shaped)
+
     def _remember(self, ob, token=""):
         before, self.token = self.token, token or uuid.uuid4().hex
-        content = Content(self.volume.copy(), self.cuts, _copy(self.mask))
+        content = self._content()
         state = State(content, tuple(self._mesher.shape), dict(self.chunks.fillings))
         snapshots.most = bpy.context.preferences.edit.undo_steps + SPARE
         snapshots.hold({other.token for other in lives.values()})
@@ -290,7 +297,7 @@ class Live:
     def _bring(self, content, token):
         if self.device is None or not self.device.go(content):
             self.volume = content.volume.copy()
-        self.mask, self.cuts = _copy(content.mask), list(content.cuts)
+        self.mask, self.cuts, self.shaped = _copy(content.mask), list(content.cuts), content.shaped
         self.token, self._stale = token, True
         if self.device is not None:
             _ = self.mesher  # has to know what is shown before the device cuts on
@@ -316,7 +323,7 @@ class Live:
         if ob is None:
             return
         if self._changed(ob):
-            content = Content(self.volume.copy(), self.cuts, _copy(self.mask))
+            content = self._content()
             sculpts.commit(ob.data, content, self.mm, "" if self._begin else self.token)
             self._identities.add(store.identity(ob.data))
         elif sculpts.behind(ob.data) or not ob.data.polygons:
@@ -371,7 +378,7 @@ class Live:
             other.riffler.mark = other.riffler.token = ""
             if not sculpts.is_sculpt(other) or other.data == ob.data:
                 continue
-            sculpts.commit(other.data, Content(self.volume.copy(), self.cuts, _copy(self.mask)), self.mm)
+            sculpts.commit(other.data, self._content(), self.mm)
             chunks.reveal(other)
 
 

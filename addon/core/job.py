@@ -111,6 +111,7 @@ class Cut:
     poses: np.ndarray  # (n, 6) tip and axis, mm, stock's frame
     tolerance: float = 0.01  # mm, as carve is given it
     mode: str = "remove"  # as carve is given it
+    masked: bool = False  # made beside a mask: cut again without it, it takes what that protected
 
     @property
     def moves(self) -> int:

@@ -1,5 +1,7 @@
 """What is done to a sculpt as a whole: another pitch, cut off by a plane, taken apart, edits taken over."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
@@ -41,7 +43,7 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
         before, mask = self._before, self._before.mask
         if mask is not None:
             mask = mask.resampled(units.clean(self.pitch), self._wanted)
-        self.keep(job.result, before.cuts, mask)
+        self.keep(replace(before, volume=job.result, mask=mask))
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{names.format_count(job.result.rays)} rays; material {_signed(off)}")
         return {"FINISHED"}
@@ -67,7 +69,7 @@ class RIFFLER_OT_crop(SculptEdit, bpy.types.Operator):
         volume = content.volume.copy().clip(point, -normal if self.flip else normal)
         if volume.volume <= 0:
             raise ValueError("nothing would be left: choose the other side, or move the plane")
-        return Content(volume, content.cuts, content.mask)
+        return replace(content, volume=volume, shaped=True)
 
     def tell(self, before, after):
         taken = before.volume.volume - after.volume.volume
@@ -114,7 +116,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
                 for collection in collections:
                     if new.name not in collection.objects:
                         collection.objects.link(new)
-            self.keep(first, self._before.cuts, self._before.mask)  # last: until then the sculpt has all pieces
+            self.keep(replace(self._before, volume=first))  # last: until then the sculpt has all pieces
         except BaseException:
             bpy.data.batch_remove([*made, *(new.data for new in made)])
             sculpts.select_only(context, ob)
@@ -146,7 +148,7 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
     def finish(self, context, job):
         if job.result.volume <= 0:
             raise ValueError("the edited mesh has no volume: close it, or undo the edits")
-        self.keep(job.result, [], None)
+        self.keep(Content(job.result, shaped=True))
         ob = bpy.data.objects[self._object]
         for modifier in [m for m in ob.modifiers if m.show_viewport]:
             ob.modifiers.remove(modifier)

@@ -9,6 +9,7 @@ from .. import properties
 from ..bl import live, programs, sculpts
 from ..core import poses, problems, threemf_out
 from ..core import units as names
+from ..translations import local
 from . import paths, shared
 
 
@@ -34,9 +35,16 @@ class Export(ExportHelper):
     def removing(self, ob, content):
         """programs.removing, and a word on what is left out."""
         cuts = programs.removing(ob.name, content)
-        added = len(content.cuts) - len(cuts)
+        added, masked = len(content.cuts) - len(cuts), sum(cut.masked for cut in cuts)
         if added:
             self.report({"WARNING"}, f"{added} strokes that put material on are left out: no machine can make them")
+        if masked:
+            self.report({"WARNING"}, f"Cuts made beside a mask: {masked}. What is written cuts what it protected, too")
+        if content.shaped:
+            self.report(
+                {"WARNING"},
+                local("Crop, smoothing, reliefs and edits of the mesh are not in what is written: it has cuts only"),
+            )
         return cuts
 
 

@@ -1,5 +1,7 @@
 """Pictures raised on a sculpt or engraved into it."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import riffler
@@ -41,7 +43,7 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
         if before.mask is not None:
             form.subtract(before.mask)
         volume.add(form) if self.mode == "RAISE" else volume.subtract(form)
-        self.keep(volume, before.cuts, before.mask)
+        self.keep(replace(before, volume=volume, shaped=True))
         self._tell_change(abs(volume.volume - before.volume.volume))
         return {"FINISHED"}
 

@@ -3,7 +3,6 @@
 import bpy
 
 from ..bl import live, sculpts, store
-from ..core.cache import Content
 from . import shared
 from .long import LongWork
 
@@ -38,8 +37,8 @@ class SculptWork(LongWork):
     def mesh(self):
         return bpy.data.objects[self._object].data
 
-    def keep(self, volume, cuts, mask):
-        sculpts.commit(self.mesh, Content(volume, cuts, mask), sculpts.shown_mm_per_unit(self.mesh))
+    def keep(self, content):
+        sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh))
 
 
 class SculptEdit:

@@ -26,9 +26,9 @@ def lane(y, *xs):
 class Work:
     """Carves and keeps, as a live sculpt does."""
 
-    def __init__(self, root, cuts=(), **more):
+    def __init__(self, root, cuts=(), shaped=False, **more):
         self.volume, self.mask = riffler.Volume.block(*BOX), None
-        self.journal = journal.LiveJournal(root, Content(self.volume.copy(), list(cuts)), "t0", **more)
+        self.journal = journal.LiveJournal(root, Content(self.volume.copy(), list(cuts), shaped=shaped), "t0", **more)
         self.states = {"t0": self.volume.to_bytes()}
 
     def carve(self, poses, mode, token):
@@ -60,6 +60,14 @@ def test_every_state_is_told_again(tmp_path):
     assert work.journal.state("nowhere") is None
     assert work.journal.state("d").mask.to_bytes() == work.mask.to_bytes()
     assert [(c.mode, c.moves) for c in work.journal.state("d").cuts] == [("remove", 2), ("remove", 1), ("add", 1)]
+    assert [c.masked for c in work.journal.state("d").cuts] == [False, True, True]
+    assert [work.journal.state(token).shaped for token in ("c", "s", "d")] == [False, True, True]
+
+
+def test_what_other_means_had_shaped_before_is_told_again(tmp_path):
+    work = Work(tmp_path, shaped=True)
+    work.stroke("a", lane(10, 5, 20, 35))
+    assert work.journal.state("a").shaped and len(work.journal.state("a").cuts) == 1
 
 
 def test_going_back_and_on_is_written(tmp_path):
