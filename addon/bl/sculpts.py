@@ -7,7 +7,6 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ..core.cache import Content
 from . import masks, meshes, store, units
 
 
@@ -40,17 +39,18 @@ def key_of(ob):
     return ob.name, ob.library.filepath if ob.library else None
 
 
-def new_object(context, name, volume, matrix, cuts=(), mm_per_unit=None):
-    """A new sculpt in the active collection at `matrix` (world), active and the only one selected. `mm_per_unit`: None
-    for the scene's."""
+def new_object(context, name, content, matrix, mm_per_unit=None, collections=()):
+    """A new sculpt at `matrix` (world), active and the only one selected, in these collections, or in the active one.
+    `mm_per_unit`: None for the scene's."""
     mesh = bpy.data.meshes.new(name)
     try:
-        commit(mesh, Content(volume, list(cuts)), mm_per_unit or units.mm_per_unit(context.scene))
+        commit(mesh, content, mm_per_unit or units.mm_per_unit(context.scene))
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
     ob = bpy.data.objects.new(name, mesh)
-    _home(context).objects.link(ob)
+    for collection in collections or [_home(context)]:
+        collection.objects.link(ob)
     ob.matrix_world = matrix
     select_only(context, ob)
     return ob

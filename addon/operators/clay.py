@@ -7,7 +7,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from riffler import tasks
 
-from ..bl import forms, sculpts, units
+from ..bl import forms, masks, sculpts, units
 from ..core import units as names
 from ..core.cache import Content
 from ..core.job import TaskJob
@@ -40,10 +40,8 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
         return TaskJob(tasks.resampled(volume, units.clean(self.pitch), self._wanted))
 
     def finish(self, context, job):
-        before, mask = self._before, self._before.mask
-        if mask is not None:
-            mask = mask.resampled(units.clean(self.pitch), self._wanted)
-        self.keep(replace(before, volume=job.result, mask=mask))
+        before = self._before
+        self.keep(replace(before, volume=job.result, mask=masks.on_grid_of(job.result, before.mask)))
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{names.format_count(job.result.rays)} rays; material {_signed(off)}")
         return {"FINISHED"}
@@ -110,12 +108,10 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
         made = []
         try:
             for piece in others:
-                new = sculpts.new_object(context, f"{name} Part", piece, matrix, mm_per_unit=mm)
+                content = Content(piece, mask=_left_of(self._before.mask, piece))
+                new = sculpts.new_object(context, f"{name} Part", content, matrix, mm, collections)
                 made.append(new)
                 sculpts.take_looks(new, ob)
-                for collection in collections:
-                    if new.name not in collection.objects:
-                        collection.objects.link(new)
             self.keep(replace(self._before, volume=first))  # last: until then the sculpt has all pieces
         except BaseException:
             bpy.data.batch_remove([*made, *(new.data for new in made)])
@@ -123,6 +119,13 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
             raise
         self.report({"INFO"}, f"{len(job.result)} parts")
         return {"FINISHED"}
+
+
+def _left_of(mask, piece):
+    """The mask of one piece: None where it protects nothing of it."""
+    if mask is None:
+        return None
+    return mask if mask.copy().intersect(piece).volume > 0 else None
 
 
 class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
@@ -135,8 +138,8 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
     from_edits = True
 
     def begin(self, context):
-        ob, content = self.take(context)
-        volume = content.volume
+        ob, self._before = self.take(context)
+        volume = self._before.volume
         surface = forms.of_object(context, ob, ob)
         # whole pitches further out, so that what has not moved stands on the rays that it stood on
         bounds, h = surface.bounds, volume.pitch
@@ -148,14 +151,17 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
     def finish(self, context, job):
         if job.result.volume <= 0:
             raise ValueError("the edited mesh has no volume: close it, or undo the edits")
-        self.keep(Content(job.result, shaped=True))
+        before, volume = self._before, job.result
+        mask = masks.on_grid_of(volume, before.mask)  # where it was: what was moved has left it, or come into it
+        self.keep(Content(volume, mask=mask, shaped=True))
         ob = bpy.data.objects[self._object]
         for modifier in [m for m in ob.modifiers if m.show_viewport]:
             ob.modifiers.remove(modifier)
         open_edges = self._report.get("open_edges", 0)
         level = {"WARNING"} if open_edges else {"INFO"}
         note = f", {names.format_count(open_edges)} open edges were closed" if open_edges else ""
-        self.report(level, f"{names.format_volume(job.result.volume)} of material{note}")
+        note += f"; {len(before.cuts)} cuts are not in the NC code any more" if before.cuts else ""
+        self.report(level, f"{names.format_volume(volume.volume)} of material{note}")
         return {"FINISHED"}
 
 

@@ -147,9 +147,7 @@ def _new(context, name, content, about):
     here = units.mm_per_unit(context.scene)
     matrix = Matrix(about.get("matrix") or Matrix.Identity(4))
     matrix.translation *= about.get("mm_per_unit", here) / here
-    ob = sculpts.new_object(context, name, content.volume, matrix)
-    sculpts.commit(ob.data, content, here)
-    return ob
+    return sculpts.new_object(context, name, content, matrix, here)
 
 
 class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):

@@ -12,6 +12,7 @@ from .. import properties
 from ..bl import live, meshes, parts, sculpts, store, units
 from ..core import estimate
 from ..core import units as names
+from ..core.cache import Content
 from ..core.job import DoneJob, TaskJob
 from . import paths, shared
 from .long import LongWork
@@ -74,7 +75,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         new, source, volume = self._new, self._from(), job.result
         if new.found is not None:
             self._check(source, volume)
-        ob = sculpts.new_object(context, new.name, volume, new.frame)
+        ob = sculpts.new_object(context, new.name, Content(volume), new.frame)
         if source is not None:
             if sculpts.is_sculpt(source):
                 sculpts.take_looks(ob, source)

@@ -121,3 +121,63 @@ def test_a_file_of_an_older_add_on_has_no_checksum_to_go_by():
     pull(ob, (12.0, 9.0, 13.0))
     assert sculpts.changed(ob.data)
     Path(path).unlink()
+
+
+def masked_block():
+    """A block of which a ball at one end is protected, with a cut beside it."""
+    support.scale(1)
+    ob = support.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=6, location=(34, 15, 10))
+    form = bpy.context.object
+    support.select(ob)
+    bpy.ops.riffler.mask_form(form=form.name)
+    saw = support.curve("Saw", [(13, -5, -1), (13, 40, -1)], mm_per_unit=1.0)
+    support.select(ob)
+    bpy.ops.riffler.cut_curve(curve=saw.name, tool='{"kind": "flat", "diameter": 2.0, "length": 60.0}')
+    return ob
+
+
+def test_take_edits_keeps_the_mask_and_says_which_cuts_are_gone():
+    ob = masked_block()
+    before = support.content(ob)
+    co = support.coordinates(ob.data)
+    co[co[:, 0] < 1, 0] -= 5  # one side is longer
+    ob.data.vertices.foreach_set("co", co.ravel())
+    ob.data.update()
+    assert "1 cuts are not in the NC code any more" in support.printed(lambda: bpy.ops.riffler.take_edits())
+    after = support.content(ob)
+    assert after.volume.lower[0] == -5 and not after.cuts and after.shaped
+    assert abs(after.mask.volume / before.mask.volume - 1) < 1e-2
+    assert after.mask.contains(np.array([[34.0, 15, 10]]))[0] and not after.mask.contains(np.array([[20.0, 15, 10]]))[0]
+    after.volume.copy().intersect(after.mask)  # both stand on the same rays
+    assert "any more" not in support.printed(lambda: bpy.ops.riffler.take_edits())
+
+
+def test_parts_keep_the_mask_and_go_where_the_sculpt_is():
+    ob = masked_block()
+    name, home, other = ob.name, bpy.data.collections.new("Home"), bpy.data.collections.new("Other")
+    for collection in (home, other):
+        bpy.context.scene.collection.children.link(collection)
+    for collection in ob.users_collection:
+        collection.objects.unlink(ob)
+    home.objects.link(ob)
+    bpy.context.view_layer.active_layer_collection = bpy.context.view_layer.layer_collection.children["Other"]
+    support.select(ob)
+    assert bpy.ops.riffler.split() == {"FINISHED"}
+    assert not other.objects and len(home.objects) == 2
+    parts = {o.name: support.content(o) for o in home.objects}
+    first = parts.pop(name)
+    assert first.mask is not None  # of 26 mm, with the ball; the other piece has nothing of it
+    assert [part.mask for part in parts.values()] == [None]
+    small = next(iter(parts))
+    support.select(bpy.data.objects[name])
+    bpy.ops.riffler.mask_invert()
+    bpy.ops.riffler.crop(point=(39, 0, 0), normal=(1, 0, 0))
+    saw = support.curve("Again", [(20, -5, -1), (20, 40, -1)], mm_per_unit=1.0)
+    support.select(bpy.data.objects[name])
+    bpy.ops.riffler.mask_clear()
+    bpy.ops.riffler.cut_curve(curve=saw.name, tool='{"kind": "flat", "diameter": 2.0, "length": 60.0}')
+    bpy.ops.riffler.mask_invert()
+    assert bpy.ops.riffler.split() == {"FINISHED"}
+    pieces = [o for o in home.objects if o.name != small]
+    assert len(pieces) == 2 and all(support.content(o).mask is not None for o in pieces)
