@@ -1,4 +1,4 @@
-"""What is done to a sculpt as a whole: another pitch, cut off by a plane, taken apart, edits taken over."""
+"""What is done to a sculpt as a whole: another pitch or box, cut off by a plane, taken apart, edits taken over."""
 
 from dataclasses import replace
 
@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from riffler import tasks
 
 from ..bl import forms, masks, sculpts, units
+from ..core import estimate
 from ..core import units as names
 from ..core.cache import Content
 from ..core.job import TaskJob
@@ -34,16 +35,46 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
     )
 
     def begin(self, context):
-        _, self._before = self.take(context)
-        volume = self._before.volume
-        self._wanted = volume.directions if self.directions == "KEEP" else self.directions
-        return TaskJob(tasks.resampled(volume, units.clean(self.pitch), self._wanted))
+        ob, self._before = self.take(context)
+        volume, pitch = self._before.volume, units.clean(self.pitch)
+        wanted = volume.directions if self.directions == "KEEP" else self.directions
+        area = estimate.shown_area(len(ob.data.polygons), volume.pitch)
+        estimate.check_surface(ob.name, volume.upper - volume.lower, area, pitch)
+        return TaskJob(tasks.resampled(volume, pitch, wanted))
 
     def finish(self, context, job):
         before = self._before
         self.keep(replace(before, volume=job.result, mask=masks.on_grid_of(job.result, before.mask)))
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{names.format_count(job.result.rays)} rays; material {_signed(off)}")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
+    """Make the sculpt's box larger, so that there is room for material outside of it; the sculpt stays where it is"""
+
+    bl_idname = "riffler.room"
+    bl_label = "Make Room"
+    doing = "Making room"
+    cancelled = "No room was made: the sculpt is as it was"
+
+    room: FloatProperty(
+        name="Room (mm)", default=5.0, min=1e-3, precision=2, description="On every side, in whole pitches"
+    )
+
+    def begin(self, context):
+        _, self._before = self.take(context)
+        volume = self._before.volume
+        # whole pitches, so that rays stand where they stood
+        room = volume.pitch * np.ceil(units.clean(self.room) / volume.pitch - 1e-6)
+        lower, upper = volume.lower - room, volume.upper + room
+        return TaskJob(tasks.resampled(volume, volume.pitch, volume.directions, lower, upper))
+
+    def finish(self, context, job):
+        before, volume = self._before, job.result
+        self.keep(replace(before, volume=volume, mask=masks.on_grid_of(volume, before.mask)))
+        off = _signed(volume.volume - before.volume.volume)
+        self.report({"INFO"}, f"The box is {names.format_size(volume.upper - volume.lower)}; material {off}")
         return {"FINISHED"}
 
 
@@ -165,4 +196,4 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (RIFFLER_OT_resample, RIFFLER_OT_crop, RIFFLER_OT_split, RIFFLER_OT_take_edits)
+CLASSES = (RIFFLER_OT_resample, RIFFLER_OT_room, RIFFLER_OT_crop, RIFFLER_OT_split, RIFFLER_OT_take_edits)

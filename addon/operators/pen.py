@@ -30,7 +30,7 @@ OF_TOOLS = {"riffler.add": "add"}  # any other carves
 SAID = {"remove": "removed", "add": "put on"}
 NO_STROKE = {
     "remove": "no stroke",
-    "add": "no stroke where the stock's box has room; a new stock with a larger box has more",
+    "add": "no stroke where the stock's box has room; Make Room in Clay gives it more",
 }
 NOT_OURS = {"riffler.smooth": "Smooth", "riffler.mask": "Mask"}  # tools whose work no session does
 

@@ -13,9 +13,11 @@ from ..bl import forms, units
 from ..core import relief
 from ..core import units as names
 from ..core.job import TaskJob
+from ..translations import local
 from .sculpt_work import SculptWork
 
 FINEST = 1500  # places along a side: finer pictures than rays would be lost work
+SLIGHT = 0.01  # pitches that nobody sees: of what is cut off by the box
 REACH = 2.0  # pitches by which a relief reaches into what it joins
 
 
@@ -49,9 +51,13 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
 
     def _tell_change(self, changed):
         if self.mode == "RAISE" and not changed:
-            why = "the stock's box is full there, or protected. Engrave the picture inverted, or take a larger stock"
+            why = "the stock's box is full there, or protected. Engrave the picture inverted, or use Make Room"
             self.report({"WARNING"}, f"Nothing was put on: {why}")
             return
+        if self._cut_off:
+            self.report(
+                {"WARNING"}, local("The picture was cut off at the stock's box: Make Room in Clay gives it more")
+            )
         what = "Added" if self.mode == "RAISE" else "Removed"
         self.report({"INFO"} if changed > 0 else {"WARNING"}, f"{what} {names.format_volume(changed)}")
 
@@ -74,6 +80,9 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
                 raise ValueError(f"the picture's place, {place.name}, does not lie over the sculpt")
         raised = 1.0 if self.mode == "RAISE" else -1.0
         top, bottom, cells = relief.draped(points, found, up, heights, raised * depth, reach)
+        self._cut_off = self.mode == "RAISE" and relief.leaves(
+            top, heights * depth, volume.lower, volume.upper, SLIGHT * volume.pitch
+        )
         if not cells.any():
             raise ValueError("the sculpt falls too steeply under the picture: turn its place")
         return shape.slab(top, bottom, cells)

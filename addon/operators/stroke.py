@@ -221,7 +221,7 @@ def nothing(made, mode):
     if made.moves == 0:
         return "The stroke did not meet the sculpt"
     if mode == "ADD":
-        return "Nothing was put on: the stock's box is full there, or protected. New stock with a larger box has room"
+        return "Nothing was put on: the stock's box is full there, or protected. Make Room in Clay gives it more"
     return "The stroke changed nothing: what it met is protected, or there was nothing left to change"
 
 
