@@ -7,7 +7,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from . import masks, meshes, store, units
+from . import attributes, masks, meshes, store, units
 
 
 def is_sculpt(ob):
@@ -110,7 +110,10 @@ def facts(content):
 
 
 def show(mesh, surface, mm_per_unit, mask=None):
-    """Fills the mesh from a surface in millimetres; what lies in `mask`, a volume, is seen to be protected."""
+    """Fills the mesh from a surface in millimetres; what lies in `mask`, a volume, is seen to be protected. Colours of
+    distances were those of the surface before."""
+    if attributes.hide_distance(mesh):
+        attributes.settle()
     meshes.fill(mesh, np.asarray(surface.vertices) / mm_per_unit, surface.triangles)
     masks.show(mesh, mask, np.asarray(surface.vertices), np.asarray(surface.triangles))
     p = mesh.riffler
