@@ -6,7 +6,6 @@ whose Blender has died. A stroke is written carve by carve: what a crash takes i
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import shutil
@@ -23,10 +22,17 @@ from . import record
 from .cache import Content
 from .job import Cut
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+    import msvcrt
+
 STROKES, STOCK, MASK, CUTS, ABOUT = "strokes.rjournal", "stock.rvol", "mask.rvol", "cuts", "about.json"
 STATES = "states"  # of a session's: a line for each state, of how many strokes make it and its token
 MODES = ("remove", "add", "mask", "unmask", "soften")  # that can be told again
 SHAPING = {"remove": "remove", "beside": "remove", "add": "add", "build": "add"}  # what a stroke is among the cuts
+FAR = 1 << 30
 PROBLEMS = (OSError, RuntimeError, ValueError)
 
 
@@ -265,14 +271,24 @@ def about(folder: Path) -> dict:
     return found if isinstance(found, dict) else {}
 
 
+def _hold(file: int) -> None:
+    """Nobody else holds the file until it is closed, or its process has died. OSError where somebody does."""
+    if fcntl is not None:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return
+    # What Windows locks nobody else can read either: one byte far behind the end, which is allowed. Untested.
+    os.lseek(file, FAR, os.SEEK_SET)
+    msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
+
+
 class Lock:
     """On a journal's strokes, as the writer has it; `held` where nobody else has."""
 
     def __init__(self, folder: Path):
         self.folder, self._file = folder, -1
         try:
-            self._file = os.open(folder / STROKES, os.O_RDONLY | os.O_CLOEXEC)
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._file = os.open(folder / STROKES, os.O_RDONLY)
+            _hold(self._file)
         except OSError:
             self.release()
 

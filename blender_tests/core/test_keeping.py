@@ -1,6 +1,10 @@
 """When a live sculpt is packed, and the journal of the work at it, without Blender."""
 
+import importlib.util
 import json
+import os
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -170,3 +174,28 @@ def test_small_sculpts_are_packed_at_once_and_large_ones_at_rest():
     large.done(20_000_000, 0.001, 1.0)
     large.stroke(2.0)
     assert not large.at_once and not large.due(30.9) and large.due(31.0)
+
+
+def test_where_there_is_no_flock_the_same_is_asked_of_windows(tmp_path, monkeypatch):
+    """That it can be imported there, and whom it asks; what Windows answers is not known here."""
+    calls, taken = [], []
+
+    def locking(file, mode, nbytes):
+        calls.append((os.lseek(file, 0, os.SEEK_CUR), mode, nbytes))
+        if taken:
+            raise PermissionError(13, "another process has it")
+
+    windows = types.ModuleType("msvcrt")
+    windows.locking, windows.LK_NBLCK = locking, 2
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    monkeypatch.setitem(sys.modules, "msvcrt", windows)
+    spec = importlib.util.spec_from_file_location("addon.core.journal_elsewhere", journal.__file__)
+    elsewhere = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, spec.name, elsewhere)  # dataclasses look for it
+    spec.loader.exec_module(elsewhere)
+    (tmp_path / journal.STROKES).write_bytes(b"strokes")
+    lock = elsewhere.Lock(tmp_path)
+    assert lock.held and calls == [(elsewhere.FAR, 2, 1)]  # far behind the end: what is there can still be read
+    lock.release()
+    taken.append(True)
+    assert not elsewhere.Lock(tmp_path).held and len(calls) == 2
