@@ -95,6 +95,16 @@ def _show_whole(mesh, content, surface, mm_per_unit):
         setattr(p, key, value)
 
 
+def middle(mesh, volume):
+    """(3,) mm: where strokes on the mesh's volume are mirrored. It stays when the box becomes longer on one side."""
+    return 0.5 * (volume.lower + volume.upper) - np.array(mesh.riffler.off_middle)
+
+
+def keep_middle(mesh, volume, before):
+    """The mesh has got this volume, with another box: its `middle` is the one that was there `before`."""
+    mesh.riffler.off_middle = np.array(mesh.riffler.off_middle) + middle(mesh, volume) - before
+
+
 class Facts(NamedTuple):
     """What a panel says of a sculpt; mesh.riffler has the same."""
 

@@ -20,7 +20,7 @@ import riffler
 
 from ..core import blocks, symmetry
 from ..core.cache import Content, Snapshots
-from ..core.job import Cut
+from ..core.job import cuts_of
 from ..core.poses import moving
 from ..core.stages import Stages
 from . import chunks, keeping, leaving, sculpts, store, versions
@@ -79,10 +79,10 @@ class Live:
         self.volume, self.mask, self.cuts = content.volume.copy(), _copy(content.mask), list(content.cuts)
         self.shaped = content.shaped  # by other means than cuts
         self._mesher, self._stale = None, False  # stale: it has another state than the volume
-        self.maps, self.centre = symmetry.maps(), 0.5 * (self.volume.lower + self.volume.upper)
+        self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
         self.strength = 0.5  # of dabs that soften
         self.awake, self._away = True, leaving.Away()
-        self._strokes, self._begin, self._softened = [], None, False  # of the stroke that is being made
+        self._strokes, self._begin = [], None  # of the stroke that is being made
         self._masked, self._painted = [], []  # where the mask has changed since the last look, and in this stroke
         self.token = ""
         self._facts = None  # (token, of it)
@@ -137,7 +137,7 @@ class Live:
         ob = self.object
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
-        self._strokes, self._painted, self._softened = [], [], False
+        self._strokes, self._painted = [], []
         self._begin = self.volume.copy(), _copy(self.mask)
         self._next = uuid.uuid4().hex  # the token of the state that the stroke makes
         versions.lighten(ob.data)
@@ -146,7 +146,7 @@ class Live:
     def begin_device_stroke(self):
         """What a device has begun to take belongs to a stroke."""
         content = snapshots.get(self.token).content
-        self._strokes, self._painted, self._softened = [], [], False
+        self._strokes, self._painted = [], []
         self._begin, self._next = (content.volume.copy(), _copy(content.mask)), uuid.uuid4().hex
         versions.lighten(self.object.data)
 
@@ -168,6 +168,8 @@ class Live:
         """Carves the poses, (n, 6), and their copies by symmetry. `new`: they do not go on from the last ones. Returns
         riffler.Cut of the poses themselves, but for those that stand; of "soften", dabs at the tips as wide as the
         tool, None."""
+        if mode == "unmask" and self.mask is None:
+            return None
         if self._begin is None:
             self.begin_stroke()
         first, poses = None, np.asarray(poses, float)
@@ -195,7 +197,6 @@ class Live:
             self._painted.append(self._masked[-1])
             return self.mask.carve(tool, poses, dt=dt, mode="add" if mode == "mask" else "remove")
         if mode == "soften":
-            self._softened = True
             self.volume.soften(poses[:, :3], 0.5 * tool.diameter, self.strength, self.mask)
             return None
         return self.volume.carve(tool, poses, dt=dt, mode=mode, protect=self.mask)
@@ -208,6 +209,8 @@ class Live:
 
     def _note(self, tool, poses, mode, new, copy):
         """Among the cuts, where it can be cut again: what is protected is in the mask."""
+        if mode == "soften":  # which no cut tells
+            self._strokes.append((copy, {}, mode, []))
         if mode not in ("remove", "add"):
             return
         if not new:
@@ -235,9 +238,8 @@ class Live:
         begin, self._begin = self._begin, None
         if begin is None or (begin[0].revision == self.volume.revision and _revision(begin[1]) == _revision(self.mask)):
             return False
-        beside = self.mask is not None
-        self.cuts = [*self.cuts, *(Cut(t, np.vstack(rows), mode=m, masked=beside) for _, t, m, rows in self._strokes)]
-        self.shaped |= self._softened
+        self.cuts = [*self.cuts, *cuts_of(self._strokes, self.mask is not None)]
+        self.shaped |= any(mode == "soften" for _, _, mode, _ in self._strokes)
         self.show()
         ob = self.object
         self._remember(ob, self._next)

@@ -118,6 +118,11 @@ class Cut:
         return len(self.poses) - 1
 
 
+def cuts_of(strokes, masked: bool) -> list[Cut]:
+    """Of strokes of a live sculpt, (copy, tool, mode, pieces of poses): those that have any."""
+    return [Cut(tool, np.vstack(rows), mode=mode, masked=masked) for _, tool, mode, rows in strokes if rows]
+
+
 class CutJob:
     """Carves `cuts` from `volume` in slices. `step` until it returns True; `cancel` at any time before restores the
     volume as it was; so does any error."""

@@ -135,6 +135,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
             return {"CANCELLED"}
         ob = bpy.data.objects[self._object]
         collections, matrix, name = ob.users_collection, ob.matrix_world.copy(), ob.name
+        middle = sculpts.middle(ob.data, self._before.volume)
         mm = sculpts.shown_mm_per_unit(ob.data)
         made = []
         try:
@@ -143,6 +144,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
                 new = sculpts.new_object(context, f"{name} Part", content, matrix, mm, collections)
                 made.append(new)
                 sculpts.take_looks(new, ob)
+                sculpts.keep_middle(new.data, piece, middle)
             self.keep(replace(self._before, volume=first))  # last: until then the sculpt has all pieces
         except BaseException:
             bpy.data.batch_remove([*made, *(new.data for new in made)])
@@ -184,7 +186,9 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
             raise ValueError("the edited mesh has no volume: close it, or undo the edits")
         before, volume = self._before, job.result
         mask = masks.on_grid_of(volume, before.mask)  # where it was: what was moved has left it, or come into it
+        middle = sculpts.middle(self.mesh, before.volume)
         self.keep(Content(volume, mask=mask, shaped=True))
+        sculpts.keep_middle(self.mesh, volume, middle)
         ob = bpy.data.objects[self._object]
         for modifier in [m for m in ob.modifiers if m.show_viewport]:
             ob.modifiers.remove(modifier)

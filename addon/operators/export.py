@@ -60,10 +60,12 @@ class ExportSurface(Export):
             shared.tell_edits(self, ob.data, lost=False)
         shared.tell_modifiers(self, ob)
         surface = live.content(ob).volume.to_mesh()
+        if not len(surface.triangles):
+            raise ValueError("the sculpt has no material left")
         if self.world:
             surface = placed(surface, sculpts.to_world_mm(ob, context.scene))
         self.put(surface, path, ob.name)
-        lower, upper = surface.bounds if len(surface.vertices) else np.zeros((2, 3))
+        lower, upper = surface.bounds
         return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(upper - lower)}"
 
 

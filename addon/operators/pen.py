@@ -14,6 +14,7 @@ from ..bl import chosen, events, fixtures, pen_session, sculpts, working
 from ..core import brush, problems
 from ..core import units as names
 from ..drawing import force, pace
+from ..translations import local
 from . import shared
 
 FRAME = 1 / 30  # s from one look to the next
@@ -117,6 +118,9 @@ def recordings(settings):
     return folder
 
 
+NO_COPIES = "Mirror and Radial are for strokes of the pointer: a session of a device makes no copies"
+
+
 class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.Operator):
     """Sculpt with a pen or another device, until Esc or until this is called again"""
 
@@ -178,6 +182,8 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
         ob = sculpts.active(context)
         try:
             mode = mode_of(context, self.mode)
+            if len(context.scene.riffler.sculpt.maps()) > 1:
+                self.report({"WARNING"}, local(NO_COPIES))
             if not sculpts.behind(ob.data):
                 shared.tell_edits(self, ob.data)
             depth = names.clean(context.scene.riffler.sculpt.depth)

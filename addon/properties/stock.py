@@ -72,6 +72,7 @@ class RifflerMesh(bpy.types.PropertyGroup):
     shown_crc: StringProperty()  # of all coordinates as they were shown; files of older add-ons have none
     lower: FloatVectorProperty()
     upper: FloatVectorProperty()
+    off_middle: FloatVectorProperty()  # from where strokes are mirrored to the middle of the box, mm
     pitch: FloatProperty()
     directions: StringProperty()
     material: FloatProperty()

@@ -153,6 +153,32 @@ def test_take_edits_keeps_the_mask_and_says_which_cuts_are_gone():
     assert "any more" not in support.printed(lambda: bpy.ops.riffler.take_edits())
 
 
+def test_strokes_are_mirrored_where_they_were_after_one_side_has_become_longer():
+    import sculpting
+
+    ob = sculpting.sculpt(size=(40, 30, 20)) and bpy.context.object
+    mirror = support.part("core.symmetry").maps("X")
+
+    def mirrored(y):
+        run = sculpting.work(ob.name)
+        run.maps = mirror
+        run.begin_stroke()
+        run.carve(sculpting.BALL, np.array([[8.0, y, 18, 0, 0, 1], [12.0, y, 18, 0, 0, 1]]))
+        assert run.finish_stroke(bpy.context, "stroke")
+        sculpting.live().end_all()
+        return support.content(ob).cuts[-1].poses[:, 0].tolist()
+
+    assert mirrored(8) == [32, 28]
+    co = support.coordinates(ob.data)
+    co[co[:, 0] < 1, 0] -= 5
+    ob.data.vertices.foreach_set("co", co.ravel())
+    ob.data.update()
+    assert bpy.ops.riffler.take_edits() == {"FINISHED"} and support.content(ob).volume.lower[0] == -5
+    assert mirrored(15) == [32, 28]
+    bpy.ops.riffler.room(room=3.0)
+    assert mirrored(20) == [32, 28]
+
+
 def test_parts_keep_the_mask_and_go_where_the_sculpt_is():
     ob = masked_block()
     name, home, other = ob.name, bpy.data.collections.new("Home"), bpy.data.collections.new("Other")

@@ -93,6 +93,21 @@ def test_a_path_that_cannot_be_written_is_named():
     support.refused(lambda: bpy.ops.riffler.export_stl(filepath="/nowhere/at/all.stl"), "all.stl")
 
 
+def test_a_sculpt_of_which_nothing_is_left_is_no_file():
+    support.scale(1)
+    support.stock(size=(10, 10, 10))
+    c = support.curve("Line", [(-5, 5, -1), (15, 5, -1)], mm_per_unit=1)
+    bpy.ops.riffler.cut_curve(curve=c.name, tool='{"kind": "flat", "diameter": 60, "length": 80}')
+    for kind in ("stl", "3mf"):
+        path = Path(support.out(f"nothing.{kind}"))
+        path.unlink(missing_ok=True)
+        support.refused(
+            lambda path=path, kind=kind: getattr(bpy.ops.riffler, f"export_{kind}")(filepath=str(path)),
+            "no material left",
+        )
+        assert not path.exists()
+
+
 def numbers(path, letter):
     import re
 
