@@ -32,7 +32,7 @@ MODEL = """<?xml version="1.0" encoding="UTF-8"?>
 """
 END = '</mesh></object></resources>\n<build><item objectid="1"/></build>\n</model>\n'
 ROWS = 50_000  # of text at a time: what is written needs no second copy of the mesh
-FAST = 1  # of zlib: a quarter more bytes than the usual level in a quarter of the time
+FAST = 1  # of zlib: a third more bytes than the usual level in a quarter of its time
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the same mesh gives the same bytes
 
 
