@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender test-blenders soak stress scenes bench bench-docs lint format sanitize docs stubs gallery tutorials package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender test-blenders soak stress scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -102,6 +102,10 @@ docs:  ## Check links and examples, make the site of the documents and the API r
 stubs:  ## Write native/python/riffler/_core.pyi anew from the built module: after a change of the bindings
 	@$(ready)
 	$(python) tools/stubs.py
+
+operators:  ## Write docs/operators.md anew from the add-on in Blender: after a change of an operator or of its settings
+	@$(ready) demo
+	$(python) tools/operators.py
 
 gallery:  ## Plan, measure and draw the pictures of planning, stability and the pen: docs/images
 	@$(ready) demo

@@ -79,6 +79,7 @@ class Bench:
     only: str
     timeout: float
     tally: Tally
+    measure: bool = False  # what takes minutes and decides nothing
 
     def run(
         self, environment: Environment, mode: str, files: list[Path], more: dict | None = None, timeout: float = 0
@@ -230,7 +231,8 @@ def main() -> int:
         if wheel and not zips:
             package.build([wheel], Path(folder) / "zips")
             zips = made_zips(Path(folder) / "zips")
-        bench = Bench(native_paths(wheel, Path(folder) / "native"), zips, out, arguments.only, arguments.timeout, tally)
+        paths = native_paths(wheel, Path(folder) / "native")
+        bench = Bench(paths, zips, out, arguments.only, arguments.timeout, tally, arguments.figures)
         if arguments.soak:
             for run in soaking.runs(bench, arguments):
                 run()
@@ -308,10 +310,11 @@ def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
     if mode not in ("source", users):
         return []
     scripts = sorted((HERE / "windowed").glob("window_*.py"))
+    tutorials = sorted((HERE / "windowed").glob("tutorial_*.py"))
     if application.extensions:
         bench.tally.skip("tutorials", "their buttons are looked for where the sidebar of Blender 3.4 has them")
     else:
-        scripts += sorted((HERE / "windowed").glob("tutorial_*.py"))
+        scripts = tutorials + scripts  # the longest first: none is left over for the end
     chosen = [script for script in scripts if arguments.only in script.stem]
     return [
         partial(window.run, bench, application, mode, script, FIRST_DISPLAY + 10 * k) for k, script in enumerate(chosen)

@@ -36,6 +36,7 @@ def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
             "repo": str(environments.ROOT),
             "only": "",
             "size": [WIDTH, HEIGHT],
+            "measure": bench.measure,
         }
         path = Path(resources) / "job.json"
         path.write_text(json.dumps(job))

@@ -7,6 +7,7 @@ One wheel is of this Python; others lie in build/wheels, where `make test-blende
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 
 import wheel
@@ -40,6 +41,10 @@ def package() -> list[Path]:
     wheels += [Path(shutil.copy(other, DIST)) for other in others if other.name != wheels[0].name]
     run(PYTHON, "addon/package.py", *(word for w in wheels for word in ("--wheel", w)), "--out", DIST)
     return sorted(path for path in DIST.iterdir() if path.is_file())
+
+
+def of_this_python(path: Path) -> bool:
+    return f"-cp{sys.version_info.major}{sys.version_info.minor}-" in path.name
 
 
 def entry() -> None:

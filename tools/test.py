@@ -9,6 +9,7 @@ import os
 import sys
 import time
 
+import package
 from preset import test_preset
 from shell import PYTHON, StepError, main, run, say
 
@@ -28,7 +29,10 @@ def docs() -> None:
 
 
 def blender() -> None:
-    run(PYTHON, "blender_tests/run.py")
+    """What is tested is what goes out: the zips with the repaired wheel."""
+    made = package.package()
+    wheel = next(path for path in made if path.suffix == ".whl" and package.of_this_python(path))
+    run(PYTHON, "blender_tests/run.py", "--wheel", wheel, "--zips", package.DIST)
 
 
 SUITES = {"cpp": cpp, "python": python, "docs": docs, "blender": blender}

@@ -178,9 +178,8 @@ class Chunks:
         ob.matrix_world = sculpt.matrix_world
         ob.hide_render = True  # what is rendered is the sculpt
         collection.objects.link(ob)
-        for _, _, space in views():
-            if space.local_view:
-                ob.local_view_set(space, True)
+        for space in _local_views():
+            ob.local_view_set(space, True)
         return ob
 
 
@@ -270,6 +269,14 @@ def collection_of(mark):
 def shown():
     """Marks of the sculpts that are shown in chunks."""
     return [c[MARK] for c in bpy.data.collections if MARK in c]
+
+
+def _local_views():
+    """Of the windows only: Blender crashes where an object is put into the local view of a screen that none shows."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D" and area.spaces.active.local_view and window.scene == bpy.context.scene:
+                yield area.spaces.active
 
 
 def sweep(mark=None, name=""):

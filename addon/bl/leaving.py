@@ -9,9 +9,7 @@ TOOLS = "riffler."  # how the names of the sculpt tools begin
 
 
 def stays(ob):
-    """Whether some window has the sculpt as its active object, in Object Mode, with one of the sculpt tools at hand."""
-    if ob.mode != "OBJECT":
-        return False
+    """Whether some window has the sculpt as its active object, with one of the sculpt tools at hand."""
     return any(_has(window, ob) for window in bpy.context.window_manager.windows)
 
 

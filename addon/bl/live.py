@@ -30,6 +30,9 @@ def begin(context, ob):
     live = of(ob)
     if live is not None:
         return live
+    for other in awake():  # what shares the mesh goes on with what was done to it
+        if other.object is not None and other.object.data == ob.data:
+            other.end()
     before = lives.get(ob.riffler.mark)
     if before is not None:  # the sculpt was changed by other means, or is the copy of one
         before.end()

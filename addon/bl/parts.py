@@ -34,8 +34,7 @@ def in_world(context, ob):
         raise ValueError(f"{ob.name} is disabled in viewports or in this view layer: enable it in the Outliner")
     depsgraph = context.evaluated_depsgraph_get()
     matrix = meshes.matrix(ob.evaluated_get(depsgraph).matrix_world)
-    if sheared(matrix):
-        raise ValueError(f"{ob.name} is sheared: {_unshear(ob)}")
+    refuse_sheared(ob, matrix)
     matrix[:3] *= units.mm_per_unit(context.scene)
     return surface(ob, depsgraph, matrix)
 
@@ -69,6 +68,13 @@ def sheared(matrix):
         return False  # flat: it has no volume, which is another matter
     between = (axes / size).T @ (axes / size)
     return bool(np.abs(between - np.eye(3)).max() > SHEAR)
+
+
+def refuse_sheared(ob, matrix=None):
+    """ValueError with the remedy where its axes are not square to each other; `matrix`: of the world, if not its own.
+    Blender drops the shear of whatever is put at the same place, so that would not be at the same place."""
+    if sheared(meshes.matrix(ob.matrix_world) if matrix is None else matrix):
+        raise ValueError(f"{ob.name} is sheared: {_unshear(ob)}")
 
 
 def _unshear(ob):

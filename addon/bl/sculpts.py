@@ -2,6 +2,7 @@
 
 import uuid
 import zlib
+from contextlib import contextmanager
 from typing import NamedTuple
 
 import bpy
@@ -80,10 +81,16 @@ def take_looks(ob, other):
 
 def commit(mesh, content, mm_per_unit, token=""):
     """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles."""
+    _must_be_fillable(mesh)
     surface = content.volume.to_mesh()  # whatever can fail comes before the first change
     store.write(mesh, content, token)
     _show_whole(mesh, content, surface, mm_per_unit)
     return len(surface.triangles)
+
+
+def _must_be_fillable(mesh):
+    if mesh.is_editmode:
+        raise ValueError(f"{mesh.name} is in Edit Mode: leave it first")
 
 
 def _show_whole(mesh, content, surface, mm_per_unit):
@@ -134,8 +141,31 @@ def show(mesh, surface, mm_per_unit, mask=None):
 
 def refill(mesh, mm_per_unit):
     """Shows the stored volume again: after the mesh was edited, or the scene's units were changed."""
+    _must_be_fillable(mesh)
     content = store.content(mesh)
     _show_whole(mesh, content, content.volume.to_mesh(), mm_per_unit)
+
+
+@contextmanager
+def in_object_mode(ob):
+    """Blender fills a mesh in no other mode. What follows is done in Object Mode, and the mode taken up again, with an
+    undo step, since those of the mode before have other geometry."""
+    mode = ob.mode
+    if mode == "OBJECT":
+        yield
+        return
+    _set_mode(ob, "OBJECT")
+    try:
+        yield
+    finally:
+        _set_mode(ob, mode)
+        bpy.ops.ed.undo_push(message="Mesh of the Strokes")
+
+
+def _set_mode(ob, mode):
+    window = bpy.context.window or bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, active_object=ob, object=ob, selected_objects=[ob]):
+        bpy.ops.object.mode_set(mode=mode)
 
 
 def behind(mesh):

@@ -121,7 +121,7 @@ def shade_chunk(mesh, angle):
 
 def lighten(mesh):
     """Before 4.0 undo reads a mesh again as soon as anything near it changed, however large: one that is hidden for a
-    while gives way to the corners of its box, by which "frame selected" still finds it. Since then it costs nothing."""
+    while gives way to the corners of its box. Since then it costs nothing."""
     if _SINCE_4_0 or mesh.users > 1 or not mesh.polygons:
         return
     co = np.empty((len(mesh.vertices), 3), np.float32)

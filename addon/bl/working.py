@@ -23,7 +23,7 @@ from ..core.cache import Content, Snapshots
 from ..core.job import cuts_of
 from ..core.poses import moving
 from ..core.stages import Stages
-from . import chunks, keeping, leaving, sculpts, store, versions
+from . import chunks, keeping, leaving, parts, sculpts, store, versions
 
 SPARE = 2  # states beyond Blender's undo steps: the one that is shown, and the one before the first step
 
@@ -44,6 +44,7 @@ class Live:
     def __init__(self, context, ob):
         if ob.library or ob.data.library:
             raise ValueError(f"{ob.name} is linked from another file: make it local first")
+        parts.refuse_sheared(ob)
         content = store.content(ob.data)
         sculpts.new_mark(ob)
         self._take(ob, content)
@@ -81,6 +82,8 @@ class Live:
         self._mesher, self._stale = None, False  # stale: it has another state than the volume
         self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
         self.strength = 0.5  # of dabs that soften
+        self.keep_out = None  # of the copies by symmetry, as core/brush.Brush's
+        self._apart = set()  # copies whose last moves were kept out
         self.awake, self._away = True, leaving.Away()
         self._strokes, self._begin = [], None  # of the stroke that is being made
         self._masked, self._painted = [], []  # where the mask has changed since the last look, and in this stroke
@@ -138,6 +141,7 @@ class Live:
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
         self._strokes, self._painted = [], []
+        self._apart.clear()
         self._begin = self.volume.copy(), _copy(self.mask)
         self._next = uuid.uuid4().hex  # the token of the state that the stroke makes
         versions.lighten(ob.data)
@@ -181,12 +185,26 @@ class Live:
             poses, dt = moving(poses, dt)
         with self.stages.of("cut"):
             for k, copy in enumerate(symmetry.copies(poses, self.maps, self.centre)):
+                copy = self._kept_out(k, copy)
+                if copy is None:
+                    continue
                 cut = self._cut(tool, copy, dt if k == 0 else None, mode)
                 first = first or cut
                 self.keeping.carved(tool.to_dict(), copy, mode, self._next, self.strength)
-                self._note(tool, copy, mode, new, k)
+                self._note(tool, copy, mode, new or k in self._apart, k)
+                self._apart.discard(k)
         self.stages.count(moves=max(len(poses) - 1, 0))
         return first
+
+    def _kept_out(self, k, poses):
+        """A copy's poses, clear of the fixtures; None where nothing of it is. The first is no copy: it is clear."""
+        if k == 0 or self.keep_out is None:
+            return poses
+        kept = self.keep_out(poses, np.ones(len(poses) - 1))
+        if kept is None:
+            self._apart.add(k)
+            return None
+        return moving(kept[0])[0]
 
     def _cut(self, tool, poses, dt, mode):
         if mode in ("mask", "unmask"):
@@ -346,7 +364,8 @@ class Live:
         if ob is not None and self.awake:
             self.cancel_stroke()
             self._part_copies(ob)
-            self.commit()
+            with sculpts.in_object_mode(ob):
+                self.commit()
             ob.riffler.token = ""
         self.keeping.end(store.identity(ob.data) if ob is not None else "")
         if self.awake and not self.chunks.there:
@@ -360,7 +379,7 @@ class Live:
         if not self.awake or self._begin is not None:
             return
         ob = self.object
-        if ob is None or self._away.long(leaving.stays(ob), now):
+        if ob is None or ob.mode != "OBJECT" or self._away.long(leaving.stays(ob), now):
             self.end()
             return
         if self._objects != len(bpy.data.objects):

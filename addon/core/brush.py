@@ -35,8 +35,8 @@ class Choice:
 
 
 class Brush:
-    """`add` samples and `look` now and then, then `end` once. `run` is a live sculpt (bl/live.py); `keep_out`: (n, 6)
-    poses → poses that do not touch what must not be touched, or None."""
+    """`add` samples and `look` now and then, then `end` once. `run` is a live sculpt (bl/live.py); `keep_out`:
+    poses (n, 6) and seconds (n - 1,) → the same of a way that does not touch what must not be touched, or None."""
 
     def __init__(self, run, tool: dict, sight: Sight, choice: Choice, keep_out=None, surface=None):
         """`surface`: what the tool follows; without one, the surface as it is now."""
@@ -49,6 +49,7 @@ class Brush:
         self.samples: list[Sample] = []
         self.looks: list[int] = []  # how many samples there were when the surface was looked at
         self.removed, self.moves, self.lifted = 0.0, 0, 0
+        self._apart = False  # what was kept out lies between the last move and the next
         self.pose: np.ndarray | None = None  # (6,) where the tool is, mm
         self.force = self.torque = np.zeros(3)
         self._surface = surface or run.freeze()
@@ -114,14 +115,17 @@ class Brush:
 
     def _carve(self, pieces) -> bool:
         for piece in pieces:
-            poses = piece.poses
+            poses, dt = piece.poses, piece.dt
             if self._keep_out is not None:
-                poses = self._keep_out(poses)
-                if poses is None:
-                    self.lifted += len(piece.poses)
+                kept = self._keep_out(poses, dt)
+                if kept is None:
+                    self.lifted += len(poses)
+                    self._apart = True
                     continue
-                self.lifted += int((np.abs(poses - piece.poses).max(axis=1) > 0).sum())
-            cut = self._run.carve(self.tool, poses, dt=piece.dt, mode=self._choice.mode, new=piece.new)
+                poses, dt = kept
+                self.lifted += int((~(poses[:, None] == piece.poses).all(axis=2).any(axis=1)).sum())
+            cut = self._run.carve(self.tool, poses, dt=dt, mode=self._choice.mode, new=piece.new or self._apart)
+            self._apart = False
             self.moves += len(poses) - 1
             self.pose = poses[-1]
             if cut is None:  # of what has no chip: smoothing

@@ -97,6 +97,10 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         return self._step(context, event)
 
     def modal(self, context, event):
+        if live.lives.get(self._run.mark) is not self._run:
+            self._leave(context)
+            self.report({"WARNING"}, local("The sculpt was saved or taken in mid-stroke: the stroke was taken back"))
+            return {"CANCELLED"}
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             return self._give_up(context)
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
@@ -126,6 +130,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             obstacle = fixtures.collider(context, settings.fixtures, self._run.to_mm, {ob.name})
             if obstacle is not None:
                 keep_out = fixtures.keeper(riffler.Tool.from_dict(tool), obstacle)
+        self._run.keep_out = keep_out
         self._brush = brush.Brush(self._run, tool, view, settings.choice(mode), keep_out)
 
     def _step(self, context, event):

@@ -57,6 +57,9 @@ def _tool(mode, label, text):
                 _stroke(brush.OPPOSITE[mode], ctrl=True),
                 _stroke("soften", shift=True),
                 ("riffler.pen_stop", {"type": "ESC", "value": "PRESS"}, None),
+                ("riffler.frame", {"type": "NUMPAD_PERIOD", "value": "PRESS"}, None),
+                ("riffler.leave", {"type": "TAB", "value": "PRESS"}, None),
+                ("riffler.leave", {"type": "TAB", "value": "PRESS", "ctrl": True}, {"properties": [("menu", True)]}),
                 _radial("radius"),
                 _radial("depth", shift=True),
                 (

@@ -162,16 +162,16 @@ def test_pieces_of_one_stroke_say_that_they_go_on(run):
 
 
 def test_what_keeps_out_is_asked_for_every_pose(run):
-    def lifted(poses):
+    def lifted(poses, dt):
         poses = poses.copy()
         poses[:, 2] = np.maximum(poses[:, 2], -0.1)
-        return poses
+        return poses, dt
 
     made = brush.Brush(run, BALL, above(), brush.Choice(depth=0.8), keep_out=lifted)
     made.add(at(0, 0))
     made.end()
     assert made.removed == pytest.approx(groove(0, 0.1), rel=0.05) and made.lifted == 1
-    shut = brush.Brush(run, BALL, above(), brush.Choice(depth=0.8), keep_out=lambda poses: None)
+    shut = brush.Brush(run, BALL, above(), brush.Choice(depth=0.8), keep_out=lambda poses, dt: None)
     shut.add(at(5, 0))
     assert shut.moves == 0 and shut.lifted == 2
 

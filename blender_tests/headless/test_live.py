@@ -116,6 +116,73 @@ def test_live_work_takes_the_place_of_what_is_damaged_in_the_file():
     nothing_is_left()
 
 
+def refused(call, *words):
+    try:
+        call()
+    except ValueError as error:
+        assert all(word in str(error) for word in words), error
+        return
+    raise AssertionError("nothing was said")
+
+
+def test_edit_mode_has_the_strokes_and_keeps_them():
+    """As the workspace Modeling does, which asks no operator of ours."""
+    for packed in (False, True):
+        name = sculpt()
+        last = stroke(name, 1)
+        run, ob = work(name), bpy.data.objects[name]
+        if packed:
+            run.keeping.look(ob, support.content(ob), run.token)
+        with bpy.context.temp_override(active_object=ob, object=ob, selected_objects=[ob]):
+            bpy.ops.object.mode_set(mode="EDIT")
+        run.look(0.0)
+        assert ob.mode == "EDIT" and not support.part("bl.working").lives
+        nothing_is_left()
+        with bpy.context.temp_override(active_object=ob, object=ob, selected_objects=[ob]):
+            bpy.ops.object.mode_set(mode="OBJECT")
+        assert support.content(ob).volume.to_bytes() == last
+        matches_its_volume(name)
+        bpy.data.objects.remove(ob)
+
+
+def test_what_cannot_be_filled_is_not_packed_either():
+    name = sculpt()
+    run, ob = work(name), bpy.data.objects[name]
+    stroke(name, 1)
+    before = support.part("bl.store").identity(ob.data)
+    with bpy.context.temp_override(active_object=ob, object=ob, selected_objects=[ob]):
+        bpy.ops.object.mode_set(mode="EDIT")
+    refused(run.commit, "Edit Mode: leave it first")
+    assert support.part("bl.store").identity(ob.data) == before
+    run.end()
+
+
+def test_linked_duplicates_go_on_with_each_other_s_strokes():
+    name = sculpt()
+    ob = bpy.data.objects[name]
+    other = bpy.data.objects.new("Other", ob.data)
+    bpy.context.scene.collection.objects.link(other)
+    support.push("linked")
+    stroke(name, 1)
+    stroke("Other", 2)
+    last = stroke(name, 3)
+    live().end_all()
+    content = support.content(ob)
+    assert content.volume.to_bytes() == last and len(content.cuts) == 3
+    matches_its_volume(name)
+    nothing_is_left()
+
+
+def test_a_sheared_sculpt_is_refused_with_the_remedy():
+    name = sculpt()
+    ob, above = bpy.data.objects[name], bpy.data.objects.new("Above", None)
+    bpy.context.scene.collection.objects.link(above)
+    above.scale, ob.parent, ob.rotation_euler.z = (2, 1, 1), above, 0.6
+    bpy.context.view_layer.update()
+    refused(lambda: work(name), f"{name} is sheared", "Above", "Apply > Scale")
+    nothing_is_left()
+
+
 def test_a_stroke_that_changes_nothing_is_none_and_a_cancelled_one_leaves_no_trace():
     name = sculpt()
     run = work(name)

@@ -1,7 +1,6 @@
 """A device sculpts: its strokes, their undo, what they leave alone, and the journal that tells of them."""
 
 import json
-import time
 
 import bpy
 import numpy as np
@@ -196,7 +195,7 @@ def test_material_is_put_on_stroke_by_stroke_undone_and_told_by_the_journal():
         bpy.ops.ed.redo()
         assert now() == states[1]
         hand.session.look()
-        time.sleep(0.3)  # its keeper writes
+        assert hand.session.run.session.journal_written(20.0)
         told = core.replay(journal.folder)  # as a recovery has it
         assert told.volume.to_bytes() == states[1]
         assert [c.mode for c in told.cuts] == ["remove", "add", "add"]
@@ -311,7 +310,7 @@ def test_there_is_one_journal_and_a_recovery_knows_its_states():
     (journal,) = journals()
     assert [p.name for p in journal.folder.parent.iterdir() if not core.Lock(p).held].count(journal.folder.name) == 1
     hand.session.look()
-    time.sleep(0.3)  # its keeper writes
+    assert hand.session.run.session.journal_written(20.0)
     found, _ = core.part_of(journal.folder)
     about = json.loads((journal.folder / core.ABOUT).read_text())
     known = core.states(journal.folder, about, found)
@@ -336,7 +335,7 @@ def test_a_state_that_memory_has_no_more_is_told_by_the_sessions_journal():
     sculpt()
     hand = Hand(bpy.data.objects[NAME])
     states = [hand.stroke(y) for y in (10, 30, 50)]
-    time.sleep(0.3)
+    assert hand.session.run.session.journal_written(20.0)
     snapshots = support.part("bl.working").snapshots
     token = work().keeping.journal._tokens[1]
     del snapshots._items[token]

@@ -60,9 +60,7 @@ def test_a_recording_is_a_device_and_ends_by_itself():
     journal.add_stroke(1, poses, times=2 * x)
     path = support.out("hand.rjournal")
     journal.write(path)
-    begin = time.monotonic()
     assert sculpt_for(60.0, device="recording", recording=path, stiffness=5.0) == {"FINISHED"}
-    assert time.monotonic() - begin < 30
     no_session()
     live().end_all()
     low = np.min([c.poses[:, 2].min() for c in support.content(bpy.data.objects[NAME]).cuts])
@@ -203,7 +201,7 @@ def test_nothing_else_takes_the_sculpt_meanwhile_and_disabling_the_addon_ends_it
     assert not bpy.ops.riffler.stroke.poll()
     assert bpy.ops.riffler.pen_sculpt.poll() and bpy.ops.riffler.pen_stop.poll()
     assert bpy.ops.riffler.pen_stop() == {"FINISHED"} and hand.session.ended
-    assert not bpy.ops.riffler.pen_stop.poll() and bpy.ops.riffler.cut_curve.poll() is not None
+    assert not bpy.ops.riffler.pen_stop.poll() and bpy.ops.riffler.new_stock.poll()
     no_session()
     hand = Hand(ob)
     bpy.ops.preferences.addon_disable(module=support.MODULE)

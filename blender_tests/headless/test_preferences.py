@@ -61,8 +61,8 @@ def test_no_session_lets_more_force_through_than_was_allowed():
         assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (0.2, 30, 500))
         device = {"device": "simulated", "gap": 0.0, "removal_constant": 0.5}
         forces = []
-        for _ in range(4):  # a busy machine takes the force away now and then
-            bpy.ops.riffler.pen_sculpt(seconds=4.0, tool=support.BALL, record=True, folder=str(place), **device)
+        for seconds in (4.0, 8.0, 16.0, 32.0):  # a busy machine takes the force away now and then
+            bpy.ops.riffler.pen_sculpt(seconds=seconds, tool=support.BALL, record=True, folder=str(place), **device)
             strokes = [s for p in place.glob("*.rjournal") for s in riffler.Journal.read(p).strokes]
             forces = [np.linalg.norm(s.forces[:, :3], axis=1).max() for s in strokes if s.forces is not None and len(s)]
             if forces:

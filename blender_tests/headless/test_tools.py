@@ -149,6 +149,65 @@ def test_fixtures_keep_the_tool_out():
     assert row[(x > 23.1) & (x < 26.9)].min() == 20, "it went through the clamp"
 
 
+def clamp(ob, place, size=4):
+    """A cube that is a fixture of the sculpt tools."""
+    clamps = bpy.data.collections.new("Clamps")
+    bpy.context.scene.collection.children.link(clamps)
+    bpy.ops.mesh.primitive_cube_add(size=size, location=place)
+    cube = bpy.context.object
+    for collection in list(cube.users_collection):
+        collection.objects.unlink(cube)
+    clamps.objects.link(cube)
+    bpy.context.view_layer.objects.active = ob
+    return clamps
+
+
+def least_clearance(ob, clamps):
+    """Of all that was cut, between the poses too, from the fixtures."""
+    solid = support.part("bl.fixtures").collider(bpy.context, clamps, support.part("bl.sculpts").from_world(ob))
+    found = []
+    for cut in support.part("bl.live").content(ob).cuts:
+        a, b = np.asarray(cut.poses)[:-1], np.asarray(cut.poses)[1:]
+        way = np.concatenate([a + share * (b - a) for share in np.linspace(0, 1, 41)])
+        found.append(solid.clearance(riffler.Tool.from_dict(cut.tool), way).min())
+    return min(found)
+
+
+def test_no_tool_passes_through_a_fixture_on_its_way_up_nor_do_copies_by_symmetry():
+    support.scale(1)
+    ob = support.stock(pitch=0.5, directions="z")
+    clamps = clamp(ob, (30, 15, 20))
+    settings(depth=1.0, fixtures=clamps, axis="UP")
+    stroke((22, 15), (38, 15))
+    assert least_clearance(ob, clamps) > -0.02
+    settings(mirror={"X"})  # about x = 20: the clamp stands on the copy's side
+    stroke((4, 15), (16, 15))
+    copies = support.part("bl.live").content(ob).cuts[1:]
+    assert len(copies) == 2 and least_clearance(ob, clamps) > -0.02
+    heights = [np.asarray(c.poses)[:, 2].max() for c in copies]
+    assert heights[0] < 20.01 and heights[1] > 21.9, heights
+
+
+def test_a_stroke_goes_around_what_no_lift_frees_it_from():
+    support.scale(1)
+    ob = support.stock(pitch=0.5, directions="z")
+    clamps = clamp(ob, (20, 15, 20), size=8)
+    settings(depth=1.0, fixtures=clamps, axis="UP")
+    run = support.part("bl.live").begin(bpy.context, ob)
+    run.maps = support.part("core.symmetry").maps("X")
+    run.keep_out = lambda poses, dt: None if (np.abs(poses[:, 0] - 35) < 2).any() else (poses, dt)
+    run.begin_stroke()
+    for k in range(4):
+        run.carve(
+            riffler.Tool.ball(6, 30), np.array([[2.0 + k, 5, 18, 0, 0, 1], [3.0 + k, 5, 18, 0, 0, 1]]), new=k == 0
+        )
+    run.finish_stroke(bpy.context)
+    first, *copies = run.cuts
+    assert first.moves == 4
+    ways = np.concatenate([np.abs(np.diff(np.asarray(c.poses)[:, 0])) for c in copies])
+    assert ways.max() < 1.01, "a copy went on across what it was kept out of"
+
+
 def test_a_mirrored_fixture_is_as_solid_as_any():
     """The tool is wholly inside it, and touches none of its faces."""
     support.scale(1)

@@ -19,7 +19,7 @@ import pictures
 import support
 
 VERSION = "{}.{}".format(*bpy.app.version)
-PATIENCE = 120  # s for one condition; a software renderer on a busy machine is slow
+PATIENCE = 300  # s for one condition; a software renderer on a busy machine is slow
 # xdotool's names for what Blender calls otherwise.
 KEYS = {"ESC": "Escape", "RET": "Return", "SPACE": "space", "TAB": "Tab", "DEL": "Delete", "LEFT_ARROW": "Left",
         "RIGHT_ARROW": "Right", "UP_ARROW": "Up", "DOWN_ARROW": "Down"}  # fmt: skip
@@ -65,7 +65,7 @@ class Screen:
                 break
             yield pause
         if complaint is None:
-            harness.say(note=f"{self.script}/{name}.png has no reference for Blender {VERSION}")
+            harness.say(note=f"{self.script}/{name}.png: there are no references for Blender {VERSION}")
         elif complaint:
             accept = f"windowed/pictures.py <its folder's>/pictures-{VERSION}.json {self.script}/{name}"
             self.unlike.append(

@@ -11,6 +11,7 @@ makes them (or those that are named) the references.
 
 from __future__ import annotations
 
+import fcntl
 import json
 import subprocess
 import sys
@@ -107,19 +108,30 @@ def load(path):
 
 def store(path, pictures):
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(dict(sorted(pictures.items())), indent=0) + "\n")
+    part = path.with_name(f"{path.name}.part")
+    part.write_text(json.dumps(dict(sorted(pictures.items())), indent=0) + "\n")
+    part.replace(path)
+
+
+def note(out, version, pictures):
+    """Adds them to <out>/pictures-<version>.json, into which other windows write, too."""
+    with open(out / "pictures.lock", "w") as handle:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        notes = out / f"pictures-{version}.json"
+        store(notes, load(notes) | pictures)
 
 
 def check(out, name, version, areas, vary=()):
     """Notes the grids of the picture <out>/<name>.png and compares them with their reference: a text on what differs,
-    "" if nothing does, None if there is no reference."""
+    "" if nothing does, None if there are no references for this version."""
     out = Path(out)
     text = {kind: to_text(grid) for kind, grid in grids(gray(out / f"{name}.png")).items()}
-    notes = out / f"pictures-{version}.json"
-    store(notes, load(notes) | {name: text})
-    kept = load(REFERENCES / f"{version}.json").get(name)
-    if kept is None:
+    note(out, version, {name: text})
+    known = load(REFERENCES / f"{version}.json")
+    if not known:
         return None
+    if (kept := known.get(name)) is None:
+        return "there is none"
     found, kept = ({kind: from_text(rows) for kind, rows in t.items()} for t in (text, kept))
     return "; ".join(judge(found, kept, areas, vary))
 

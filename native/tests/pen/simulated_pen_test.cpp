@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "pen/pens.hpp"
 #include "pen/simulated_bench.hpp"
@@ -251,10 +251,9 @@ TEST(SimulatedPen, RunsFasterThanRealTime) {
   const Pose home = SimulatedPen(SimulatedPenSettings()).arms().posture().pose;
   SimulatedBench b({}, hand_on_a_curve(home));
   b.step.law = [](const PenSample& s, double, double) { return Wrench{-0.005 * s.velocity, {}}; };
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the processor: others may have it meanwhile
   b.run(5);
-  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  EXPECT_LT(took, 5);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5);
 }
 
 }  // namespace

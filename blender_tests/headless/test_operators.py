@@ -1,0 +1,44 @@
+"""docs/operators.md says of every operator what is registered."""
+
+import difflib
+import importlib
+import sys
+from pathlib import Path
+
+import bpy
+
+import support
+
+
+def tool():
+    """tools/operators.py, which writes the page."""
+    folder = str(Path(support.JOB["repo"]) / "tools")
+    if folder not in sys.path:
+        sys.path.append(folder)
+    return importlib.import_module("operators")
+
+
+def test_the_page_is_what_is_registered():
+    made, kept = tool().page(), tool().PAGE.read_text()
+    lines = difflib.unified_diff(kept.splitlines(), made.splitlines(), "checked in", "registered", n=0, lineterm="")
+    assert made == kept, "docs/operators.md is of another add-on: `make operators`\n" + "\n".join(list(lines)[:20])
+
+
+class RIFFLER_OT_test_forgotten(bpy.types.Operator):
+    """In no topic"""
+
+    bl_idname = "riffler.test_forgotten"
+    bl_label = "Forgotten"
+
+
+def test_an_operator_that_is_forgotten_is_named():
+    operators = tool()
+    bpy.utils.register_class(RIFFLER_OT_test_forgotten)
+    try:
+        operators.page()
+    except operators.StepError as failure:
+        assert "riffler.test_forgotten" in str(failure)
+    else:
+        raise AssertionError("nothing was said")
+    finally:
+        bpy.utils.unregister_class(RIFFLER_OT_test_forgotten)
