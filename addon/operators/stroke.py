@@ -12,6 +12,7 @@ from ..bl import fixtures, live, sculpts
 from ..core import brush, units
 from ..core.stroke import Sample
 from ..drawing import force, pace, pointer
+from ..translations import local
 from . import shared
 
 LOOK = 1 / 30  # s from one look to the next
