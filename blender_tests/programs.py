@@ -54,7 +54,7 @@ def stock(pitch=0.5, offset=0.5, location=(0, 0, 0), turn=0.0):
         back = np.linalg.inv(np.array(matrix))
         co = (np.c_[grown, np.ones(len(grown))] @ back.T)[:, :3]
         volume = riffler.Volume.from_mesh(riffler.Mesh(co, triangles), pitch, directions="xyz")
-    ob = support.part("bl.sculpts").new_object(bpy.context, "Stock", volume, matrix)
+    ob = support.part("bl.sculpts").new_object(bpy.context, "Stock", support.part("core.cache").Content(volume), matrix)
     bpy.context.scene.riffler.verify.stock = ob
     bpy.context.view_layer.update()
     return ob

@@ -18,6 +18,7 @@ from mathutils import Matrix, Vector
 
 from ..core.blocks import Blocks
 from . import masks, meshes, sculpts, versions
+from .views import views
 
 MARK = "riffler_live"  # on the collection: the sculpt's mark (sculpts.new_mark); on meshes and the material, too
 MADE = "riffler_made"  # on the collection and its objects: the name that they were given
@@ -268,14 +269,6 @@ def collection_of(mark):
 def shown():
     """Marks of the sculpts that are shown in chunks."""
     return [c[MARK] for c in bpy.data.collections if MARK in c]
-
-
-def views():
-    """Every 3D view: name of its screen, number of its area, space."""
-    for screen in bpy.data.screens:
-        for k, area in enumerate(screen.areas):
-            if area.type == "VIEW_3D":
-                yield screen.name, k, area.spaces.active
 
 
 def _local_views():

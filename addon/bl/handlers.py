@@ -6,7 +6,7 @@ volume of that id is in the cache or in the packed image that came back too.
 
 import bpy
 
-from . import events, plan_store, store
+from . import attributes, events, plan_store, store
 
 CLASSES = ()
 
@@ -20,6 +20,7 @@ def _on_load(*_):
 @bpy.app.handlers.persistent
 def _on_history(*_):
     plan_store.look_again()
+    attributes.follow()
 
 
 @bpy.app.handlers.persistent

@@ -22,7 +22,7 @@ def of(ob):
 def content(ob):
     """The sculpt's volume, cuts and mask, as they are now; not to be changed."""
     live = of(ob)
-    return store.content(ob.data) if live is None else Content(live.volume, live.cuts, live.mask)
+    return store.content(ob.data) if live is None else Content(live.volume, live.cuts, live.mask, live.shaped)
 
 
 def begin(context, ob):

@@ -9,6 +9,14 @@ NAME = "Riffler Mask"
 COLOUR = (0.16, 0.2, 0.3, 1.0)
 
 
+def on_grid_of(volume, mask):
+    """The mask of a sculpt that becomes `volume`, which has other rays or another box; None where nothing is left."""
+    if mask is None or mask.volume == 0:
+        return None
+    made = mask.resampled(volume.pitch, volume.directions, volume.lower, volume.upper)
+    return made if made.volume > 0 else None
+
+
 def show(mesh, mask, co, tri):
     """Gives the faces that lie in `mask` (a volume or None) the mask's material. `co` (V, 3) mm in the sculpt's frame,
     `tri` (F, 3): what the mesh was just filled with."""

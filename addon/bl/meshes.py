@@ -49,6 +49,13 @@ def _forget_shape_keys(mesh):
         next(ob for ob in bpy.data.objects if ob.data == mesh).shape_key_clear()
 
 
+def coordinates(mesh):
+    """(V, 3) float32, as they are stored."""
+    co = np.empty((len(mesh.vertices), 3), np.float32)
+    versions.read_positions(mesh, co.ravel())
+    return co
+
+
 def read(ob, depsgraph):
     """Vertices (V, 3) float64 in Blender units in the object's own frame and triangles (F, 3) int32 of the object with
     its modifiers; meshes, curves, texts, surfaces and metaballs."""

@@ -32,9 +32,9 @@ def content(mesh):
         raise ValueError(f"{mesh.name} is no sculpt")
     found = _cache.get(key)
     if found is None:
-        block, cuts, mask = record.decode(packed.read(mesh.riffler.store, "the sculpt"), key)
+        block, cuts, mask, shaped = record.decode(packed.read(mesh.riffler.store, "the sculpt"), key)
         protected = riffler.Volume.from_bytes(mask, f"{mesh.name}, mask") if len(mask) else None
-        found = Content(riffler.Volume.from_bytes(block, mesh.name), cuts, protected)
+        found = Content(riffler.Volume.from_bytes(block, mesh.name), cuts, protected, shaped)
         _cache.put(key, found)
     return found
 
@@ -65,7 +65,7 @@ def write(mesh, content, token="", made=None):
     """Makes `content`, a live sculpt's state `token`, the mesh's; returns the bytes kept. It must not be changed after
     it. `made`: its blocks, where they are made already."""
     volume, mask = made or blocks(content)
-    block = record.encode(volume, content.cuts, mask)
+    block = record.encode(volume, content.cuts, mask, content.shaped)
     key = record.content_id(block)
     image = mesh.riffler.store
     if image is None or image.library or _shared(mesh, image):

@@ -71,6 +71,14 @@ def write_positions(mesh, co):
         mesh.vertices.foreach_set("co", co)
 
 
+def read_positions(mesh, co):
+    """Into `co`, as `write_positions` has it."""
+    if "position" in mesh.attributes:
+        mesh.attributes["position"].data.foreach_get("vector", co)
+    else:
+        mesh.vertices.foreach_get("co", co)
+
+
 def write_triangles(mesh, tri):
     """`tri`: flat int32, the vertices of all corners of a mesh whose polygons are all triangles."""
     faces = len(mesh.polygons)

@@ -20,7 +20,7 @@ import riffler
 
 from ..core import blocks, symmetry
 from ..core.cache import Content, Snapshots
-from ..core.job import Cut
+from ..core.job import cuts_of
 from ..core.poses import moving
 from ..core.stages import Stages
 from . import chunks, keeping, leaving, parts, sculpts, store, versions
@@ -78,8 +78,9 @@ class Live:
         self._identities = {store.identity(ob.data)}  # under which the file has states of this work
         self.stages = Stages()
         self.volume, self.mask, self.cuts = content.volume.copy(), _copy(content.mask), list(content.cuts)
+        self.shaped = content.shaped  # by other means than cuts
         self._mesher, self._stale = None, False  # stale: it has another state than the volume
-        self.maps, self.centre = symmetry.maps(), 0.5 * (self.volume.lower + self.volume.upper)
+        self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
         self.strength = 0.5  # of dabs that soften
         self.keep_out = None  # of the copies by symmetry, as core/brush.Brush's
         self._apart = set()  # copies whose last moves were kept out
@@ -144,7 +145,7 @@ class Live:
         self._begin = self.volume.copy(), _copy(self.mask)
         self._next = uuid.uuid4().hex  # the token of the state that the stroke makes
         versions.lighten(ob.data)
-        self.keeping.begin_stroke(ob, self.token, Content(self._begin[0], self.cuts, self._begin[1]))
+        self.keeping.begin_stroke(ob, self.token, Content(self._begin[0], self.cuts, self._begin[1], self.shaped))
 
     def begin_device_stroke(self):
         """What a device has begun to take belongs to a stroke."""
@@ -171,6 +172,8 @@ class Live:
         """Carves the poses, (n, 6), and their copies by symmetry. `new`: they do not go on from the last ones. Returns
         riffler.Cut of the poses themselves, but for those that stand; of "soften", dabs at the tips as wide as the
         tool, None."""
+        if mode == "unmask" and self.mask is None:
+            return None
         if self._begin is None:
             self.begin_stroke()
         first, poses = None, np.asarray(poses, float)
@@ -224,6 +227,8 @@ class Live:
 
     def _note(self, tool, poses, mode, new, copy):
         """Among the cuts, where it can be cut again: what is protected is in the mask."""
+        if mode == "soften":  # which no cut tells
+            self._strokes.append((copy, {}, mode, []))
         if mode not in ("remove", "add"):
             return
         if not new:
@@ -251,7 +256,8 @@ class Live:
         begin, self._begin = self._begin, None
         if begin is None or (begin[0].revision == self.volume.revision and _revision(begin[1]) == _revision(self.mask)):
             return False
-        self.cuts = [*self.cuts, *(Cut(tool, np.vstack(rows), mode=mode) for _, tool, mode, rows in self._strokes)]
+        self.cuts = [*self.cuts, *cuts_of(self._strokes, self.mask is not None)]
+        self.shaped |= any(mode == "soften" for _, _, mode, _ in self._strokes)
         self.show()
         ob = self.object
         self._remember(ob, self._next)
@@ -269,9 +275,12 @@ class Live:
             self.keeping.cancelled()
             self.show()
 
+    def _content(self):
+        return Content(self.volume.copy(), self.cuts, _copy(self.mask), self.shaped)
+
     def _remember(self, ob, token=""):
         before, self.token = self.token, token or uuid.uuid4().hex
-        content = Content(self.volume.copy(), self.cuts, _copy(self.mask))
+        content = self._content()
         state = State(content, tuple(self._mesher.shape), dict(self.chunks.fillings))
         snapshots.most = bpy.context.preferences.edit.undo_steps + SPARE
         snapshots.hold({other.token for other in lives.values()})
@@ -308,7 +317,7 @@ class Live:
     def _bring(self, content, token):
         if self.device is None or not self.device.go(content):
             self.volume = content.volume.copy()
-        self.mask, self.cuts = _copy(content.mask), list(content.cuts)
+        self.mask, self.cuts, self.shaped = _copy(content.mask), list(content.cuts), content.shaped
         self.token, self._stale = token, True
         if self.device is not None:
             _ = self.mesher  # has to know what is shown before the device cuts on
@@ -334,7 +343,7 @@ class Live:
         if ob is None:
             return
         if self._changed(ob):
-            content = Content(self.volume.copy(), self.cuts, _copy(self.mask))
+            content = self._content()
             sculpts.commit(ob.data, content, self.mm, "" if self._begin else self.token)
             self._identities.add(store.identity(ob.data))
         elif sculpts.behind(ob.data) or not ob.data.polygons:
@@ -390,7 +399,7 @@ class Live:
             other.riffler.mark = other.riffler.token = ""
             if not sculpts.is_sculpt(other) or other.data == ob.data:
                 continue
-            sculpts.commit(other.data, Content(self.volume.copy(), self.cuts, _copy(self.mask)), self.mm)
+            sculpts.commit(other.data, self._content(), self.mm)
             chunks.reveal(other)
 
 

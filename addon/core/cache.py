@@ -15,11 +15,12 @@ from typing import Any
 @dataclass
 class Content:
     """A volume that nobody changes any more, and the cuts that made it; what is protected, a volume on the same grid,
-    or None."""
+    or None. `shaped`: other means have made something of it, too, which no cut tells; False where it is not known."""
 
     volume: Any
     cuts: list = field(default_factory=list)
     mask: Any = None
+    shaped: bool = False
 
     @property
     def nbytes(self) -> int:

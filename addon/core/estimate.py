@@ -28,6 +28,11 @@ def check_surface(name: str, size, area: float, pitch: float) -> None:
         )
 
 
+def shown_area(triangles: int, pitch: float) -> float:
+    """mm² of a surface that has so many triangles at `pitch`, as `check_surface` counts them."""
+    return 0.5 * triangles * pitch**2
+
+
 def box_area(size) -> float:
     """mm²."""
     x, y, z = size

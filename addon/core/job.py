@@ -171,6 +171,47 @@ class ThreadTask:
         self._cancelled = True
 
 
+class PiecesJob:
+    """Work of Python's in pieces: a generator, which yields after each of its `count` pieces; where it yields a native
+    task it is sent what that has made. What it returns is the `result`."""
+
+    def __init__(self, pieces, count: int, text="", clock=time.perf_counter):
+        self.text, self.result = text, None
+        self._pieces, self._count, self._clock = pieces, count, clock
+        self._done, self._task, self._made = 0, None, None
+
+    @property
+    def in_background(self) -> bool:
+        return self._task is not None
+
+    @property
+    def fraction(self) -> float:
+        now = 0.0 if self._task is None else self._task.fraction
+        return min(1.0, (self._done + now) / self._count)
+
+    def step(self, budget: float = 0.0) -> bool:
+        end = self._clock() + budget
+        while True:
+            if self._task is not None:
+                if not self._task.step(budget):
+                    return False
+                self._made, self._task = self._task.result, None
+            try:
+                wanted = self._pieces.send(self._made)
+            except StopIteration as end_of_all:
+                self.result = end_of_all.value
+                return True
+            self._done, self._made = self._done + 1, None
+            self._task = None if wanted is None else TaskJob(wanted)
+            if self._task is not None or self._clock() >= end:
+                return False
+
+    def cancel(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+        self._pieces.close()
+
+
 @dataclass
 class Cut:
     """One uninterrupted motion of one tool: what is carved, kept with the sculpt, and written as NC."""
@@ -179,10 +220,16 @@ class Cut:
     poses: np.ndarray  # (n, 6) tip and axis, mm, stock's frame
     tolerance: float = 0.01  # mm, as carve is given it
     mode: str = "remove"  # as carve is given it
+    masked: bool = False  # made beside a mask: cut again without it, it takes what that protected
 
     @property
     def moves(self) -> int:
         return len(self.poses) - 1
+
+
+def cuts_of(strokes, masked: bool) -> list[Cut]:
+    """Of strokes of a live sculpt, (copy, tool, mode, pieces of poses): those that have any."""
+    return [Cut(tool, np.vstack(rows), mode=mode, masked=masked) for _, tool, mode, rows in strokes if rows]
 
 
 class CutJob:

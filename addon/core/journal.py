@@ -6,7 +6,6 @@ whose Blender has died. A stroke is written carve by carve: what a crash takes i
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import shutil
@@ -23,10 +22,17 @@ from . import record
 from .cache import Content
 from .job import Cut
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+    import msvcrt
+
 STROKES, STOCK, MASK, CUTS, ABOUT = "strokes.rjournal", "stock.rvol", "mask.rvol", "cuts", "about.json"
 STATES = "states"  # of a session's: a line for each state, of how many strokes make it and its token
 MODES = ("remove", "add", "mask", "unmask", "soften")  # that can be told again
 SHAPING = {"remove": "remove", "beside": "remove", "add": "add", "build": "add"}  # what a stroke is among the cuts
+FAR = 1 << 30
 PROBLEMS = (OSError, RuntimeError, ValueError)
 
 
@@ -49,8 +55,8 @@ class StrokeJournal:
         try:
             about = {"began": time.time(), "token": token, "base": identity, **(about or {})}
             (self.folder / ABOUT).write_text(json.dumps(about))
-            if content.cuts:
-                (self.folder / CUTS).write_bytes(record.encode(b"", content.cuts))
+            if content.cuts or content.shaped:
+                (self.folder / CUTS).write_bytes(record.encode(b"", content.cuts, shaped=content.shaped))
             self._begin(content)
         except BaseException:
             shutil.rmtree(self.folder, ignore_errors=True)
@@ -265,14 +271,24 @@ def about(folder: Path) -> dict:
     return found if isinstance(found, dict) else {}
 
 
+def _hold(file: int) -> None:
+    """Nobody else holds the file until it is closed, or its process has died. OSError where somebody does."""
+    if fcntl is not None:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return
+    # What Windows locks nobody else can read either: one byte far behind the end, which is allowed. Untested.
+    os.lseek(file, FAR, os.SEEK_SET)
+    msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
+
+
 class Lock:
     """On a journal's strokes, as the writer has it; `held` where nobody else has."""
 
     def __init__(self, folder: Path):
         self.folder, self._file = folder, -1
         try:
-            self._file = os.open(folder / STROKES, os.O_RDONLY | os.O_CLOEXEC)
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._file = os.open(folder / STROKES, os.O_RDONLY)
+            _hold(self._file)
         except OSError:
             self.release()
 
@@ -300,10 +316,20 @@ def part_of(folder: Path, count: int | None = None) -> tuple[riffler.Journal, li
         journal.take_back(extra)
     elif extra < 0:  # of strokes that were taken back
         journal.bring_back(-extra)
-    cuts = []
-    if (folder / CUTS).exists():
-        cuts = record.decode((folder / CUTS).read_bytes())[1]
-    return journal, cuts + cuts_of(journal)
+    return journal, _before(folder)[0] + cuts_of(journal)
+
+
+def shaped(folder: Path, journal: riffler.Journal) -> bool:
+    """Whether what the journal tells was shaped by other means than cuts, too (Content.shaped)."""
+    return _before(folder)[1] or any(stroke.mode == "soften" for stroke in journal.strokes)
+
+
+def _before(folder: Path) -> tuple[list[Cut], bool]:
+    """Of the state that the journal in `folder` begins with: its cuts, and whether it was shaped by other means."""
+    if not (folder / CUTS).exists():
+        return [], False
+    _, cuts, _, by_others = record.decode((folder / CUTS).read_bytes())
+    return cuts, by_others
 
 
 def states(folder: Path, about: dict, journal: riffler.Journal) -> list[str]:
@@ -324,12 +350,13 @@ def cuts_of(journal: riffler.Journal) -> list[Cut]:
     """The strokes that shape the material, pieces of one stroke put together. Those of symmetry's copies stay apart."""
     cuts: list[Cut] = []
     rows: dict[tuple, list[np.ndarray]] = {}
-    tools = journal.tools
+    tools, masked = journal.tools, bool(journal.stock and journal.stock["mask"])
     for stroke in journal.strokes:
+        masked |= stroke.mode == "mask"
         if stroke.mode not in SHAPING:
             continue
         poses = stroke.poses
-        key = (stroke.name, stroke.tool, SHAPING[stroke.mode])
+        key = (stroke.name, stroke.tool, SHAPING[stroke.mode], masked)
         open_ones = rows.setdefault(key, [])
         for k, before in enumerate(open_ones):
             if np.array_equal(before[-1], poses[0]):
@@ -337,8 +364,8 @@ def cuts_of(journal: riffler.Journal) -> list[Cut]:
                 break
         else:
             open_ones.append(poses)
-    for (_, tool, mode), strokes in rows.items():
-        cuts += [Cut(tools[tool], poses, mode=mode) for poses in strokes]
+    for (_, tool, mode, beside), strokes in rows.items():
+        cuts += [Cut(tools[tool], poses, mode=mode, masked=beside) for poses in strokes]
     return cuts
 
 
@@ -346,4 +373,4 @@ def replay(folder: Path, count: int | None = None) -> Content:
     """What the first `count` strokes of the journal in `folder`, or all of them, have made."""
     journal, cuts = part_of(folder, count)
     volume, mask = journal.replay(folder, with_mask=True)
-    return Content(volume, cuts, mask)
+    return Content(volume, cuts, mask, shaped(folder, journal))

@@ -1,6 +1,8 @@
 """What a sculpt keeps in the .blend: its volume (the bytes of an .rvol file), what of it is protected, and the cuts
 that made it, as one block.
 
+Whether other means have shaped it, too, is in the header, where older add-ons do not look.
+
 Layout, little endian: magic (8 bytes), format version and header length (uint32 each), a JSON header, then the bytes of
 the volume and of the mask, and the poses (float64) of every cut, in order. Blocks without a mask and with nothing but
 cuts are of version 1, which older add-ons read. The content id is a hash of the whole block, so equal content has an
@@ -26,7 +28,7 @@ def content_id(block: bytes) -> str:
     return hashlib.blake2b(block, digest_size=16).hexdigest()
 
 
-def encode(volume: bytes, cuts: list[Cut], mask: bytes = b"") -> bytes:
+def encode(volume: bytes, cuts: list[Cut], mask: bytes = b"", shaped: bool = False) -> bytes:
     rows = [{"tool": c.tool, "tolerance": c.tolerance, "rows": len(c.poses)} for c in cuts]
     header = {"volume": len(volume), "cuts": rows}
     version = 1
@@ -35,14 +37,18 @@ def encode(volume: bytes, cuts: list[Cut], mask: bytes = b"") -> bytes:
         header["mask"] = len(mask)
         for row, cut in zip(rows, cuts, strict=True):
             row["mode"] = cut.mode
+    for row in (row for row, cut in zip(rows, cuts, strict=True) if cut.masked):
+        row["masked"] = True
+    if shaped:
+        header["shaped"] = True
     text = json.dumps(header, separators=(",", ":"), ensure_ascii=False).encode()
     poses = [np.ascontiguousarray(c.poses, "<f8").tobytes() for c in cuts]
     return b"".join([_HEAD.pack(MAGIC, version, len(text)), text, volume, mask, *poses])
 
 
-def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[Cut], memoryview]:
-    """A view of the volume's bytes, the cuts, a view of the mask's bytes (empty: none). ValueError says what is wrong
-    with a block that is not whole."""
+def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[Cut], memoryview, bool]:
+    """A view of the volume's bytes, the cuts, a view of the mask's bytes (empty: none), whether it was shaped by other
+    means. ValueError says what is wrong with a block that is not whole."""
     if identity is not None and content_id(block) != identity:
         raise ValueError("the sculpt's data in this .blend is damaged: its checksum is another one")
     if len(block) < _HEAD.size or block[:8] != MAGIC:
@@ -66,8 +72,9 @@ def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[
         cuts = []
         for c in header["cuts"]:
             poses = np.frombuffer(block, "<f8", 6 * c["rows"], at).reshape(-1, 6).copy()
-            cuts.append(Cut(c["tool"], poses, c["tolerance"], c.get("mode", "remove")))
+            more = c.get("mode", "remove"), bool(c.get("masked"))
+            cuts.append(Cut(c["tool"], poses, c["tolerance"], *more))
             at += 48 * c["rows"]
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"the sculpt's data in this .blend is not whole: {error}") from error
-    return volume, cuts, mask
+    return volume, cuts, mask, bool(header.get("shaped"))

@@ -58,6 +58,13 @@ def draped(points: np.ndarray, found: np.ndarray, up: np.ndarray, heights: np.nd
     return top, bottom, cells
 
 
+def leaves(top: np.ndarray, raised: np.ndarray, lower, upper, slight: float) -> bool:
+    """Whether what is raised by more than `slight` (n, m) has a place, of `top` (n, m, 3), further than that outside of
+    the box from `lower` to `upper`. Places that are not found are NaN."""
+    outside = ((top < lower - slight) | (top > upper + slight)).any(axis=2)
+    return bool((outside & (raised > slight)).any())
+
+
 def _spacing(points: np.ndarray, up: np.ndarray) -> float:
     """How far the places are from each other, seen along `up`."""
     across = np.diff(points, axis=0)

@@ -1,11 +1,14 @@
-"""What is done to a sculpt as a whole: another pitch, cut off by a plane, taken apart, edits taken over."""
+"""What is done to a sculpt as a whole: another pitch or box, cut off by a plane, taken apart, edits taken over."""
+
+from dataclasses import replace
 
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from riffler import tasks
 
-from ..bl import forms, sculpts, units
+from ..bl import forms, masks, sculpts, units
+from ..core import estimate
 from ..core import units as names
 from ..core.cache import Content
 from ..core.job import TaskJob
@@ -32,18 +35,46 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
     )
 
     def begin(self, context):
-        _, self._before = self.take(context)
-        volume = self._before.volume
-        self._wanted = volume.directions if self.directions == "KEEP" else self.directions
-        return TaskJob(tasks.resampled(volume, units.clean(self.pitch), self._wanted))
+        ob, self._before = self.take(context)
+        volume, pitch = self._before.volume, units.clean(self.pitch)
+        wanted = volume.directions if self.directions == "KEEP" else self.directions
+        area = estimate.shown_area(len(ob.data.polygons), volume.pitch)
+        estimate.check_surface(ob.name, volume.upper - volume.lower, area, pitch)
+        return TaskJob(tasks.resampled(volume, pitch, wanted))
 
     def finish(self, context, job):
-        before, mask = self._before, self._before.mask
-        if mask is not None:
-            mask = mask.resampled(units.clean(self.pitch), self._wanted)
-        self.keep(job.result, before.cuts, mask)
+        before = self._before
+        self.keep(replace(before, volume=job.result, mask=masks.on_grid_of(job.result, before.mask)))
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{names.format_count(job.result.rays)} rays; material {_signed(off)}")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
+    """Make the sculpt's box larger, so that there is room for material outside of it; the sculpt stays where it is"""
+
+    bl_idname = "riffler.room"
+    bl_label = "Make Room"
+    doing = "Making room"
+    cancelled = "No room was made: the sculpt is as it was"
+
+    room: FloatProperty(
+        name="Room (mm)", default=5.0, min=1e-3, precision=2, description="On every side, in whole pitches"
+    )
+
+    def begin(self, context):
+        _, self._before = self.take(context)
+        volume = self._before.volume
+        # whole pitches, so that rays stand where they stood
+        room = volume.pitch * np.ceil(units.clean(self.room) / volume.pitch - 1e-6)
+        lower, upper = volume.lower - room, volume.upper + room
+        return TaskJob(tasks.resampled(volume, volume.pitch, volume.directions, lower, upper))
+
+    def finish(self, context, job):
+        before, volume = self._before, job.result
+        self.keep(replace(before, volume=volume, mask=masks.on_grid_of(volume, before.mask)))
+        off = _signed(volume.volume - before.volume.volume)
+        self.report({"INFO"}, f"The box is {names.format_size(volume.upper - volume.lower)}; material {off}")
         return {"FINISHED"}
 
 
@@ -67,7 +98,7 @@ class RIFFLER_OT_crop(SculptEdit, bpy.types.Operator):
         volume = content.volume.copy().clip(point, -normal if self.flip else normal)
         if volume.volume <= 0:
             raise ValueError("nothing would be left: choose the other side, or move the plane")
-        return Content(volume, content.cuts, content.mask)
+        return replace(content, volume=volume, shaped=True)
 
     def tell(self, before, after):
         taken = before.volume.volume - after.volume.volume
@@ -104,23 +135,30 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
             return {"CANCELLED"}
         ob = bpy.data.objects[self._object]
         collections, matrix, name = ob.users_collection, ob.matrix_world.copy(), ob.name
+        middle = sculpts.middle(ob.data, self._before.volume)
         mm = sculpts.shown_mm_per_unit(ob.data)
         made = []
         try:
             for piece in others:
-                new = sculpts.new_object(context, f"{name} Part", piece, matrix, mm_per_unit=mm)
+                content = Content(piece, mask=_left_of(self._before.mask, piece))
+                new = sculpts.new_object(context, f"{name} Part", content, matrix, mm, collections)
                 made.append(new)
                 sculpts.take_looks(new, ob)
-                for collection in collections:
-                    if new.name not in collection.objects:
-                        collection.objects.link(new)
-            self.keep(first, self._before.cuts, self._before.mask)  # last: until then the sculpt has all pieces
+                sculpts.keep_middle(new.data, piece, middle)
+            self.keep(replace(self._before, volume=first))  # last: until then the sculpt has all pieces
         except BaseException:
             bpy.data.batch_remove([*made, *(new.data for new in made)])
             sculpts.select_only(context, ob)
             raise
         self.report({"INFO"}, f"{len(job.result)} parts")
         return {"FINISHED"}
+
+
+def _left_of(mask, piece):
+    """The mask of one piece: None where it protects nothing of it."""
+    if mask is None:
+        return None
+    return mask if mask.copy().intersect(piece).volume > 0 else None
 
 
 class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
@@ -133,8 +171,8 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
     from_edits = True
 
     def begin(self, context):
-        ob, content = self.take(context)
-        volume = content.volume
+        ob, self._before = self.take(context)
+        volume = self._before.volume
         surface = forms.of_object(context, ob, ob)
         # whole pitches further out, so that what has not moved stands on the rays that it stood on
         bounds, h = surface.bounds, volume.pitch
@@ -146,15 +184,20 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
     def finish(self, context, job):
         if job.result.volume <= 0:
             raise ValueError("the edited mesh has no volume: close it, or undo the edits")
-        self.keep(job.result, [], None)
+        before, volume = self._before, job.result
+        mask = masks.on_grid_of(volume, before.mask)  # where it was: what was moved has left it, or come into it
+        middle = sculpts.middle(self.mesh, before.volume)
+        self.keep(Content(volume, mask=mask, shaped=True))
+        sculpts.keep_middle(self.mesh, volume, middle)
         ob = bpy.data.objects[self._object]
         for modifier in [m for m in ob.modifiers if m.show_viewport]:
             ob.modifiers.remove(modifier)
         open_edges = self._report.get("open_edges", 0)
         level = {"WARNING"} if open_edges else {"INFO"}
         note = f", {names.format_count(open_edges)} open edges were closed" if open_edges else ""
-        self.report(level, f"{names.format_volume(job.result.volume)} of material{note}")
+        note += f"; {len(before.cuts)} cuts are not in the NC code any more" if before.cuts else ""
+        self.report(level, f"{names.format_volume(volume.volume)} of material{note}")
         return {"FINISHED"}
 
 
-CLASSES = (RIFFLER_OT_resample, RIFFLER_OT_crop, RIFFLER_OT_split, RIFFLER_OT_take_edits)
+CLASSES = (RIFFLER_OT_resample, RIFFLER_OT_room, RIFFLER_OT_crop, RIFFLER_OT_split, RIFFLER_OT_take_edits)

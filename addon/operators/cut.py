@@ -1,6 +1,7 @@
 """Cutting: one operator per source of motion, carved in slices by the shell of long work; the surface follows."""
 
 import time
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -39,7 +40,9 @@ class CutShell(shared.TakesTool, SculptWork):
         sculpts.refill(self.mesh, sculpts.shown_mm_per_unit(self.mesh))
 
     def finish(self, context, job):
-        self.keep(job.volume, self._before.cuts + job.cuts, self._before.mask)
+        before = self._before
+        cuts = [replace(cut, masked=before.mask is not None) for cut in job.cuts]
+        self.keep(replace(before, volume=job.volume, cuts=before.cuts + cuts))
         seconds = time.perf_counter() - self._begin
         changed, adds = units.format_volume(job.removed), {cut.mode == "add" for cut in job.cuts}
         done = {(False,): "Removed", (True,): "Put on"}.get(tuple(adds), "Removed and put on")

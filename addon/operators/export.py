@@ -35,9 +35,16 @@ class Export(ExportHelper):
     def removing(self, ob, content):
         """programs.removing, and a word on what is left out."""
         cuts = programs.removing(ob.name, content)
-        added = len(content.cuts) - len(cuts)
+        added, masked = len(content.cuts) - len(cuts), sum(cut.masked for cut in cuts)
         if added:
             self.report({"WARNING"}, f"{added} strokes that put material on are left out: no machine can make them")
+        if masked:
+            self.report({"WARNING"}, f"Cuts made beside a mask: {masked}. What is written cuts what it protected, too")
+        if content.shaped:
+            self.report(
+                {"WARNING"},
+                local("Crop, smoothing, reliefs and edits of the mesh are not in what is written: it has cuts only"),
+            )
         return cuts
 
 
@@ -49,13 +56,16 @@ class ExportSurface(Export):
     )
 
     def write(self, context, ob, path):
-        if live.of(ob) is None and sculpts.edited(ob.data):
-            self.report({"WARNING"}, local("The mesh was edited: what is written is the volume, without the edits"))
+        if live.of(ob) is None:
+            shared.tell_edits(self, ob.data, lost=False)
+        shared.tell_modifiers(self, ob)
         surface = live.content(ob).volume.to_mesh()
+        if not len(surface.triangles):
+            raise ValueError("the sculpt has no material left")
         if self.world:
             surface = placed(surface, sculpts.to_world_mm(ob, context.scene))
         self.put(surface, path, ob.name)
-        lower, upper = surface.bounds if len(surface.vertices) else np.zeros((2, 3))
+        lower, upper = surface.bounds
         return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(upper - lower)}"
 
 

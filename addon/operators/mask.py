@@ -1,11 +1,12 @@
 """What of a sculpt is protected: from closed curves and meshes, the other way round, or nothing."""
 
+from dataclasses import replace
+
 import bpy
 import riffler
 from bpy.props import EnumProperty, StringProperty
 
 from ..bl import forms
-from ..core.cache import Content
 from ..core.job import TaskJob
 from ..properties.clay import HOW
 from .sculpt_work import SculptEdit, SculptWork
@@ -15,7 +16,7 @@ TOLERANCE = 0.25  # pitches: of curves
 
 def masked(content, mask):
     """The content with that mask, of which None is left where it protects nothing."""
-    return Content(content.volume, content.cuts, None if mask is None or mask.volume == 0 else mask)
+    return replace(content, mask=None if mask is None or mask.volume == 0 else mask)
 
 
 def said_of(content):
@@ -57,7 +58,7 @@ class RIFFLER_OT_mask_form(SculptWork, bpy.types.Operator):
 
     def finish(self, context, job):
         after = masked(self._before, self._combined(self._before.mask, job.result))
-        self.keep(after.volume, after.cuts, after.mask)
+        self.keep(after)
         self.report({"INFO"}, said_of(after))
         return {"FINISHED"}
 

@@ -31,7 +31,7 @@ OF_TOOLS = {"riffler.add": "add"}  # any other carves
 SAID = {"remove": "removed", "add": "put on"}
 NO_STROKE = {
     "remove": "no stroke",
-    "add": "no stroke where the stock's box has room; a new stock with a larger box has more",
+    "add": "no stroke where the stock's box has room; Make Room in Clay gives it more",
 }
 NOT_OURS = {"riffler.smooth": "Smooth", "riffler.mask": "Mask"}  # tools whose work no session does
 
@@ -118,6 +118,9 @@ def recordings(settings):
     return folder
 
 
+NO_COPIES = "Mirror and Radial are for strokes of the pointer: a session of a device makes no copies"
+
+
 class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.Operator):
     """Sculpt with a pen or another device, until Esc or until this is called again"""
 
@@ -179,10 +182,10 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
         ob = sculpts.active(context)
         try:
             mode = mode_of(context, self.mode)
-            if sculpts.edited(ob.data) and not sculpts.behind(ob.data):
-                self.report(
-                    {"WARNING"}, local("The mesh had been edited: the pen starts from the volume, the edits are gone")
-                )
+            if len(context.scene.riffler.sculpt.maps()) > 1:
+                self.report({"WARNING"}, local(NO_COPIES))
+            if not sculpts.behind(ob.data):
+                shared.tell_edits(self, ob.data)
             depth = names.clean(context.scene.riffler.sculpt.depth)
             tool = tool_for(mode, riffler.Tool.from_dict(self.tool_dict(context)), depth)
             folder, options = recordings(self), session_options(context, ob, self, mode)

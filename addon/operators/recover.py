@@ -53,7 +53,7 @@ class RIFFLER_OT_recover(TakesJournal, long.LongWork, bpy.types.Operator):
         live.end_all()
         self._found, self._lock = self.take()
         try:
-            strokes, self._cuts, self._states = _prepared(self._found)
+            strokes, self._cuts, self._shaped, self._states = _prepared(self._found)
             task = tasks.replay(strokes, self._found.folder, with_mask=True)
         except BaseException:
             self._lock.release()
@@ -67,7 +67,7 @@ class RIFFLER_OT_recover(TakesJournal, long.LongWork, bpy.types.Operator):
 
     def finish(self, context, job):
         volume, mask = job.result
-        content = Content(volume, self._cuts, mask)
+        content = Content(volume, self._cuts, mask, self._shaped)
         about = self._found.about
         ob = _target(about, self._states)
         try:
@@ -86,18 +86,18 @@ class RIFFLER_OT_recover(TakesJournal, long.LongWork, bpy.types.Operator):
 
 
 def _prepared(found):
-    """The strokes that are still to be made, on a snapshot in the journal's folder, all cuts, and the tokens of the
-    states that the journal knows, from the first to the last."""
+    """The strokes that are still to be made, on a snapshot in the journal's folder, all cuts, whether other means have
+    shaped it, too, and the tokens of the states that the journal knows, from the first to the last."""
     try:
         strokes, cuts = journal.part_of(found.folder)
     except ValueError as error:
         raise ValueError(f"the journal of {found.name} is kept, but cannot be read: {error}") from error
     if not strokes.strokes:
         raise ValueError(f"the journal of {found.name} has no strokes: discard it")
-    states = journal.states(found.folder, found.about, strokes)
+    shaped, states = journal.shaped(found.folder, strokes), journal.states(found.folder, found.about, strokes)
     if not (found.folder / journal.STOCK).exists() and strokes.stock and strokes.stock["snapshot"] == journal.STOCK:
         strokes = _on_what_the_file_has(found, strokes, states)
-    return strokes, cuts, states
+    return strokes, cuts, shaped, states
 
 
 def _on_what_the_file_has(found, strokes, states):
@@ -147,9 +147,7 @@ def _new(context, name, content, about):
     here = units.mm_per_unit(context.scene)
     matrix = Matrix(about.get("matrix") or Matrix.Identity(4))
     matrix.translation *= about.get("mm_per_unit", here) / here
-    ob = sculpts.new_object(context, name, content.volume, matrix)
-    sculpts.commit(ob.data, content, here)
-    return ob
+    return sculpts.new_object(context, name, content, matrix, here)
 
 
 class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):

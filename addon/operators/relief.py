@@ -1,5 +1,7 @@
 """Pictures raised on a sculpt or engraved into it."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import riffler
@@ -10,10 +12,13 @@ from .. import properties
 from ..bl import forms, units
 from ..core import relief
 from ..core import units as names
-from ..core.job import TaskJob
+from ..core.job import PiecesJob
+from ..translations import local
 from .sculpt_work import SculptWork
 
+BANDS, OTHERS = 8, 6  # pieces in which the surface is looked for; and all others
 FINEST = 1500  # places along a side: finer pictures than rays would be lost work
+SLIGHT = 0.01  # pitches that nobody sees: of what is cut off by the box
 REACH = 2.0  # pitches by which a relief reaches into what it joins
 
 
@@ -32,8 +37,13 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
 
     def begin(self, context):
         ob, self._before = self.take(context)
-        volume = self._before.volume
-        return TaskJob(forms.task_of(self._mesh(context, ob, volume), volume))
+        image = bpy.data.images.get(self.image)
+        if image is None:
+            raise ValueError("choose a picture" if not self.image else f"there is no picture {self.image!r}")
+        place = forms.chosen(context, self.place, {"MESH", "EMPTY"}, "a place for the picture, a plane or an empty,")
+        # what is Blender's is read now; the work itself knows nothing of it
+        pieces = self._form(self._before.volume, forms.pixels(image), forms.axes(ob, place), place.name)
+        return PiecesJob(pieces, BANDS + OTHERS)
 
     def finish(self, context, job):
         before, form = self._before, job.result
@@ -41,47 +51,48 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
         if before.mask is not None:
             form.subtract(before.mask)
         volume.add(form) if self.mode == "RAISE" else volume.subtract(form)
-        self.keep(volume, before.cuts, before.mask)
+        self.keep(replace(before, volume=volume, shaped=True))
         self._tell_change(abs(volume.volume - before.volume.volume))
         return {"FINISHED"}
 
     def _tell_change(self, changed):
         if self.mode == "RAISE" and not changed:
-            why = "the stock's box is full there, or protected. Engrave the picture inverted, or take a larger stock"
+            why = "the stock's box is full there, or protected. Engrave the picture inverted, or use Make Room"
             self.report({"WARNING"}, f"Nothing was put on: {why}")
             return
+        if self._cut_off:
+            self.report(
+                {"WARNING"}, local("The picture was cut off at the stock's box: Make Room in Clay gives it more")
+            )
         what = "Added" if self.mode == "RAISE" else "Removed"
         self.report({"INFO"} if changed > 0 else {"WARNING"}, f"{what} {names.format_volume(changed)}")
 
-    def _mesh(self, context, ob, volume):
-        image = bpy.data.images.get(self.image)
-        if image is None:
-            raise ValueError("choose a picture" if not self.image else f"there is no picture {self.image!r}")
-        place = forms.chosen(context, self.place, {"MESH", "EMPTY"}, "a place for the picture, a plane or an empty,")
-        heights = relief.luminance(forms.pixels(image))
+    def _form(self, volume, pixels, axes, place):
+        """Makes what is put on or taken away, a volume, in pieces (PiecesJob)."""
+        heights = relief.luminance(pixels)
+        yield
         heights = 1 - heights if self.invert else heights
         width, depth = units.clean(self.width), units.clean(self.depth)
-        size = np.array([width, width * heights.shape[0] / heights.shape[1]])
-        points, up = self._grid(ob, place, size, volume.pitch)
+        points, up = _grid(axes, np.array([width, width * heights.shape[0] / heights.shape[1]]), volume.pitch)
         heights = relief.fitted(heights, points.shape[1], points.shape[0]).T
-        reach = REACH * volume.pitch
+        yield
         found = np.ones(points.shape[:2], bool)
         if self.follow:
-            points, found = _dropped(volume, points, up)
+            points, found = yield from _dropped(volume, points, up)
             if not found.any():
-                raise ValueError(f"the picture's place, {place.name}, does not lie over the sculpt")
+                raise ValueError(f"the picture's place, {place}, does not lie over the sculpt")
+        yield
         raised = 1.0 if self.mode == "RAISE" else -1.0
-        top, bottom, cells = relief.draped(points, found, up, heights, raised * depth, reach)
+        top, bottom, cells = relief.draped(points, found, up, heights, raised * depth, REACH * volume.pitch)
+        self._cut_off = self.mode == "RAISE" and relief.leaves(
+            top, heights * depth, volume.lower, volume.upper, SLIGHT * volume.pitch
+        )
         if not cells.any():
             raise ValueError("the sculpt falls too steeply under the picture: turn its place")
-        return shape.slab(top, bottom, cells)
-
-    def _grid(self, ob, place, size, pitch):
-        """Places of the picture, (right, up, 3) mm in the sculpt's frame, and its unit normal."""
-        origin, right, top, up = forms.axes(ob, place)
-        count = np.clip(np.ceil(size / (0.5 * pitch)).astype(int) + 1, 2, FINEST)
-        x, y = (np.linspace(-0.5 * s, 0.5 * s, n) for s, n in zip(size, count, strict=True))
-        return origin + x[:, None, None] * right + y[None, :, None] * top, up
+        yield
+        surface = shape.slab(top, bottom, cells)
+        form = yield forms.task_of(surface, volume)
+        return form
 
     def draw(self, context):
         layout = self.layout
@@ -92,15 +103,28 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
             layout.prop(self, key)
 
 
+def _grid(axes, size, pitch):
+    """Places of a picture of that size in the plane of `axes` (forms.axes), (right, up, 3) mm in the sculpt's frame,
+    and its unit normal."""
+    origin, right, top, up = axes
+    count = np.clip(np.ceil(size / (0.5 * pitch)).astype(int) + 1, 2, FINEST)
+    x, y = (np.linspace(-0.5 * s, 0.5 * s, n) for s, n in zip(size, count, strict=True))
+    return origin + x[:, None, None] * right + y[None, :, None] * top, up
+
+
 def _dropped(volume, points, up):
-    """Where the places lie on the volume's surface, seen from above; those that look past it are not found."""
+    """Where the places lie on the volume's surface, seen from above; those that look past it are not found. Yields."""
     surface = riffler.Mesher(volume).freeze()
+    yield
     far = float(np.linalg.norm(volume.upper - volume.lower)) + float(np.abs(points).max())
-    origins = points.reshape(-1, 3) + far * up
-    distance, *_ = surface.pick(origins, np.tile(-up, (len(origins), 1)))
-    found = np.isfinite(distance)
-    places = origins - np.where(found, distance, np.nan)[:, None] * up
-    return places.reshape(points.shape), found.reshape(points.shape[:2])
+    bands = []
+    for some in np.array_split(points.reshape(-1, 3), BANDS):
+        origins = some + far * up
+        distance, *_ = surface.pick(origins, np.tile(-up, (len(origins), 1)))
+        bands.append(origins - np.where(np.isfinite(distance), distance, np.nan)[:, None] * up)
+        yield
+    places = np.vstack(bands).reshape(points.shape)
+    return places, np.isfinite(places).all(axis=2)
 
 
 CLASSES = (RIFFLER_OT_relief,)

@@ -21,9 +21,11 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
     bl_label = "To Mesh"
     doing = "Making a mesh"
     cancelled = "No mesh was made"
+    leaves_mesh = True
 
     def begin(self, context):
-        _, content = self.take(context)
+        ob, content = self.take(context)
+        shared.tell_modifiers(self, ob)
         iterations, tolerance = self.iterations, units.clean(self.tolerance)
 
         def first(_):
@@ -143,7 +145,7 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
         if len(distance) != len(mesh.vertices):
             raise ValueError("not coloured: the mesh was changed meanwhile")
         attributes.show_distance(mesh, distance, units.clean(self.scale))
-        attributes.shade_by_attribute(mesh)
+        attributes.shade_by_attribute()
         low, high = (names.trim(v, 4) for v in (distance.min(), distance.max()))
         rms = names.trim(float(np.sqrt(np.mean(distance**2))), 4)
         self.report({"INFO"}, f"From {low} to {high} mm, RMS {rms} mm")
@@ -168,7 +170,7 @@ class RIFFLER_OT_hide_deviation(bpy.types.Operator):
 
     def execute(self, context):
         attributes.hide_distance(context.object.data)
-        attributes.shade_as_before(context.object.data)
+        attributes.settle()
         return {"FINISHED"}
 
 

@@ -43,6 +43,7 @@ class RIFFLER_OT_millimetres(bpy.types.Operator):
                 store.content(mesh)  # what cannot be read comes before the first change
             units.set_millimetres(context.scene, bpy.data.screens)
             for mesh in meshes:
+                shared.tell_edits(self, mesh)
                 sculpts.refill(mesh, units.mm_per_unit(context.scene))
         except shared.ERRORS as error:
             return shared.fail(self, error)

@@ -3,8 +3,6 @@
 import bpy
 
 from ..bl import live, sculpts, store
-from ..core.cache import Content
-from ..translations import local
 from . import shared
 from .long import LongWork
 
@@ -14,6 +12,7 @@ class SculptWork(LongWork):
 
     bl_options = {"REGISTER", "UNDO"}
     from_edits = False  # it takes over what Blender's own tools have made of the mesh
+    leaves_mesh = False  # it makes something else, and the mesh stays as it is
 
     @classmethod
     def poll(cls, context):
@@ -23,8 +22,8 @@ class SculptWork(LongWork):
         """(object, content) of the active sculpt; the content must not be changed."""
         live.end_all()
         ob = sculpts.active(context)
-        if not self.from_edits and sculpts.edited(ob.data):
-            self.report({"WARNING"}, local("The mesh had been edited: this starts from the volume, the edits are gone"))
+        if not self.from_edits:
+            shared.tell_edits(self, ob.data, lost=not self.leaves_mesh)
         self._object, self._identity = ob.name, store.identity(ob.data)
         return ob, store.content(ob.data)
 
@@ -38,8 +37,8 @@ class SculptWork(LongWork):
     def mesh(self):
         return bpy.data.objects[self._object].data
 
-    def keep(self, volume, cuts, mask):
-        sculpts.commit(self.mesh, Content(volume, cuts, mask), sculpts.shown_mm_per_unit(self.mesh))
+    def keep(self, content):
+        sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh))
 
 
 class SculptEdit:
@@ -58,6 +57,7 @@ class SculptEdit:
             live.end_all()
             before = store.content(ob.data)
             after = self.edited(context, ob, before)
+            shared.tell_edits(self, ob.data)
             sculpts.commit(ob.data, after, sculpts.shown_mm_per_unit(ob.data))
         except shared.ERRORS as error:
             return shared.fail(self, error)

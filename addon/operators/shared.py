@@ -22,6 +22,13 @@ NAVIGATION = {
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
 
 
+EDITS_LOST = (
+    "The mesh had been edited: this starts from the volume, the edits are gone. To keep them, undo this and use Take "
+    "Edits first"
+)
+EDITS_LEFT_OUT = "The mesh was edited: what is made is the volume, without the edits. Take Edits takes them over first"
+
+
 def tool_of_text(text):
     """A tool's dictionary from JSON."""
     tool = json.loads(text)
@@ -70,6 +77,22 @@ def busy(cls, context, simulation=True):
     if state.simulating and simulation:
         deny(cls, f"{state.simulating} is being simulated: Esc in the view ends it")
     return bool(state.running or state.sculpting or (state.simulating and simulation))
+
+
+def tell_edits(operator, mesh, lost=True):
+    """A warning where Blender's own tools have changed the mesh since it was shown. `lost`: it will be shown anew."""
+    if not sculpts.changed(mesh):
+        return
+    operator.report({"WARNING"}, local(EDITS_LOST if lost else EDITS_LEFT_OUT))
+
+
+def tell_modifiers(operator, ob):
+    """A warning where what is seen is not what is made, which comes from the volume."""
+    if sculpts.modified(ob):
+        operator.report(
+            {"WARNING"},
+            f"{ob.name} has modifiers: what is made is the volume, without them. Take Edits takes them over first",
+        )
 
 
 def deny(cls, message):

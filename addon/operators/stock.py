@@ -12,6 +12,7 @@ from .. import properties
 from ..bl import live, meshes, parts, sculpts, store, units
 from ..core import estimate
 from ..core import units as names
+from ..core.cache import Content
 from ..core.job import DoneJob, TaskJob
 from . import paths, shared
 from .long import LongWork
@@ -74,7 +75,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         new, source, volume = self._new, self._from(), job.result
         if new.found is not None:
             self._check(source, volume)
-        ob = sculpts.new_object(context, new.name, volume, new.frame)
+        ob = sculpts.new_object(context, new.name, Content(volume), new.frame)
         if source is not None:
             if sculpts.is_sculpt(source):
                 sculpts.take_looks(ob, source)
@@ -150,8 +151,11 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
 
 
 def _is_its_volume(context, ob):
-    """Of a sculpt: whether it stands in the world as its volume is, as large, unturned inside out and unmodified."""
-    if not sculpts.is_sculpt(ob) or any(modifier.show_viewport for modifier in ob.modifiers):
+    """Of a sculpt: whether what is seen in the world is its volume, as large, not turned inside out, and neither
+    modified nor edited."""
+    if not sculpts.is_sculpt(ob) or sculpts.modified(ob):
+        return False
+    if live.of(ob) is None and sculpts.changed(ob.data):
         return False
     shown, scene = sculpts.shown_mm_per_unit(ob.data), units.mm_per_unit(context.scene)
     return not sculpts.distorted(ob) and not ob.matrix_world.is_negative and np.isclose(shown, scene, rtol=1e-6)

@@ -118,12 +118,9 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
     def _take_up(self, context):
         ob = sculpts.active(context)
         self._fresh = live.of(ob) is None
-        edited = self._fresh and sculpts.edited(ob.data)
+        if self._fresh:
+            shared.tell_edits(self, ob.data)
         self._run = live.begin(context, ob)
-        if edited:
-            self.report(
-                {"WARNING"}, local("The mesh had been edited: the stroke starts from the volume, the edits are gone")
-            )
 
     def _start(self, context, view):
         ob = sculpts.active(context)
@@ -230,7 +227,7 @@ def nothing(made, mode):
     if made.moves == 0:
         return "The stroke did not meet the sculpt"
     if mode == "ADD":
-        return "Nothing was put on: the stock's box is full there, or protected. New stock with a larger box has room"
+        return "Nothing was put on: the stock's box is full there, or protected. Make Room in Clay gives it more"
     return "The stroke changed nothing: what it met is protected, or there was nothing left to change"
 
 

@@ -93,7 +93,7 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
             if not own or ob.library or ob.data.library:
                 return [f"{ob.name} is not coloured, as it is no plain mesh of this file: colour what is left instead."]
         attributes.show_distance(ob.data, distance, units.clean(self.scale))
-        attributes.shade_by_attribute(ob.data)
+        attributes.shade_by_attribute()
         if self.hide:
             part = context.scene.objects[self._part]
             _hide(context, [other for other in (stock, part) if other != ob])
@@ -136,7 +136,7 @@ def _clear(context):
     for ob in context.scene.objects:
         if ob.type == "MESH" and attributes.SCALE in ob.data and not ob.data.library:
             attributes.hide_distance(ob.data)
-            attributes.shade_as_before(ob.data)
+    attributes.settle()
     for name in settings.hidden.split("\n"):
         ob = context.scene.objects.get(name)
         if ob is not None and ob.name in context.view_layer.objects:

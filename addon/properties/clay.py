@@ -32,6 +32,7 @@ class ReliefSettings:
 
 class RifflerClay(ReliefSettings, bpy.types.PropertyGroup):
     pitch: length("Pitch", 0.25, "Distance between rays, in mm: what the surface can resolve", 1e-4)
+    room: length("Room", 5.0, "How much larger the sculpt's box becomes on every side, in mm", 1e-3)
     plane: PointerProperty(
         name="Plane", type=bpy.types.Object, description="Its local plane z = 0 is where the sculpt is cut off"
     )

@@ -69,8 +69,10 @@ class RifflerMesh(bpy.types.PropertyGroup):
     shown: IntVectorProperty(size=2)
     shown_of: StringProperty(description="Content id of the volume that the mesh was made of")
     shown_at: FloatVectorProperty(size=24)
+    shown_crc: StringProperty()  # of all coordinates as they were shown; files of older add-ons have none
     lower: FloatVectorProperty()
     upper: FloatVectorProperty()
+    off_middle: FloatVectorProperty()  # from where strokes are mirrored to the middle of the box, mm
     pitch: FloatProperty()
     directions: StringProperty()
     material: FloatProperty()

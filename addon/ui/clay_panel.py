@@ -40,6 +40,9 @@ class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
                 )
                 op.pitch = factor * now
         row = layout.row(align=True)
+        row.prop(settings, "room", text="")
+        row.operator(clay.RIFFLER_OT_room.bl_idname).room = settings.room
+        row = layout.row(align=True)
         row.prop(settings, "plane", text="")
         op = row.operator(clay.RIFFLER_OT_crop.bl_idname, text="Crop")
         op.plane = settings.plane.name if settings.plane else ""

@@ -1,6 +1,10 @@
 """When a live sculpt is packed, and the journal of the work at it, without Blender."""
 
+import importlib.util
 import json
+import os
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -26,9 +30,9 @@ def lane(y, *xs):
 class Work:
     """Carves and keeps, as a live sculpt does."""
 
-    def __init__(self, root, cuts=(), **more):
+    def __init__(self, root, cuts=(), shaped=False, **more):
         self.volume, self.mask = riffler.Volume.block(*BOX), None
-        self.journal = journal.LiveJournal(root, Content(self.volume.copy(), list(cuts)), "t0", **more)
+        self.journal = journal.LiveJournal(root, Content(self.volume.copy(), list(cuts), shaped=shaped), "t0", **more)
         self.states = {"t0": self.volume.to_bytes()}
 
     def carve(self, poses, mode, token):
@@ -60,6 +64,14 @@ def test_every_state_is_told_again(tmp_path):
     assert work.journal.state("nowhere") is None
     assert work.journal.state("d").mask.to_bytes() == work.mask.to_bytes()
     assert [(c.mode, c.moves) for c in work.journal.state("d").cuts] == [("remove", 2), ("remove", 1), ("add", 1)]
+    assert [c.masked for c in work.journal.state("d").cuts] == [False, True, True]
+    assert [work.journal.state(token).shaped for token in ("c", "s", "d")] == [False, True, True]
+
+
+def test_what_other_means_had_shaped_before_is_told_again(tmp_path):
+    work = Work(tmp_path, shaped=True)
+    work.stroke("a", lane(10, 5, 20, 35))
+    assert work.journal.state("a").shaped and len(work.journal.state("a").cuts) == 1
 
 
 def test_going_back_and_on_is_written(tmp_path):
@@ -162,3 +174,28 @@ def test_small_sculpts_are_packed_at_once_and_large_ones_at_rest():
     large.done(20_000_000, 0.001, 1.0)
     large.stroke(2.0)
     assert not large.at_once and not large.due(30.9) and large.due(31.0)
+
+
+def test_where_there_is_no_flock_the_same_is_asked_of_windows(tmp_path, monkeypatch):
+    """That it can be imported there, and whom it asks; what Windows answers is not known here."""
+    calls, taken = [], []
+
+    def locking(file, mode, nbytes):
+        calls.append((os.lseek(file, 0, os.SEEK_CUR), mode, nbytes))
+        if taken:
+            raise PermissionError(13, "another process has it")
+
+    windows = types.ModuleType("msvcrt")
+    windows.locking, windows.LK_NBLCK = locking, 2
+    monkeypatch.setitem(sys.modules, "fcntl", None)
+    monkeypatch.setitem(sys.modules, "msvcrt", windows)
+    spec = importlib.util.spec_from_file_location("addon.core.journal_elsewhere", journal.__file__)
+    elsewhere = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, spec.name, elsewhere)  # dataclasses look for it
+    spec.loader.exec_module(elsewhere)
+    (tmp_path / journal.STROKES).write_bytes(b"strokes")
+    lock = elsewhere.Lock(tmp_path)
+    assert lock.held and calls == [(elsewhere.FAR, 2, 1)]  # far behind the end: what is there can still be read
+    lock.release()
+    taken.append(True)
+    assert not elsewhere.Lock(tmp_path).held and len(calls) == 2

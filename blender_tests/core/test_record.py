@@ -12,8 +12,8 @@ CUTS = [Cut({"kind": "ball", "name": "Größe 6"}, POSES), Cut({"kind": "flat"},
 
 def test_round_trip_to_the_bit():
     block = record.encode(b"\0volume\0", CUTS)
-    volume, cuts, mask = record.decode(block, record.content_id(block))
-    assert (volume, mask) == (b"\0volume\0", b"")
+    volume, cuts, mask, shaped = record.decode(block, record.content_id(block))
+    assert (volume, mask, shaped) == (b"\0volume\0", b"", False)
     assert [c.tool for c in cuts] == [c.tool for c in CUTS]
     assert [c.tolerance for c in cuts] == [0.01, 0.001]
     assert all(np.array_equal(a.poses, b.poses) for a, b in zip(cuts, CUTS, strict=True))
@@ -22,11 +22,19 @@ def test_round_trip_to_the_bit():
 
 def test_masks_and_what_was_put_on_come_back_and_older_blocks_stay_readable():
     put = [*CUTS, Cut({"kind": "ball"}, POSES, 0.01, "add")]
-    volume, cuts, mask = record.decode(record.encode(b"volume", put, b"mask"))
+    volume, cuts, mask, _ = record.decode(record.encode(b"volume", put, b"mask"))
     assert (volume, mask) == (b"volume", b"mask")
     assert [c.mode for c in cuts] == ["remove", "remove", "add"]
     assert all(np.array_equal(a.poses, b.poses) for a, b in zip(cuts, put, strict=True))
     assert (record.encode(b"volume", CUTS)[8], record.encode(b"volume", put)[8]) == (1, 2)
+
+
+def test_what_cuts_do_not_tell_comes_back_and_older_blocks_have_none():
+    beside = [CUTS[0], Cut({"kind": "ball"}, POSES, masked=True)]
+    _, cuts, _, shaped = record.decode(record.encode(b"v", beside, shaped=True))
+    assert [c.masked for c in cuts] == [False, True] and shaped
+    assert record.encode(b"v", beside, shaped=True)[8] == 1  # older add-ons read it as ever
+    assert b"masked" not in record.encode(b"v", CUTS) and b"shaped" not in record.encode(b"v", CUTS)
 
 
 def test_equal_content_has_an_equal_id():

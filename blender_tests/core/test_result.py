@@ -1,6 +1,7 @@
 """3MF out, colours of distances, tasks in a row."""
 
 import zipfile
+import zlib
 
 import numpy as np
 import pytest
@@ -24,6 +25,15 @@ def test_what_is_written_comes_back_to_the_bit(tmp_path):
     again = riffler.Mesh.read(path)
     assert np.array_equal(np.asarray(again.vertices, np.float32), np.asarray(mesh.vertices, np.float32))
     assert np.array_equal(again.triangles, mesh.triangles)
+
+
+def test_the_zip_is_made_at_the_quick_level(tmp_path):
+    mesh, path = part(), tmp_path / "a.3mf"
+    threemf_out.write(path, mesh.vertices, mesh.triangles)
+    with zipfile.ZipFile(path) as archive:
+        model, size = archive.read("3D/3dmodel.model"), archive.getinfo("3D/3dmodel.model").compress_size
+    sizes = {level: len(zlib.compress(model, level, -zlib.MAX_WBITS)) for level in (1, 6)}
+    assert sizes[6] < 0.95 * sizes[1] and abs(size - sizes[1]) < 0.01 * sizes[1], (size, sizes)
 
 
 def test_the_file_is_what_the_specification_asks(tmp_path):

@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+import riffler
 from mathutils import Matrix, Vector
 
 import support
@@ -56,6 +57,40 @@ def test_pitch_there_and_back_keeps_the_shape():
     assert volume(ob).directions == "z" and len(support.content(ob).cuts) == 1
     support.refused(lambda: bpy.ops.riffler.resample(pitch=1e-4), "coarser pitch")
     assert volume(ob).pitch == 1.0
+
+
+def test_a_pitch_that_cannot_be_shown_is_refused_before_anything_is_made():
+    ob = sculpt()  # 40 × 30 × 20 mm are 130 million triangles at 0.01 mm
+    before = volume(ob).to_bytes()
+    support.refused(lambda: bpy.ops.riffler.resample(pitch=0.01), "triangles at 0.01 mm", "coarser pitch")
+    assert volume(ob).to_bytes() == before
+
+
+def test_room_is_made_on_every_side_and_material_can_be_put_there():
+    ob = sculpt()
+    ring = circle("Ring", (20, 15, 100), 8)
+    path = support.curve("C", [(-5, 15, 15), (45, 15, 15)], mm_per_unit=1.0)
+    support.select(ob)
+    bpy.ops.riffler.mask_form(form=ring.name)
+    bpy.ops.riffler.cut_curve(curve=path.name, tool=support.BALL)
+    before, place = support.content(ob), ob.matrix_world.copy()
+    assert bpy.ops.riffler.room(room=2.2) == {"FINISHED"}
+    after = support.content(ob)
+    assert np.allclose(after.volume.lower, -2.5) and np.allclose(after.volume.upper, (42.5, 32.5, 22.5))
+    assert close(after.volume.volume, before.volume.volume, 1e-4) and ob.matrix_world == place
+    assert close(after.mask.volume, before.mask.volume, 5e-3) and [c.masked for c in after.cuts] == [True]
+    again = riffler.Volume.block(before.volume.lower, before.volume.upper, 0.5, "xyz")
+    back = after.volume.resampled(0.5, "xyz", again.lower, again.upper)
+    assert close(back.subtract(before.volume).volume + before.volume.volume, before.volume.volume, 1e-3)
+    matches(ob)
+    support.refused(lambda: bpy.ops.riffler.room(room=1e5), "free")
+    assert volume(ob).to_bytes() == after.volume.to_bytes()
+    bpy.ops.riffler.mask_clear()
+    run = support.part("bl.live").begin(bpy.context, ob)
+    run.carve(riffler.Tool.flat(6, 2), np.array([[10.0, 4, 20, 0, 0, 1], [30.0, 4, 20, 0, 0, 1]]), mode="add")
+    assert run.finish_stroke(bpy.context, "added")
+    support.part("bl.live").end_all()
+    assert close(volume(ob).volume - after.volume.volume, (20 * 6 + np.pi * 9) * 2, 0.05)
 
 
 def test_crop_by_the_plane_of_an_object_and_by_numbers():
@@ -212,9 +247,29 @@ def test_a_picture_is_raised_and_engraved_to_the_depth_that_was_asked():
     )
 
 
+def test_a_picture_that_is_cut_off_by_the_box_says_what_gives_it_room():
+    ob = sculpt()
+    image = bpy.data.images.new("White", 8, 8, float_buffer=True)
+    image.pixels.foreach_set(np.ones(256, np.float32))
+    bpy.ops.riffler.crop(point=(0, 0, 19), normal=(0, 0, 1))
+    empty("Place", Matrix.Translation((20, 15, 30)))
+    support.select(ob)
+    settings = {"image": "White", "place": "Place", "width": 10.0}
+
+    def said(**more):
+        text = support.printed(lambda: bpy.ops.riffler.relief(**settings, **more))
+        bpy.ops.riffler.crop(point=(0, 0, 19), normal=(0, 0, 1))
+        return "Warning" in text, "Make Room" in text
+
+    assert said(depth=2.0) == (True, True) and said(depth=0.9) == (False, False)
+    assert said(depth=2.0, mode="ENGRAVE") == (False, False)
+    assert bpy.ops.riffler.room(room=2.0) == {"FINISHED"}
+    assert said(depth=2.0) == (False, False)
+
+
 def test_every_operator_says_what_is_missing():
     for ob in list(bpy.context.selected_objects):
         ob.select_set(False)
     bpy.context.view_layer.objects.active = None
-    for name in ("resample", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"):
+    for name in ("resample", "room", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"):
         assert not getattr(bpy.ops.riffler, name).poll(), name

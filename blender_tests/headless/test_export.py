@@ -93,6 +93,21 @@ def test_a_path_that_cannot_be_written_is_named():
     support.refused(lambda: bpy.ops.riffler.export_stl(filepath="/nowhere/at/all.stl"), "all.stl")
 
 
+def test_a_sculpt_of_which_nothing_is_left_is_no_file():
+    support.scale(1)
+    support.stock(size=(10, 10, 10))
+    c = support.curve("Line", [(-5, 5, -1), (15, 5, -1)], mm_per_unit=1)
+    bpy.ops.riffler.cut_curve(curve=c.name, tool='{"kind": "flat", "diameter": 60, "length": 80}')
+    for kind in ("stl", "3mf"):
+        path = Path(support.out(f"nothing.{kind}"))
+        path.unlink(missing_ok=True)
+        support.refused(
+            lambda path=path, kind=kind: getattr(bpy.ops.riffler, f"export_{kind}")(filepath=str(path)),
+            "no material left",
+        )
+        assert not path.exists()
+
+
 def numbers(path, letter):
     import re
 
@@ -170,3 +185,60 @@ def test_what_is_no_recording_is_named():
     support.refused(lambda: bpy.ops.riffler.cut_recording(filepath=str(path) + "x"), "bad.rjournalx")
     support.refused(lambda: bpy.ops.riffler.new_stock(source="RECORDING", recording=str(path)), "bad.rjournal")
     assert support.content(ob).volume.volume == 24000
+
+
+def written():
+    """What the writing of NC code and of a recording warns of."""
+    said = support.printed(lambda: bpy.ops.riffler.export_nc(filepath=support.out("left.ngc")))
+    again = support.printed(lambda: bpy.ops.riffler.export_recording(filepath=support.out("left.rjournal")))
+    assert [line for line in again.splitlines() if "Warning" in line] == [
+        line for line in said.splitlines() if "Warning" in line
+    ]
+    return said
+
+
+def test_code_of_cuts_beside_a_mask_says_that_it_cuts_what_was_protected():
+    import sculpting
+
+    ob = cut_stock(1.0, "xyz")
+    assert "Warning" not in written()
+    bpy.ops.mesh.primitive_cube_add(size=10, location=(20, 15, 20))
+    form = bpy.context.object
+    support.select(ob)
+    bpy.ops.riffler.mask_form(form=form.name)
+    assert "Warning" not in written()  # nothing has been cut beside it yet
+    c = support.curve("Across", [(5, 15, 16), (35, 15, 16)], mm_per_unit=1)
+    support.select(ob)
+    bpy.ops.riffler.cut_curve(curve=c.name, tool=support.BALL)
+    assert "beside a mask: 1." in written()
+    sculpting.stroke(ob.name, 2)
+    assert "beside a mask: 2." in written()
+    sculpting.live().end_all()
+    support.part("bl.store").clear_cache()  # as in another session
+    assert "beside a mask: 2." in written() and "smoothing" not in written()
+    assert [cut.masked for cut in support.content(ob).cuts] == [False, True, True]
+
+
+def test_code_of_a_sculpt_that_was_shaped_otherwise_says_what_is_not_in_it():
+    import sculpting
+
+    name = sculpting.sculpt(size=(60, 60, 20))
+    sculpting.stroke(name, 1)
+    assert "Warning" not in written()
+    run = sculpting.work(name)
+    run.begin_stroke()
+    run.carve(sculpting.BALL, np.array([[20.0, 9, 20, 0, 0, 1], [30.0, 9, 20, 0, 0, 1]]), mode="soften")
+    run.cancel_stroke()
+    sculpting.stroke(name, 2)
+    assert "Warning" not in written()
+    run.begin_stroke()
+    run.carve(sculpting.BALL, np.array([[20.0, 9, 20, 0, 0, 1], [30.0, 9, 20, 0, 0, 1]]), mode="soften")
+    assert run.finish_stroke(bpy.context, "smooth")
+    assert "smoothing" in written()
+    bpy.ops.ed.undo()
+    assert "Warning" not in written()
+    sculpting.live().end_all()
+    assert bpy.ops.riffler.crop(point=(50, 0, 0), normal=(1, 0, 0)) == {"FINISHED"}
+    support.part("bl.store").clear_cache()
+    bpy.ops.riffler.resample(pitch=1.0)
+    assert "smoothing" in written()

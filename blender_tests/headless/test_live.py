@@ -485,6 +485,16 @@ def test_smoothing_takes_the_roughness_keeps_what_is_masked_and_is_undone():
     assert run.volume.to_bytes() == rough
 
 
+def test_taking_away_a_mask_that_is_not_there_is_no_stroke():
+    name = sculpt()
+    run = work(name)
+    run.begin_stroke()
+    assert run.carve(BALL, np.array([[8.0, 9, 18, 0, 0, 1], [50, 9, 18, 0, 0, 1]]), mode="unmask") is None
+    assert run.mask is None and not run.finish_stroke(bpy.context, "unmask")
+    run.end()
+    assert support.content(bpy.data.objects[name]).mask is None
+
+
 def test_a_mask_protects_is_saved_and_undone():
     name = sculpt()
     run = work(name)

@@ -16,7 +16,7 @@ import support
 
 # Operators that change the active sculpt: refused in every one of the states below.
 OF_SCULPTS = {
-    "cut_curve", "cut_recording", "stroke", "pen_sculpt", "rebuild", "resample", "crop", "split", "take_edits",
+    "cut_curve", "cut_recording", "stroke", "pen_sculpt", "rebuild", "resample", "room", "crop", "split", "take_edits",
     "mask_form", "mask_invert", "mask_clear", "relief", "to_mesh",
 }  # fmt: skip
 

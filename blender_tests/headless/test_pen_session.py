@@ -42,6 +42,15 @@ def test_a_session_that_cuts_nothing_changes_nothing():
     nothing_is_left()
 
 
+def test_a_session_says_that_it_makes_no_copies():
+    sculpt()
+    settings = bpy.context.scene.riffler.sculpt
+    for mirror, radial, said in ((set(), 1, False), ({"X"}, 1, True), (set(), 3, True)):
+        settings.mirror, settings.radial = mirror, radial
+        assert ("makes no copies" in support.printed(lambda: sculpt_for(0.1, gap=500.0))) == said
+    no_session()
+
+
 def test_a_recording_is_a_device_and_ends_by_itself():
     sculpt()
     x = np.linspace(0, 1, 500)

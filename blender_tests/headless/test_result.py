@@ -109,3 +109,56 @@ def test_a_reference_without_a_surface_is_refused():
     bpy.ops.mesh.primitive_cube_add()
     bpy.context.collection.objects.link(bpy.data.objects.new("Nothing", None))
     support.refused(lambda: bpy.ops.riffler.show_deviation(reference="Nothing"), "Nothing", "has no surface")
+
+
+def coloured():
+    """A sculpt that shows its distance from a cube, and what its views were like before."""
+    ob = sculpt()
+    bpy.ops.mesh.primitive_cube_add(size=30)
+    reference = bpy.context.object
+    support.select(ob)
+    before = shadings()
+    assert "VERTEX" not in before
+    support.push("before")
+    assert bpy.ops.riffler.show_deviation("EXEC_DEFAULT", True, reference=reference.name) == {"FINISHED"}
+    assert set(shadings()) == {"VERTEX"} and support.part("drawing.legend").mesh_of(bpy.context) == ob.data
+    return ob, before
+
+
+def shadings():
+    return [space.shading.color_type for _, _, space in support.part("bl.views").views()]
+
+
+def test_colours_of_a_surface_that_was_cut_are_gone_with_legend_and_shading():
+    ob, before = coloured()
+    bpy.ops.riffler.crop(point=(30, 0, 0), normal=(1, 0, 0))
+    assert "riffler_deviation_scale" not in ob.data and shadings() == before
+    assert support.part("drawing.legend").mesh_of(bpy.context) is None
+
+
+def test_undo_gives_the_views_back_and_redo_colours_them_again():
+    ob, before = coloured()
+    name = ob.name
+    bpy.ops.ed.undo()
+    assert shadings() == before and "riffler_deviation_scale" not in bpy.data.objects[name].data
+    bpy.ops.ed.redo()
+    assert set(shadings()) == {"VERTEX"} and "riffler_deviation_scale" in bpy.data.objects[name].data
+    assert bpy.ops.riffler.hide_deviation() == {"FINISHED"}
+    assert shadings() == before
+
+
+def test_views_stay_coloured_while_another_mesh_is():
+    ob, before = coloured()
+    assert bpy.ops.riffler.to_mesh(tolerance=0.0, hide_sculpt=False) == {"FINISHED"}
+    other = bpy.context.object
+    bpy.ops.riffler.show_deviation(reference=ob.name)
+    assert bpy.ops.riffler.hide_deviation() == {"FINISHED"} and set(shadings()) == {"VERTEX"}
+    support.select(ob)
+    assert bpy.ops.riffler.hide_deviation() == {"FINISHED"} and shadings() == before
+    assert "riffler_shading" not in other.data
+
+
+def test_a_legend_needs_colours():
+    ob, _ = coloured()
+    ob.data.attributes.remove(ob.data.attributes["riffler_deviation_colour"])  # as Blender's own tools may do
+    assert support.part("drawing.legend").mesh_of(bpy.context) is None

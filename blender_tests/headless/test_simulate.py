@@ -113,7 +113,9 @@ def test_an_nc_file_is_simulated_in_the_scene_s_and_in_the_stock_s_frame():
 
 def block(low, high, pitch=0.5):
     volume = riffler.Volume.block(low, high, pitch, "xyz")
-    ob = support.part("bl.sculpts").new_object(bpy.context, "Block", volume, Matrix())
+    ob = support.part("bl.sculpts").new_object(
+        bpy.context, "Block", support.part("core.cache").Content(volume), Matrix()
+    )
     programs.settings().stock = ob
     bpy.context.view_layer.update()
     return ob
