@@ -35,6 +35,13 @@ class RIFFLER_UL_findings(bpy.types.UIList):
         op.of, op.index = ("PLAN" if item.path >= 0 else "VERIFY"), index
 
 
+def found(layout, context, name, of, rows):
+    """The list of findings of a plan or a verification, which cuts them off, and the chosen one whole below it."""
+    layout.template_list(RIFFLER_UL_findings.bl_idname, name, of, "findings", of, "index", rows=rows)
+    if 0 <= of.index < len(of.findings):
+        lines(layout, *wrapped(context, of.findings[of.index].name))
+
+
 class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_nc"
     bl_label = "NC Code (mm)"
@@ -44,7 +51,7 @@ class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
         layout.operator(plan_nc.RIFFLER_OT_plan_resolve.bl_idname, icon="MOD_PHYSICS")
         p = ob.riffler.plan
         if p.findings:
-            layout.template_list(RIFFLER_UL_findings.bl_idname, "plan", p, "findings", p, "index", rows=3)
+            found(layout, context, "plan", p, rows=3)
             if timeline.pair(ob) is None:
                 lines(layout, *wrapped(context, "Put the plan on the timeline to jump to frames."), icon="INFO")
         layout.operator(plan_nc.RIFFLER_OT_plan_nc.bl_idname, icon="EXPORT")
@@ -77,12 +84,8 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
 
     def _found(self, layout, context, settings):
         lines(layout, *wrapped(context, settings.said), icon="ERROR" if settings.findings else "CHECKMARK")
-        if not settings.findings:
-            return
-        kind = RIFFLER_UL_findings.bl_idname
-        layout.template_list(kind, "verify", settings, "findings", settings, "index", rows=4)
-        if 0 <= settings.index < len(settings.findings):
-            lines(layout, *wrapped(context, settings.findings[settings.index].name))
+        if settings.findings:
+            found(layout, context, "verify", settings, rows=4)
 
     def _program(self, layout, context, settings):
         column = layout.column(align=True)
