@@ -67,8 +67,7 @@ def embossed(screen, ob):
     yield from lessons.picture(screen, "relief-1", lessons.view_box(screen))
     yield from lessons.press(screen, "riffler.relief")
     yield lambda: lessons.volume(ob).volume < SIDE * SIDE * DEEP
-    screen.to_view()
-    bpy.data.objects["Place"].hide_set(True)
+    yield from lessons.hidden(screen, bpy.data.objects["Place"])
     removed = SIDE * SIDE * DEEP - lessons.volume(ob).volume
     exact = DEPTH * WIDTH**2 * (1 - heights.mean())
     assert abs(removed / exact - 1) < 0.02, (removed, exact)
@@ -104,7 +103,7 @@ def masked(screen, ob):
     yield lambda: ob.visible_get()
     yield from lessons.press(screen, "riffler.mask_form", share=0.25)
     yield lambda: lessons.module("bl.store").content(ob.data).mask is not None
-    circle.hide_set(True)
+    yield from lessons.hidden(screen, circle)
     yield 0.5
     mask = lessons.module("bl.store").content(ob.data).mask
     assert mask is not None and abs(mask.volume / (np.pi * 25**2 * DEEP) - 1) < 0.02
