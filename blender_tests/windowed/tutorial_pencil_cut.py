@@ -183,7 +183,7 @@ def resolved(screen, ob):
     yield from by_resolve(screen, ob)
     kinds = [f.kind for f in ob.riffler.plan.findings]
     assert "lifted" in kinds, kinds
-    yield from lessons.press(screen, "riffler.finding_go", share=0.865)
+    yield from lessons.press(screen, "riffler.finding_go", share=0.76)
     assert ob.riffler.plan.findings[ob.riffler.plan.index].kind == "lifted"
     yield gizmo.quiet
     screen.to_view()
