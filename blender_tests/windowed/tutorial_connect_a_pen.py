@@ -86,7 +86,7 @@ def session(screen, name):
     yield 1.0
     removed = np.prod(SIZE) - lessons.volume(bpy.data.objects[name]).volume
     assert removed > 100, removed
-    screen.to_view()
+    screen.move(screen.area.x + 300, screen.area.y - 30)  # no cutter under the pointer
     yield from lessons.picture(screen, "connect-a-pen-3", lessons.view_box(screen))
     less = lessons.volume(bpy.data.objects[name]).volume
     screen.key("Z", ctrl=True)  # one stroke

@@ -27,9 +27,7 @@ def steps(screen):
     stock = made_stock(screen, part)
     with screen.override():
         bpy.ops.view3d.view_all()
-    screen.area.spaces.active.region_3d.view_rotation = gizmo.Vector((1.0, -0.5, 0.6)).to_track_quat("Z", "Y")
-    screen.area.spaces.active.region_3d.view_distance = 140
-    screen.area.spaces.active.region_3d.view_location = (30, 2, 24)
+    look(screen, (1.0, -0.5, 0.6), (30, 2, 24))
     yield from lessons.cut.open_tab(screen, "RIFFLER_PT_plan")
     yield from set_up(screen, part, clamp)
     ob = yield from searched(screen)
@@ -40,6 +38,13 @@ def steps(screen):
     yield from to_code(screen, ob)
     yield from simulated(screen, stock)
     yield from verified(screen, stock)
+
+
+def look(screen, direction, at):
+    """From a direction, with a place (mm) in the middle of the view."""
+    view = screen.area.spaces.active.region_3d
+    view.view_rotation = gizmo.Vector(direction).to_track_quat("Z", "Y")
+    view.view_distance, view.view_location = 140, at
 
 
 def cube(screen, name, middle, size):
@@ -183,12 +188,15 @@ def resolved(screen, ob):
     yield from by_resolve(screen, ob)
     kinds = [f.kind for f in ob.riffler.plan.findings]
     assert "lifted" in kinds, kinds
+    view = screen.area.spaces.active.region_3d
+    before = view.view_location.copy(), view.view_distance
     yield from lessons.press(screen, "riffler.finding_go", share=0.76)
     assert ob.riffler.plan.findings[ob.riffler.plan.index].kind == "lifted"
     yield gizmo.quiet
     screen.to_view()
     yield 0.5
     yield from lessons.picture(screen, "pencil-cut-5", (0, 0, *lessons.view_box(screen)[2:]))
+    view.view_location, view.view_distance = before  # the glass has moved it
 
 
 def turned_again(screen, frame):
@@ -226,7 +234,6 @@ def to_code(screen, ob):
     yield from by_resolve(screen, ob)
     kinds = [f.kind for f in ob.riffler.plan.findings]
     assert "lifted" not in kinds and "blocked" not in kinds, [f.name for f in ob.riffler.plan.findings]
-    harness.say(note=f"findings: {[f.name for f in ob.riffler.plan.findings]}")
     screen.to_view()
     yield 0.5
     yield from lessons.picture(screen, "pencil-cut-6", (0, 0, *lessons.view_box(screen)[2:]))
@@ -249,6 +256,7 @@ def simulated(screen, stock):
     yield lambda: not bpy.app.timers.is_registered(lessons.module("bl.simulating")._tick)
     whole = lessons.volume(stock).volume
     assert 5 < whole - now.prefix.volume.volume < 200
+    look(screen, (-0.9, -0.9, 0.9), (33, 10, 22))  # the tool does not hide what it has cut
     screen.to_view()
     yield 1.0
     yield from lessons.picture(screen, "pencil-cut-7", (0, 0, *lessons.view_box(screen)[2:]))

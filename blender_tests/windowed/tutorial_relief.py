@@ -42,9 +42,11 @@ def steps(screen):
     lessons.only_open("RIFFLER_PT_clay", "RIFFLER_PT_mask", "RIFFLER_PT_relief", "RIFFLER_PT_sculpt")
     yield from lessons.begin(screen, millimetres=False)
     ob = lessons.block(screen, (SIDE, SIDE, DEEP))
+    yield from lessons.aside(screen)
     yield from embossed(screen, ob)
     yield from smoothed(screen, ob)
     yield from masked(screen, ob)
+    assert 0 < len(support.content(ob).cuts) <= 64  # the dimples: all that NC code would have
     path = support.out("relief.stl")
     with screen.override():
         assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
