@@ -7,7 +7,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from riffler import tasks
 
-from ..bl import forms, masks, sculpts, units
+from ..bl import forms, masks, parts, sculpts, units
 from ..core import estimate
 from ..core import units as names
 from ..core.cache import Content
@@ -125,7 +125,8 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
     )
 
     def begin(self, context):
-        _, self._before = self.take(context)
+        ob, self._before = self.take(context)
+        parts.refuse_sheared(ob)
         return TaskJob(tasks.parts(self._before.volume, units.clean(self.least)))
 
     def finish(self, context, job):

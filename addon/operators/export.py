@@ -37,7 +37,8 @@ class Export(ExportHelper):
         cuts = programs.removing(ob.name, content)
         added, masked = len(content.cuts) - len(cuts), sum(cut.masked for cut in cuts)
         if added:
-            self.report({"WARNING"}, f"{added} strokes that put material on are left out: no machine can make them")
+            count = f"{added} stroke{'s' * (added > 1)}"
+            self.report({"WARNING"}, f"No machine can put material on: left out {count} that did")
         if masked:
             self.report({"WARNING"}, f"Cuts made beside a mask: {masked}. What is written cuts what it protected, too")
         if content.shaped:

@@ -25,6 +25,7 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
 
     def begin(self, context):
         ob, content = self.take(context)
+        parts.refuse_sheared(ob)
         shared.tell_modifiers(self, ob)
         iterations, tolerance = self.iterations, units.clean(self.tolerance)
 

@@ -24,6 +24,10 @@ MODES = (
     ("UNMASK", "Unmask", "Protect it no more"),
 )
 MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
+ONE_DIRECTION = (
+    "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in the box at "
+    "the lower left"
+)
 LIFTED = {"remove", "soften"}  # what a tool does from outside; fixtures are in its way
 
 _held = None  # the operator whose stroke is being made in a window
@@ -125,6 +129,8 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
     def _start(self, context, view):
         ob = sculpts.active(context)
         settings, mode = context.scene.riffler.sculpt, self.mode.lower()
+        if mode == "soften" and self._run.volume.directions != "xyz":
+            raise ValueError(ONE_DIRECTION)
         self._run.maps, self._run.strength = settings.maps(), units.clean(settings.strength)
         tool, keep_out = self.tool_dict(context), None
         if settings.fixtures is not None and mode in LIFTED:

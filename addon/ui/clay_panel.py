@@ -6,7 +6,7 @@ from .. import properties
 from ..bl import sculpts
 from ..core import units as names
 from ..operators import clay, mask, relief
-from ..translations import CONTEXT
+from ..translations import CONTEXT, local
 from .panels import Sidebar, give, lines
 
 
@@ -34,7 +34,7 @@ class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
         op.pitch = settings.pitch
         if ob is not None:
             now = ob.data.riffler.pitch
-            for factor, text in ((0.5, "Finer"), (2.0, "Coarser")):
+            for factor, text in ((0.5, local("Finer")), (2.0, local("Coarser"))):
                 op = column.operator(
                     clay.RIFFLER_OT_resample.bl_idname, text=f"{text}: {names.trim(factor * now, 4)} mm"
                 )

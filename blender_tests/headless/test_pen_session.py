@@ -310,16 +310,24 @@ def test_fixtures_keep_the_tool_of_a_device_out():
     assert obstacles(bpy.context, ob) is None
     bpy.context.scene.riffler.sculpt.fixtures = clamps
     hand = Hand(ob, obstacles=obstacles(bpy.context, ob))
-    for y in (10, 30):
-        hand.stroke(y)
+
+    def height(y, x):
+        """Least and largest (mm) of the top along a groove, 3 mm to either side of x."""
+        counts, spans = live().content(ob).volume.intervals("z")
+        top = spans[np.cumsum(counts.ravel()) - 1, 1].reshape(counts.shape)
+        row, places = top[:, int(y / 60 * top.shape[1])], (np.arange(top.shape[0]) + 0.5) * 60 / top.shape[0]
+        near = row[abs(places - x) < 3]
+        return near.min(), near.max()
+
+    for y, places in ((10, (12,)), (30, (12, 25))):
+        for _ in range(8):  # a step that is late holds the tool: what was left out is cut the next time
+            hand.stroke(y)
+            if all(height(y, x)[1] < 19.8 for x in places):
+                break
+        else:
+            raise AssertionError(f"no groove at {y} in eight strokes: {[height(y, x) for x in places]}")
     hand.session.finish()
-    counts, spans = support.content(ob).volume.intervals("z")
-    top = spans[np.cumsum(counts.ravel()) - 1, 1].reshape(counts.shape)
-    x = (np.arange(top.shape[0]) + 0.5) * 60 / top.shape[0]
-    under, beside = (abs(x - 25) < 3.5), (abs(x - 12) < 3)
-    rows = {y: top[:, int(y / 60 * top.shape[1])] for y in (10, 30)}
-    assert rows[10][under].min() == 20 and rows[30][under].max() < 19.8, "it went through the clamp"
-    assert rows[10][beside].max() < 19.8
+    assert height(10, 25)[0] == 20, "it went through the clamp"
 
 
 def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():

@@ -263,6 +263,7 @@ def test_what_cannot_be_stroked_is_refused_and_nothing_changes():
     support.refused(lambda: bpy.ops.riffler.stroke(stroke="{"), "JSON")
     support.refused(lambda: bpy.ops.riffler.stroke(stroke=json.dumps({"view": view((0, 0)), "rows": [[1]]})), "row 0")
     support.refused(lambda: bpy.ops.riffler.stroke(stroke=good, tool='{"kind": "ball"}'), "")
+    support.refused(lambda: stroke((20, 15), mode="SOFTEN"), "three directions", "Change Pitch")
     assert stroke((200, 200)) == {"CANCELLED"}
     assert volume_of(ob).volume == before
     bpy.ops.object.select_all(action="DESELECT")
