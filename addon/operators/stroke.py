@@ -25,8 +25,8 @@ MODES = (
 )
 MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 ONE_DIRECTION = (
-    "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in the box at "
-    "the lower left"
+    "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in the box "
+    "at the lower left"
 )
 LIFTED = {"remove", "soften"}  # what a tool does from outside; fixtures are in its way
 
