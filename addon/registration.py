@@ -26,6 +26,7 @@ MODULES = (
     "operators.recover",
     "operators.plan_setup",
     "operators.plan_find",
+    "operators.plan_tool",
     "operators.plan_watch",
     "bl.surroundings",  # hears of changes before those who ask it
     "bl.replan",

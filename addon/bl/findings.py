@@ -44,7 +44,7 @@ def go(context, item, frame, text):
     if text is not None and not 0 < item.line <= len(text.lines):
         text = None  # no line, or one that somebody has deleted
     if frame is not None:
-        scene.frame_set(int(frame // 1), subframe=frame % 1)
+        timeline.go_to(scene, frame)
     place = Vector(item.place) / units.mm_per_unit(scene)
     for screen in _screens(context):
         for area in screen.areas:

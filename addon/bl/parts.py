@@ -86,8 +86,18 @@ def _unshear(ob):
     return f"select {above.name}, which it hangs on, and use Object > Apply > Scale"
 
 
+def instance(ob):
+    """Why an object that stands for a collection, as one that was linked does, can be no fixture, or nothing."""
+    if ob.instance_type != "COLLECTION" or ob.instance_collection is None:
+        return ""
+    return f"{ob.name} is an instance of {ob.instance_collection.name}: use Object > Apply > Make Instances Real"
+
+
 def fixtures(settings, part):
-    """The objects of the fixtures' collection that have a surface, but the part."""
+    """The objects of the fixtures' collection that have a surface, but the part. ValueError where there is one whose
+    surface would be passed over."""
     if settings.fixtures is None:
         return []
+    if why := next(filter(None, map(instance, settings.fixtures.all_objects)), ""):
+        raise ValueError(f"{why}, or take it out of the fixtures")
     return [ob for ob in settings.fixtures.all_objects if ob.type in WITH_SURFACE and ob != part]

@@ -1,4 +1,5 @@
-"""Frames of the timeline whose poses collide: looked for where somebody has asked, a little at a time, and marked."""
+"""Frames of the timeline whose poses collide: looked for where somebody has asked, a little at a time, and marked. The
+markers are in the file, and so is that somebody has asked; what was looked at is not."""
 
 import bpy
 import numpy as np
@@ -8,6 +9,7 @@ from . import plan_store, surroundings, timeline
 from .plan_states import on_timeline, rendering, scene_of, state
 
 ERRORS = (ValueError, OSError, RuntimeError)
+ASKED = "riffler_marked"  # of the plan's object
 WAIT = 0.5  # s, while something renders
 LOOK = 0.03  # s between two looks at surroundings in the making
 
@@ -37,6 +39,8 @@ def show(scene, plan_ob, job=None):
     """Marks the frames that collide, and returns them as runs. A scene's marks are those of all its plans."""
     now = state(plan_ob)
     job, now.job = job or now.job, None
+    if not asked(plan_ob):
+        plan_ob[ASKED] = True
     frames, _, _, ends = motion.joined([e.played for e in now.motions])
     tolerance = plan_store.plan(plan_ob).tolerance or 0.01
     now.looks += job.computed
@@ -63,10 +67,16 @@ def go_on():
     return None
 
 
+def asked(plan_ob):
+    """True where somebody wants collisions marked: undo takes that back, too."""
+    return bool(plan_ob.get(ASKED))
+
+
 def outdated(plan_ob):
-    """True where the marks are of before part or fixtures changed, or may be."""
+    """True where the marks are of before part or fixtures changed, of a file that was opened, or may be."""
     now = state(plan_ob)
-    return now.near is not None and (surroundings.known(plan_ob) is not now.near or now.job is not None)
+    looked = now.near is not None and surroundings.known(plan_ob) is now.near and now.job is None
+    return asked(plan_ob) and not looked
 
 
 def look_again():
@@ -74,7 +84,7 @@ def look_again():
     waiting = False
     for plan_ob in on_timeline():
         now, scene = state(plan_ob), scene_of(plan_ob)
-        if now.near is None:
+        if not asked(plan_ob) or not now.motions:
             continue
         try:
             near = surroundings.ask(surroundings.SceneContext(scene), plan_ob)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..core import keys, motion, playback
+from ..core.resolved import Resolved
 from . import sculpts, timeline
 
 
@@ -39,6 +40,7 @@ class State:
     motions: list = field(default_factory=list)  # Baked, one for each path
     near: object = None  # core.surroundings.Surroundings, once collisions were asked for
     clearances: dict = field(default_factory=dict)  # of poses that were looked at, with those and that tool
+    resolved: Resolved = field(default_factory=Resolved)  # what paths had, for keys that come back
     tool: object = None
     looks: int = 0  # clearances that were computed
     colliding: list = field(default_factory=list)  # runs of frames

@@ -13,6 +13,8 @@ from ..core import record
 from ..core.cache import ContentCache
 from . import packed, sculpts
 
+RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
+
 
 @dataclass
 class _Kept:
@@ -112,6 +114,17 @@ def plan(ob):
     return kept.plan
 
 
+def wanted(plan):
+    """Numbers, from 0, of the paths that are to be cut: those with an orientation."""
+    return [k for k, path in enumerate(plan.paths) if len(path.axes)]
+
+
+def unresolved(plan):
+    """Numbers, from 0, of the paths that are to be cut without cutter locations that are free all the way."""
+    cl = list(plan.cl) or [None] * len(plan.paths)
+    return [k for k in wanted(plan) if cl[k] is None or not len(cl[k])]
+
+
 def write(ob, plan):
     """Makes `plan` the object's content. It must not be changed after it."""
     if ob.library:
@@ -127,6 +140,8 @@ def _write(ob, plan, block):
     if p.store is None or p.store.library or _shared(ob):
         p.store = packed.new(ob.name)
     packed.write(p.store, block, key)
+    p.keyed = len(wanted(plan))
+    p.resolved = p.keyed - len(unresolved(plan))
     p.paths, p.length, p.tool = len(plan.paths), sum(path.length for path in plan.paths), plan.tool.name
     _cache.put(key, _Kept(plan, len(block)))
 

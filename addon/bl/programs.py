@@ -12,29 +12,34 @@ import riffler
 
 from ..core import course, problems
 from ..core import units as names
-from . import live, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
+from . import live, plan_fit, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
 
-RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
+RESOLVED = plan_store.RESOLVED
 
 
 # ------------------------------------------------------------------ of a plan
-def unresolved(plan):
-    """Numbers, from 0, of the paths without cutter locations that are free all the way."""
-    cl = list(plan.cl) or [None] * len(plan.paths)
-    return [k for k, rows in enumerate(cl) if rows is None or not len(rows)]
+def left_out(plan):
+    """Which paths are not to be cut, as a sentence, or nothing."""
+    others = sorted({*range(len(plan.paths))} - {*plan_store.wanted(plan)})
+    have = "has no keys and is" if len(others) == 1 else "have no keys and are"
+    return f"{numbered(others).capitalize()} {have} not cut" if others else ""
 
 
 def ready(context, ob, plan):
     """The surroundings.Taken of a plan that may become a program. ValueError with the remedy where it may not."""
     if not plan.paths:
         raise ValueError(f"{ob.name} has no paths: find some first")
-    without = [k for k, path in enumerate(plan.paths) if not len(path.axes)]
-    if without:
-        raise ValueError(f"{numbered(without)} without orientation: set a key first")
-    missing = unresolved(plan)
-    if missing:
-        raise ValueError(f"{numbered(missing)} may collide: use Resolve, and turn the keys where it finds no way")
+    if not plan_store.wanted(plan):
+        raise ValueError("No path has an orientation: set a key first")
     taken = surroundings.take(context, ob)
+    if moved := plan_fit.part_note(plan, taken):
+        raise ValueError(moved)
+    missing = plan_store.unresolved(plan)
+    if missing:
+        raise ValueError(
+            f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no way, or delete the keys of "
+            "a path that is to be left out"
+        )
     clearance = units.clean(context.scene.riffler.plan.clearance)
     if plan.provenance.get(RESOLVED) != taken.fingerprint(plan.tool, clearance):
         raise ValueError("Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve")
@@ -48,24 +53,28 @@ def numbered(paths):
 
 
 def of_plan(context, ob, plan, feed, spindle):
-    """The riffler.Program of all paths, in their order, in the scene's millimetres."""
-    taken = ready(context, ob, plan)
-    part = surroundings.part_of(context.scene, ob).name
+    """The riffler.Program of all paths that are to be cut, in their order, in the scene's millimetres."""
+    taken, chosen = ready(context, ob, plan), plan_store.wanted(plan)
     settings = context.scene.riffler.plan
     return riffler.Program.from_cl(
-        list(plan.cl),
-        tools=[plan.tool] * len(plan.paths),
+        [plan.cl[k] for k in chosen],
+        tools=[plan.tool] * len(chosen),
         feed=feed,
         spindle=spindle,
         occupied=taken.bounds,
         provenance={
             "plan": ob.name,
-            "part": f"{part} {plan.part.get('sha256', '')[:16]}".strip(),
-            "paths": f"{len(plan.paths)}, {names.trim(sum(p.length for p in plan.paths), 1)} mm",
+            "part": f"{taken.who[0]} {taken.prints[0][:16]}",
+            "paths": f"{len(chosen)}, {names.trim(sum(plan.paths[k].length for k in chosen), 1)} mm",
             "clearance": f"{names.trim(units.clean(settings.clearance), 4)} mm",
             "plan id": plan_store.identity(ob)[:16],
         },
     )
+
+
+def write(program, plan, path, post, chosen):
+    """Writes a plan's program as NC code; what Program.write says of it."""
+    return program.write(path, post=post, tolerance=plan.tolerance or 0.01, options=chosen)
 
 
 def options(text):
@@ -184,22 +193,26 @@ def _plan(context):
     settings, plan = context.scene.riffler.plan, plan_store.plan(ob)
     program = of_plan(context, ob, plan, units.clean(settings.feed), units.clean(settings.spindle))
     where = _timed(context.scene, program)
-    if timeline.pair(ob) is not None:
-        replan.sync(context.scene, ob)
-        where = course.of_paths(
-            program.poses, [(e.motion.poses, e.motion.frames) for e in plan_states.state(ob).motions]
-        )
+    if timeline.pair(ob) is not None and replan.fits(ob, plan):
+        where = course.of_paths(program.poses, _played_paths(context, ob, plan))
     chosen = options(settings.options)
-    program, text = _with_lines(program, settings.post, chosen)
+    program, text = _with_lines(program, plan, settings.post, chosen)
     return _new(ob.name, program, where, text=text, machine=settings.post, options=chosen, plan=ob.name)
 
 
-def _with_lines(program, post, chosen):
-    """The program with the lines that its rows have as NC code, and that code; neither where the machine's language is
-    not one that is read."""
+def _played_paths(context, ob, plan):
+    """[(rows, frames)] of the paths that are to be cut, as a plan plays them on the timeline."""
+    replan.sync(context.scene, ob)
+    played = [e.motion for e in plan_states.state(ob).motions]
+    return [(played[k].poses, played[k].frames) for k in plan_store.wanted(plan) if k < len(played) and len(played[k])]
+
+
+def _with_lines(program, plan, post, chosen):
+    """A plan's program with the lines that its rows have as NC code, and that code; neither where the machine's
+    language is not one that is read."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.ngc"
-        program.write(path, post=post, options=chosen)
+        write(program, plan, path, post, chosen)
         text = path.read_text(encoding="utf-8", errors="replace")
         try:
             read = riffler.Program.read(path, machine=post, options=_of_reading(chosen))
@@ -238,8 +251,7 @@ def _played(context, program, wanted):
     ob = plan_store.active(context)
     if wanted.frame != "WORLD" or ob is None or timeline.pair(ob) is None:
         return None
-    replan.sync(context.scene, ob)
-    paths = [(e.motion.poses, e.motion.frames) for e in plan_states.state(ob).motions if len(e.motion)]
+    paths = _played_paths(context, ob, plan_store.plan(ob))
     return course.like_paths(program.poses, paths) if paths else None
 
 

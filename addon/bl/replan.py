@@ -2,8 +2,8 @@
 
 The keyframes are what counts: the plan's keys and the animation follow from them, whoever has changed them and in
 which way, Blender's own tools, a script, undo or a file that was opened. Nothing here is an undo step: what follows
-from an edit goes with that edit, and after an undo it is made again from the keyframes that came back. So one Ctrl Z
-takes back a key and what it did.
+from an edit goes with that edit, and after an undo it is made again from the keyframes that came back, cutter locations
+from memory. So one Ctrl Z takes back a key and what it did.
 
 In a window this happens when nothing has changed for a tenth of a second; without one timers never run, and it happens
 at once.
@@ -17,7 +17,7 @@ import riffler
 
 from ..core import keys, motion, playback
 from ..core.surroundings import nothing
-from . import events, plan_collisions, plan_states, plan_store, surroundings, timeline, units
+from . import events, plan_collisions, plan_states, plan_store, simulating, timeline, units
 from .plan_states import Baked, on_timeline, rendering, scene_of, state
 
 CLASSES = ()
@@ -60,11 +60,14 @@ def sync(scene, plan_ob):
         plan = plan_store.plan(plan_ob)
         if not fits(plan_ob, plan):
             now.problems.append(OTHER_PATHS)
+            _nothing_plays(scene, plan_ob)
             return
         plan = _take_keys(plan_ob, plan, tool, now)
         bake(scene, plan_ob, plan)
     except ERRORS as error:
         now.problems.append(str(error))
+    if now.changes:
+        simulating.drop_outdated()
 
 
 def _take_keys(plan_ob, plan, tool, now):
@@ -78,19 +81,30 @@ def _take_keys(plan_ob, plan, tool, now):
     reading = keys.read(layout_of(plan_ob, plan), frames, quats)
     now.problems += reading.problems
     paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
+    mark = plan.provenance.get(plan_store.RESOLVED)
     for k, path in enumerate(plan.paths):
         change = keys.change(path.keys, reading.keys[k])
         if not change:
             continue
         try:
-            paths[k], cl[k] = _oriented(path, change.keys), None
+            before = now.resolved.get(k, path, change.keys, mark)
+            paths[k], cl[k] = before or (_oriented(path, change.keys), None)
             now.changes[k] = change
         except ValueError as error:
             now.problems.append(f"Path {k + 1}, {error}; it stays as it was")
     if now.changes:
         plan = replace(plan, paths=paths, cl=cl)
         plan_store.write(plan_ob, plan)
+        plan_ob.riffler.plan.forget(now.changes)
     return plan
+
+
+def _nothing_plays(scene, plan_ob):
+    """What is seen on the timeline is of paths that are no more: nothing is said of it, and no frame of it marked."""
+    now = state(plan_ob)
+    now.motions, now.difference = [], playback.Difference()
+    if now.near is not None:
+        plan_collisions.look(scene, plan_ob)
 
 
 def _oriented(path, wanted):
@@ -115,6 +129,7 @@ def bake(scene, plan_ob, plan):
             along = _motion(path, rows, track, plan.tool)
             entries.append(Baked(path, rows, ends, along, motion.played(along)))
             now.baked += 1
+            now.resolved.put(k, path, rows, plan.provenance.get(plan_store.RESOLVED))
     mm = units.mm_per_unit(scene)
     timeline.bake(ghost, *motion.joined([e.played for e in entries]), mm)
     play = timeline.player(ghost, mm) if any(len(e.motion) for e in entries) else None
@@ -125,7 +140,7 @@ def bake(scene, plan_ob, plan):
         now.difference = now.difference.worse(entry.difference or playback.Difference())
     now.motions = entries
     timeline.settle(scene, tool, ghost, afresh=True)
-    if now.near is not None:
+    if now.near is not None and plan_collisions.asked(plan_ob):
         plan_collisions.look(scene, plan_ob)
 
 
@@ -152,6 +167,7 @@ def _due():
         return WAIT
     for plan_ob in on_timeline():
         sync(scene_of(plan_ob), plan_ob)
+    _look_later(on_timeline())
     return None
 
 
@@ -173,6 +189,9 @@ def _on_update(scene, depsgraph):
     plans = on_timeline()
     if not plans or depsgraph.mode == "RENDER":
         return
+    if not all(state(p).synced for p in plans):  # of another name now, or appended
+        _soon()
+        return
     ids = [u.id.original for u in depsgraph.updates]
     if any(isinstance(i, bpy.types.Action) for i in ids) and _changed(plans):
         _soon()
@@ -189,8 +208,7 @@ def _look_later(plans):
     fixtures that it moves one by one are not to be looked at each time."""
     if bpy.app.background:
         return
-    asked = [p for p in plans if state(p).near is not None]
-    if any(surroundings.suspect(surroundings.SceneContext(scene_of(p)), p) for p in asked):
+    if any(plan_collisions.outdated(p) for p in plans):
         _later(plan_collisions.look_again)
 
 

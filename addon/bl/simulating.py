@@ -14,7 +14,7 @@ import riffler
 from ..core import pen
 from ..core.prefix import Prefix
 from ..core.problems import said
-from . import chunks, events, sculpts, timeline, working
+from . import chunks, events, plan_store, sculpts, timeline, working
 
 CLASSES = ()
 BUDGET, PAUSE = 0.02, 0.01  # s of carving, and between two lots of it
@@ -28,6 +28,7 @@ class Simulation:
     def __init__(self, context, setup):
         ob = bpy.data.objects[setup.sculpt]
         self.name, self.scene, self.course, self.sculpt = setup.name, context.scene.name, setup.course, ob.name
+        self._plan, self._identity = setup.plan, _identity(setup.plan)
         self.prefix = Prefix(setup.stock, setup.runs)
         self._mesher = riffler.Mesher(self.prefix.volume)
         self.mark = sculpts.new_mark(ob)
@@ -44,6 +45,11 @@ class Simulation:
     def object(self):
         """The sculpt, as long as it and what is shown of it are there."""
         return sculpts.marked(self.mark, self.sculpt) if self.chunks.there else None
+
+    @property
+    def outdated(self):
+        """True where the program is of a plan that is another one now."""
+        return _identity(self._plan) != self._identity
 
     @property
     def scene_frame(self):
@@ -66,6 +72,11 @@ class Simulation:
                 self._tool = tool
                 self.chunks.show_tool(pen.solid(tool.outline()))
             self.chunks.place_tool(pose)
+
+
+def _identity(plan):
+    """Of the plan's object with that name."""
+    return plan_store.identity(bpy.data.objects.get(plan))
 
 
 def active():
@@ -94,6 +105,16 @@ def end():
         chunks.sweep(was.mark, was.sculpt)
 
 
+def drop_outdated():
+    """Ends it where its plan has changed; True where it did."""
+    if _now is None or not _now.outdated:
+        return False
+    name = _now.name
+    end()
+    working.tell(f"{name}: simulation ended: the plan has changed")
+    return True
+
+
 def _follow():
     if bpy.app.background:
         _lot(float("inf"))
@@ -112,6 +133,8 @@ def _lot(budget):
     """True where nothing is left to do."""
     if _now.object is None or _now.scene not in bpy.data.scenes:
         end()
+        return True
+    if drop_outdated():
         return True
     try:
         return _now.go_on(budget)

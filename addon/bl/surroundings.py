@@ -15,13 +15,15 @@ import riffler
 
 from ..core.surroundings import Making, Surroundings
 from . import events, parts, units
+from .plan_states import scene_of
 
 CLASSES = ()
 
 
 @dataclass
 class Taken:
-    """Surfaces in millimetres of the scene. `prints`: their hashes."""
+    """Surfaces in millimetres of the scene, and the task (as a riffler.Task is one) that makes surroundings of them.
+    `prints`: their hashes."""
 
     who: tuple  # names of part and fixtures, and the scene's millimetres
     part: riffler.Mesh
@@ -35,6 +37,19 @@ class Taken:
     def begin(self):
         if self.made is None and self.making is None:
             self.making = Making(self.part, self.who[0], self.fixtures)
+
+    @property
+    def done(self):
+        """Asked now and then, from the first time on it is made; where it is, `result` does not wait."""
+        self.begin()
+        return self.making is None or self.making.done
+
+    @property
+    def share(self):
+        return 1.0 if self.making is None else self.making.share
+
+    def cancel(self):
+        """It goes on: whoever asks next has it."""
 
     def result(self):
         """The core.surroundings.Surroundings, however long they take."""
@@ -75,8 +90,11 @@ _changes = 0  # that Blender told of
 
 
 def part_of(scene, ob=None):
-    """What a plan's object was made on, or what plans are made on now."""
-    return (ob.riffler.plan.part if ob is not None else None) or scene.riffler.plan.part
+    """What a plan's object was made on, while that is in the scene; otherwise what plans are made on now."""
+    own = ob.riffler.plan.part if ob is not None else None
+    if own is not None and scene.objects.get(own.name) == own:
+        return own
+    return scene.riffler.plan.part
 
 
 def take(context, ob):
@@ -102,14 +120,13 @@ def ask(context, ob):
     kept = _kept.get(ob.name)
     if kept is None or kept.doubtful or kept.who != _objects(context, ob)[2]:
         kept = take(context, ob)
-    kept.begin()
-    return kept.result() if kept.making is None or kept.making.done else None
+    return kept.result() if kept.done else None
 
 
 def known(ob):
     """The same if they are there and nothing has changed since, otherwise None."""
     kept = _kept.get(ob.name)
-    return kept.made if kept is not None and not kept.doubtful else None
+    return kept.made if kept is not None and not suspect(SceneContext(scene_of(ob)), ob) else None
 
 
 def suspect(context, ob):
@@ -123,7 +140,15 @@ def suspect(context, ob):
 
 def version(ob):
     """Another one wherever it may be worth asking again, or the surroundings are others."""
-    return ("made", _kept[ob.name].number) if known(ob) is not None else ("changed", _changes)
+    return ("made", _kept[ob.name].number) if known(ob) is not None else ("changed", _changes, _who(scene_of(ob), ob))
+
+
+def _who(scene, ob):
+    """What Taken.who has, or why there is nothing to be had."""
+    try:
+        return _objects(SceneContext(scene), ob)[2]
+    except ValueError as error:
+        return (str(error),)
 
 
 def _objects(context, ob):

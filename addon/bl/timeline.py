@@ -9,6 +9,8 @@ undo, and copies of all three point to each other. A copy of the tool alone belo
 selected, so a copy of the Empty points to the original's, with which it has nothing to do: it is not on the timeline.
 """
 
+import math
+
 import bpy
 import numpy as np
 
@@ -87,6 +89,24 @@ def _follow(tool, ghost):
     for kind, name in (("COPY_LOCATION", PLACE), ("COPY_ROTATION", TURN)):
         constraint = tool.constraints.get(name) or tool.constraints.new(kind)
         constraint.name, constraint.target = name, ghost
+
+
+# ------------------------------------------------------------------ the scene's frames
+def _remapped(scene):
+    """How many frames of the scene one of the animation is (Time Stretching); frame_current_final is of the latter."""
+    return scene.render.frame_map_new / scene.render.frame_map_old
+
+
+def go_to(scene, frame):
+    """Shows a frame of the animation."""
+    frame *= _remapped(scene)
+    scene.frame_set(int(frame // 1), subframe=frame % 1)
+
+
+def show_range(scene, first, last):
+    """Lets the scene play these frames of the animation, too."""
+    scene.frame_start = min(scene.frame_start, max(0, math.floor(first * _remapped(scene))))
+    scene.frame_end = max(scene.frame_end, math.ceil(last * _remapped(scene)))
 
 
 # ------------------------------------------------------------------ keyframes of the tool

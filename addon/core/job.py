@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from dataclasses import dataclass
 from typing import Protocol
@@ -142,6 +143,73 @@ class PiecesJob:
         if self._task is not None:
             self._task.cancel()
         self._pieces.close()
+
+
+class AfterJob:
+    """The job that `make` returns of what a task makes, once that is done; what it has made is asked of this as of that
+    job. `in_background`: as that job's."""
+
+    def __init__(self, task, make, in_background=True, text=""):
+        self.in_background, self._text = in_background, text
+        self._wait, self._make, self._job = TaskJob(task), make, None
+        self._begin = 0.0 if task.done else 0.5  # of the whole, where the job's own share begins
+
+    @property
+    def fraction(self) -> float:
+        if self._job is None:
+            return self._begin * self._wait.fraction
+        return self._begin + (1 - self._begin) * self._job.fraction
+
+    @property
+    def text(self) -> str:
+        return self._text if self._job is None else self._job.text
+
+    def step(self, budget: float = 0.0) -> bool:
+        if self._job is None:
+            if not self._wait.step(budget if self.in_background else min(budget, 0.01)):  # who waits needs no slice
+                return False
+            self._job = self._make(self._wait.result)
+        return self._job.step(budget)
+
+    def cancel(self) -> None:
+        (self._job or self._wait).cancel()
+
+    def __getattr__(self, name):
+        return getattr(self._job, name)
+
+
+class ThreadTask:
+    """What a riffler.Task is, for a call that there is no native one of: on a thread of Python's, `call(progress)`. It
+    must not touch Blender, and has to let Python go while it works, as long calls of riffler do."""
+
+    def __init__(self, call):
+        self.share, self._cancelled = 0.0, False
+        self._result, self._error = None, None
+        self._thread = threading.Thread(target=self._run, args=(call,))
+        self._thread.start()
+
+    def _run(self, call) -> None:
+        try:
+            self._result = call(self._progress)
+        except BaseException as error:  # `result` raises it
+            self._error = error
+
+    def _progress(self, share: float) -> bool:
+        self.share = share
+        return not self._cancelled
+
+    @property
+    def done(self) -> bool:
+        return not self._thread.is_alive()
+
+    def result(self):
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+    def cancel(self) -> None:
+        self._cancelled = True
 
 
 @dataclass

@@ -32,6 +32,17 @@ def entries(path: int, centres: np.ndarray, cl: np.ndarray, report) -> list[dict
     return out
 
 
+def left(reports, tolerance: float) -> str:
+    """What there is to say of lifts on paths that are free, or nothing: where the tool is lifted by more than the
+    tolerance it does not cut down to the path."""
+    lifts = np.concatenate([np.empty(0), *(np.asarray(r.lift, float) for r in reports)])
+    lifts = lifts[lifts > tolerance]
+    if not len(lifts):
+        return ""
+    are = "is" if len(lifts) == 1 else "are"
+    return f"{_rows(len(lifts))} {are} lifted by up to {_mm(lifts.max())}: material stays"
+
+
 def without_key(path: int, point: int, place: np.ndarray, reason: str) -> dict:
     """Of a path that has no free orientation at this point."""
     return _entry(path, "blocked", point, place, f"no key, point {point}: {reason}")

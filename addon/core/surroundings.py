@@ -13,6 +13,7 @@ from . import units
 
 PITCH = 0.5  # mm; fixtures are only to be stayed clear of
 FINEST = 500  # voxels across a fixture at most
+FLAT = 1e-6  # of what is flat: thickness to width
 # A triangle that no machine reaches.
 _FAR = np.array([(1e6, 0, 0), (1e6 + 1, 0, 0), (1e6, 1, 0)])
 
@@ -117,6 +118,19 @@ def guarded(tool, room: float):
     return tool.with_margins(**wanted) if room > 0 and wanted else tool
 
 
+def check_fixture(mesh, name: str) -> None:
+    """ValueError with the remedy where a riffler.Mesh is a flat sheet, however it is turned: no volume comes of it."""
+    vertices = np.asarray(mesh.vertices, float)
+    away = vertices - vertices.mean(axis=0)
+    across = np.sqrt(np.maximum(np.linalg.eigvalsh(away.T @ away), 0))
+    if across[0] <= FLAT * across[2]:
+        raise _unfit(name, "is flat, so it has no volume")
+
+
+def _unfit(name: str, why: str) -> ValueError:
+    return ValueError(f"{name} {why}: give it thickness, by the modifier Solidify, or take it out of the fixtures")
+
+
 class Making:
     """Surroundings in the making, by native tasks. `part`: a riffler.Mesh and its name; `fixtures`: (name,
     riffler.Mesh) each, which become volumes first."""
@@ -136,6 +150,12 @@ class Making:
             self._collide()
         return all(task.done for task in self._colliders)
 
+    @property
+    def share(self) -> float:
+        """Of the work that is done, 0 … 1."""
+        begun = [*self._volumes, *(self._colliders or ())]
+        return sum(task.share for task in begun) / (2 * len(self._volumes) + 1)
+
     def result(self) -> Surroundings:
         """Waits for it; raises what went wrong."""
         if self._colliders is None:
@@ -148,8 +168,14 @@ class Making:
     def _collide(self) -> None:
         self._colliders = []
         try:
-            volumes = [task.result() for task in self._volumes]
+            volumes = [self._volume(task, name) for task, name in zip(self._volumes, self._fixtures, strict=True)]
             self._colliders.append(tasks.collider(self._part, fixtures=volumes))
             self._colliders += [tasks.collider(_nowhere(), fixtures=[volume]) for volume in volumes]
         except (ValueError, TypeError, MemoryError) as error:
             self._error = error
+
+    def _volume(self, task, name: str):
+        try:
+            return task.result()
+        except ValueError as error:
+            raise _unfit(name, f"is no fixture, as {error}") from error

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..bl import pen_session, plan_store, turning, units
+from ..bl import hiding, pen_session, plan_store, turning, units
 from ..core import glyphs
 from . import batches, views
 
 CLASSES = ()
 NEAR = 24.0  # pixels from the pointer to a contact that it points at
+ASKED, APART = 48, 4.0  # contacts that are asked for whether they are hidden, and pixels between those of one path
 OFF = 0.02  # of the ball's radius: lines are that far out of the surface, to be seen
 NORMAL, AXIS = 0.5, 4.0  # of the ball's radius: how long they are drawn
 COLOURS = {
@@ -93,16 +94,54 @@ class Found:
     normal: np.ndarray
 
 
-def nearest(plan, view, at, reach=NEAR):
-    """The contact that is seen nearest to a pixel, or None where none is within `reach` of it."""
+def nearest(plan, view, at, reach=NEAR, hidden=None):
+    """The contact that is seen nearest to a pixel, or None where none is within `reach` of it. `hidden`: a function of
+    a place (3,), True where something stands before it. It is asked of few contacts, however many there are."""
     origin, away = view.ray(*at)
-    best, closest = None, reach
+    firsts = []
     for k, path in enumerate(plan.paths):
         found = path.nearest(origin, away)
         gap = float(np.hypot(*(view.project([found["point"]])[0] - at)))
-        if gap <= closest:  # never where it is not a number, behind whoever looks
-            best, closest = Found(k, found["index"], found["point"], found["normal"]), gap
+        if gap <= reach:  # never where it is not a number, behind whoever looks
+            firsts.append((gap, k, found["index"], found["side"]))
+    firsts.sort()
+    best, closest, left = None, reach, ASKED
+    for gap, k, index, side in firsts:
+        if gap > closest or not left:
+            break
+        left -= 1
+        path = plan.paths[k]
+        if hidden is None or not hidden(_over(path, index, side)):
+            return _found(k, path, index, side)
+        for other, index, side in _spread(path, view, at, closest)[:left]:
+            left -= 1
+            if not hidden(_over(path, index, side)):
+                best, closest = _found(k, path, index, side), other
+                break
     return best
+
+
+def _found(k, path, index, side):
+    return Found(k, index, path.contacts[index, side], path.normals[index, side])
+
+
+def _over(path, index, side):
+    """Where a contact is drawn."""
+    return path.contacts[index, side] + OFF * path.radius * path.normals[index, side]
+
+
+def _spread(path, view, at, reach):
+    """(gap, index, side) of a path's contacts within so many pixels, nearest first: of each few pixels along either
+    line one, as beside a hidden one its neighbours are most often hidden, too."""
+    gaps = np.hypot(*(view.project(path.contacts.reshape(-1, 3)) - at).T)
+    rows = np.flatnonzero(gaps <= reach)
+    rows = rows[np.argsort(gaps[rows], kind="stable")]
+    first, found = {}, {}
+    for row in rows.tolist():
+        index, side = divmod(row, 2)
+        behind = index < first.setdefault(side, index)
+        found.setdefault((side, behind, gaps[row] // APART), (float(gaps[row]), index, side))
+    return list(found.values())
 
 
 def under(context, at):
@@ -111,7 +150,8 @@ def under(context, at):
     if ob is None or context.region_data is None:
         return None
     view = turning.sight(context, context.region, context.region_data)
-    return nearest(plan_store.plan(ob), view, at, NEAR * context.preferences.system.ui_scale)
+    reach = NEAR * context.preferences.system.ui_scale
+    return nearest(plan_store.plan(ob), view, at, reach, hiding.hider(context, view))
 
 
 def beside(plan, place, reach):
@@ -121,7 +161,7 @@ def beside(plan, place, reach):
         gaps = np.linalg.norm(path.contacts - place, axis=2)
         index, side = np.unravel_index(np.argmin(gaps), gaps.shape)
         if gaps[index, side] <= closest:
-            best = Found(k, int(index), path.contacts[index, side], path.normals[index, side])
+            best = _found(k, path, int(index), side)
             closest = float(gaps[index, side])
     return best
 

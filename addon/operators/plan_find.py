@@ -4,11 +4,12 @@ import bpy
 import riffler
 
 from .. import properties
-from ..bl import live, parts, plan_curves, plan_store, units
+from ..bl import live, parts, plan_curves, plan_states, plan_store, replan, surroundings, timeline, units
 from ..core import units as names
 from ..core.job import TaskJob
 from . import shared
 from .long import LongWork
+from .plan_work import tell_all
 
 
 class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator):
@@ -39,7 +40,9 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
     def poll(cls, context):
         if not shared.object_mode(cls, context):
             return False
-        if why := parts.unfit(context.scene.riffler.plan.part, context.scene):
+        mine, own = context.scene.riffler.plan.part, surroundings.part_of(context.scene, plan_store.active(context))
+        why = parts.unfit(mine, context.scene)
+        if why and parts.unfit(own, context.scene):  # a plan's own part is enough to find its paths again
             return shared.deny(cls, why)
         return not shared.busy(cls, context)
 
@@ -84,13 +87,18 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         if self.replace:
             ob = context.scene.objects[self.replace]
             plan_store.write(ob, plan)
+            ob.riffler.plan.findings.clear()  # on the paths of before
         else:
             ob = plan_store.new(context, plan)
         ob.riffler.plan.part = context.scene.objects[self._part]
         left = plan_curves.kept_note(plan_curves.show(ob, plan, self._mm))
         total = names.trim(sum(path.length for path in paths), 1)
         found = f"{ob.name}: {names.format_count(len(paths))} paths, {total} mm"
-        self.report({"INFO"}, f"{found}. {left}" if left else found)
+        problems = []
+        if timeline.pair(ob) is not None:
+            replan.sync(context.scene, ob)
+            problems = plan_states.state(ob).problems
+        tell_all(self, f"{found}. {left}" if left else found, problems)
         return {"FINISHED"}
 
     def draw(self, context):

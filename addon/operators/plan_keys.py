@@ -6,11 +6,12 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntProperty
 
-from ..bl import plan_collisions, plan_curves, plan_states, plan_store, replan, surroundings, timeline, units
+from ..bl import plan_collisions, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import keys, quaternions
+from ..core.job import AfterJob
 from . import shared
-from .plan_work import TimelineWork, plan_poll, tell, timeline_poll
+from .plan_work import TimelineWork, plan_poll, tell, tell_all, timeline_poll
 
 
 class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
@@ -54,7 +55,7 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
             plan_store.write(ob, plan)
             if plan_curves.of(ob):  # as many points as the paths have now
                 plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
-            context.scene.frame_end = max(context.scene.frame_end, layout.last)
+            timeline.show_range(context.scene, self.first, layout.last)
             replan.sync(context.scene, ob)
         except shared.ERRORS as error:
             return shared.fail(self, error)
@@ -168,6 +169,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
     paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
     paths[path], cl[path] = turned, None
     plan_store.write(ob, replace(plan, paths=paths, cl=cl))
+    ob.riffler.plan.forget({path})
     replan.sync(scene, ob)
 
 
@@ -215,7 +217,7 @@ class RIFFLER_OT_plan_key_jump(bpy.types.Operator):
         if not len(there):
             return shared.fail(self, ValueError(f"There is no key {'before' if self.back else 'after'} this frame"))
         frame = float(there[-1] if self.back else there[0])
-        context.scene.frame_set(int(frame // 1), subframe=frame % 1)
+        timeline.go_to(context.scene, frame)
         return {"FINISHED"}
 
 
@@ -228,18 +230,27 @@ class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
     cancelled = "Stopped looking for collisions"
 
     def begin(self, context):
-        ob, _ = self.take(context)
-        self._near, self._known = surroundings.now(context, ob), {}
-        return plan_collisions.clearance_job(ob, self._near, self._known)
+        ob, plan = self.take(context)
+        if not replan.fits(ob, plan):
+            raise ValueError(replan.OTHER_PATHS)
+        if not plan_states.state(ob).motions:
+            raise ValueError("; ".join(plan_states.state(ob).problems) or "Nothing plays: use Plan to Timeline")
+        taken = surroundings.take(context, ob)
+        self._notes = plan_fit.notes(context, plan, taken)
+        return AfterJob(taken, self._look, in_background=False)
+
+    def _look(self, near):
+        self._near, self._known = near, {}
+        return plan_collisions.clearance_job(self.ob, near, self._known)
 
     def finish(self, context, job):
         now = plan_states.state(self.ob)
         now.near, now.clearances, now.job = self._near, self._known, None
         found = plan_collisions.show(context.scene, self.ob, job)
+        done = f"No collision at {job.computed} poses"
         if found:
-            self.report({"WARNING"}, f"The tool collides at {sum(b - a + 1 for a, b in found)} frames, marked below")
-        else:
-            self.report({"INFO"}, f"No collision at {job.computed} poses")
+            done = f"The tool collides at {sum(b - a + 1 for a, b in found)} frames, marked below"
+        tell_all(self, done, self._notes, bool(found))
         return {"FINISHED"}
 
 

@@ -7,9 +7,10 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty
 
-from ..bl import findings, plan_curves, plan_states, plan_store, replan, surroundings, timeline, units
+from ..bl import findings, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
 from ..core import keys, locating, tilting
 from ..core import units as names
+from ..core.job import AfterJob
 from ..core.surroundings import guarded
 from . import plan_keys, shared
 from .plan_work import TimelineWork
@@ -74,17 +75,23 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             raise ValueError("axis must be finite and not 0, 0, 0")
         axis /= np.linalg.norm(axis)
         chosen = [plan.paths[k] for k in self._paths]
+        self._notes = []  # one axis is looked at with nothing
         if self.axes == "GIVEN":
             return tilting.SearchesJob([tilting.Given(path, axis) for path in chosen])
-        near, clearance = surroundings.now(context, ob), units.clean(context.scene.riffler.plan.clearance)
-        rule = tilting.Rule(
-            tool=guarded(plan.tool, clearance),
-            collider=near.collider,
-            tolerance=plan.tolerance or 0.01,
-            count=self.count,
-            limit=None if self.limit >= math.pi - 1e-6 else (axis, float(self.limit)),
-        )
-        return tilting.SearchesJob([tilting.Search(path, rule) for path in chosen])
+        taken, clearance = surroundings.take(context, ob), units.clean(context.scene.riffler.plan.clearance)
+        self._notes = plan_fit.notes(context, plan, taken)
+        sizes = {
+            "tool": guarded(plan.tool, clearance),
+            "tolerance": plan.tolerance or 0.01,
+            "count": self.count,
+            "limit": None if self.limit >= math.pi - 1e-6 else (axis, float(self.limit)),
+        }
+
+        def search(near):
+            rule = tilting.Rule(collider=near.collider, **sizes)
+            return tilting.SearchesJob([tilting.Search(path, rule) for path in chosen])
+
+        return AfterJob(taken, search)
 
     def _chosen(self, context, ob, plan):
         """Numbers of the paths, from 0. ValueError where there are none."""
@@ -132,7 +139,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             named = ", ".join(str(k + 1) for k in without[:NAMED]) + (" …" if len(without) > NAMED else "")
             ones = f"path{'s' * (len(without) > 1)} {named}"
             said += f"; no orientation is free on {len(without)}, listed under NC Code: {ones}"
-        problems = plan_states.state(ob).problems
+        problems = [*plan_states.state(ob).problems, *self._notes]
         self.report({"WARNING" if without or problems else "INFO"}, "; ".join([said, *problems]))
 
 

@@ -8,14 +8,15 @@ import riffler
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import findings, plan_states, plan_store, programs, replan, surroundings, timeline, units
+from ..bl import findings, plan_fit, plan_states, plan_store, programs, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import locating, problems
 from ..core import units as names
-from ..core.job import ChainJob
+from ..core.job import AfterJob, ChainJob
+from ..core.surroundings import guarded
 from ..properties.plan import MACHINES
 from . import shared
-from .plan_work import PlanWork, part_poll, plan_poll
+from .plan_work import PlanWork, part_poll, plan_poll, tell_all
 
 EXTENSIONS = {"heidenhain": ".h", "apt": ".apt"}
 
@@ -40,22 +41,25 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
     def begin(self, context):
         ob, plan = self.take(context)
         taken = surroundings.take(context, ob)
+        self._notes = plan_fit.notes(context, plan, taken)
         clearance = units.clean(context.scene.riffler.plan.clearance)
         self._mark = taken.fingerprint(plan.tool, clearance)
         same = plan.provenance.get(programs.RESOLVED) == self._mark
-        turned = [k for k, path in enumerate(plan.paths) if len(path.axes)]
+        turned = plan_store.wanted(plan)
         if not turned:
             raise ValueError("No path has an orientation: set a key first")
-        open_ones = set(programs.unresolved(plan)) if same else set(turned)
+        open_ones = set(plan_store.unresolved(plan)) if same else set(turned)
         self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
         self._found = []
-        collider = taken.result().collider
-        sizes = {"clearance": clearance, "tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
+        tool = guarded(plan.tool, clearance)  # the cutter touches what it cuts
+        sizes = {"tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
+        return AfterJob(taken, lambda near: self._all(plan, tool, near.collider, sizes))
 
+    def _all(self, plan, tool, collider, sizes):
         def start(k):
             def go(before):
                 self._found += [before] if before is not None else []
-                return riffler.tasks.cutter_locations(plan.paths[k], plan.tool, collider, **sizes)
+                return riffler.tasks.cutter_locations(plan.paths[k], tool, collider, **sizes)
 
             return go
 
@@ -65,25 +69,30 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         ob, plan = self.ob, plan_store.plan(self.ob)
         cl = list(plan.cl) or [None] * len(plan.paths)
         kept = [e for e in findings.read(ob.riffler.plan.findings) if e["path"] not in self._paths]
-        blocked = 0
-        for k, (rows, report) in zip(self._paths, [*self._found, job.result], strict=True):
+        found, blocked = [*self._found, job.result], 0
+        for k, (rows, report) in zip(self._paths, found, strict=True):
             cl[k] = rows if report.ok else None  # what collides anywhere is no program
             blocked += not report.ok
             kept += locating.entries(k, plan.paths[k].centres, rows, report)
         plan = replace(plan, cl=cl, provenance={**plan.provenance, programs.RESOLVED: self._mark})
         plan_store.write(ob, plan)
         findings.write(ob.riffler.plan.findings, locating.ordered(kept))
-        said = ""
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
-            said = f". {plan_states.state(ob).difference}"
-        count = names.format_count(len(self._paths))
-        if blocked:
-            why = f"{blocked} of {count} paths still collide: turn their keys, or take another tool"
-            self.report({"WARNING"}, why)
-        else:
-            self.report({"INFO"}, f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free{said}")
+        free = [report for _, report in found if report.ok]
+        self._tell(ob, blocked, locating.left(free, plan.tolerance or 0.01))
         return {"FINISHED"}
+
+    def _tell(self, ob, blocked, left):
+        count, played = names.format_count(len(self._paths)), timeline.pair(ob) is not None
+        notes = [*self._notes, *(plan_states.state(ob).problems if played else [])]
+        if blocked:
+            done = f"{blocked} of {count} paths still collide: turn their keys, or delete them to leave a path out"
+        else:
+            done = f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free"
+            done += f", but {left}" if left else ""
+            done += f". {plan_states.state(ob).difference}" if played else ""
+        tell_all(self, done, notes, blocked > 0 or left != "")
 
 
 class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
@@ -138,22 +147,28 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
             program = programs.of_plan(context, ob, plan, units.clean(self.feed), units.clean(self.spindle))
             path = bpy.path.abspath(self.filepath)
             problems.check_target(path)
-            written = program.write(path, post=self.post, tolerance=plan.tolerance or 0.01, options=chosen)
+            written = programs.write(program, plan, path, self.post, chosen)
         except shared.ERRORS as error:
             return shared.fail(self, error)
-        self._tell(ob, path, program, written)
+        self._tell(context, ob, path, written)
         return {"FINISHED"}
 
-    def _tell(self, ob, path, program, written):
+    def _tell(self, context, ob, path, written):
         done = f"{bpy.path.basename(path)}: {names.format_count(written['blocks'])} blocks"
-        level = "INFO"
+        plan = plan_store.plan(ob)
+        said = (programs.left_out(plan), plan_fit.tool_note(context.scene.riffler.plan, plan.tool))
+        notes = [note for note in said if note]
         if timeline.pair(ob) is not None:
             difference = plan_states.state(ob).difference
-            done, level = f"{done}. {difference}", "INFO" if difference.small else "WARNING"
+            notes += plan_states.state(ob).problems  # a refused key is on the timeline, and not in the code
+            if difference.small:
+                done = f"{done}. {difference}"
+            else:
+                notes.append(str(difference))
         if len(written["rewinds"]):
             rows = ", ".join(str(int(r)) for r in np.atleast_1d(written["rewinds"])[:4])
-            done, level = f"{done}. The tool leaves the material to turn an axis back, at rows {rows}", "WARNING"
-        self.report({level}, done)
+            notes.append(f"The tool leaves the material to turn an axis back, at rows {rows}")
+        tell_all(self, done, notes)
 
     def draw(self, context):
         shared.draw_fields(self, ("post", "feed", "spindle", "options"))

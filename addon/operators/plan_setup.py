@@ -9,6 +9,7 @@ from .. import properties
 from ..bl import libraries, live, parts
 from ..core import library
 from ..core import units as names
+from ..core.surroundings import check_fixture
 from ..properties.fields import length
 from . import shared
 
@@ -77,12 +78,20 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
     def poll(cls, context):
         if not (shared.object_mode(cls, context) and _editable(cls, context.scene.riffler.plan.fixtures)):
             return False
+        if why := next(filter(None, map(parts.instance, context.selected_objects)), ""):
+            return shared.deny(cls, f"{why} first")
         if not any(ob != context.scene.riffler.plan.part for ob in surfaces(context)):
             return shared.deny(cls, "Select the vise, the clamps: objects with a surface other than the part")
         return not shared.busy(cls, context)
 
     def execute(self, context):
         settings = context.scene.riffler.plan
+        try:
+            for ob in surfaces(context):
+                if ob != settings.part:
+                    check_fixture(parts.in_world(context, ob), ob.name)
+        except shared.ERRORS as error:
+            return shared.fail(self, error)
         if settings.fixtures is None:
             settings.fixtures = bpy.data.collections.new(FIXTURES)
         if settings.fixtures not in context.scene.collection.children_recursive:
@@ -90,7 +99,11 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
         added = [ob for ob in surfaces(context) if ob != settings.part and settings.fixtures not in ob.users_collection]
         for ob in added:
             settings.fixtures.objects.link(ob)
-        held = parts.fixtures(settings, settings.part)
+        try:
+            held = parts.fixtures(settings, settings.part)
+        except ValueError as error:  # something that was put into the collection otherwise
+            self.report({"WARNING"}, str(error))
+            return {"FINISHED"}
         self.report({"INFO"}, f"{settings.fixtures.name}: {len(held)} objects")
         return {"FINISHED"}
 

@@ -5,14 +5,16 @@ import math
 
 import bpy
 import numpy as np
+import riffler
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ..bl import looking, plan_states, plan_store, replan, surroundings, timeline, turning, units
 from ..bl.turning import plan_object
 from ..core import quaternions, turn
+from ..core.job import AfterJob, DoneJob, TaskJob
 from ..drawing import cspace, force, paths
 from . import plan_keys, shared
-from .plan_work import tell, timeline_poll
+from .plan_work import PlanWork, tell, timeline_poll
 
 MAP = "MAP"
 HANDLES = (
@@ -222,17 +224,20 @@ class PointsAt:
         return timeline_poll(cls, context)
 
     def invoke(self, context, event):
+        return self.execute(context) if self._pointed(context, event) else {"PASS_THROUGH"}
+
+    def _pointed(self, context, event):
+        """Takes what is under the pointer; False where that is nothing."""
         if context.region_data is None:
-            return self.execute(context)
+            return True
         found = paths.under(context, (event.mouse_region_x, event.mouse_region_y))
-        if found is None:
-            return {"PASS_THROUGH"}
-        self.path, self.point = found.path + 1, found.index
-        return self.execute(context)
+        if found is not None:
+            self.path, self.point = found.path + 1, found.index
+        return found is not None
 
     def _go(self, context):
         spot, frame = _spot(context, plan_object(context), self.path, self.point)
-        context.scene.frame_set(int(frame // 1), subframe=frame % 1)
+        timeline.go_to(context.scene, frame)
         return spot, frame
 
 
@@ -251,33 +256,40 @@ class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class RIFFLER_OT_plan_point_key(PointsAt, bpy.types.Operator):
-    """Set a key at this point of the path: the free orientation that leans least, or, where there is no part to look
-    at, the one it has"""
+class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
+    """Set a key at this point of the path: the free orientation that leans least, and none where none is free. Only
+    where there is no part to look at, the one it has"""
 
     bl_idname = "riffler.plan_point_key"
     bl_label = "Set Free Key at Point"
-    bl_options = {"REGISTER", "UNDO"}
+    doing = "Looking for a free orientation"
+    cancelled = "Stopped looking for a free orientation: no key was set"
 
-    def execute(self, context):
-        try:
-            ob = plan_object(context)
-            spot, frame = _spot(context, ob, self.path, self.point)
-            axis, said = self._axis(context, spot)
-            plan_keys.set_key(context.scene, ob, frame, axis=axis)
-            self._go(context)
-        except shared.ERRORS as error:
-            return shared.fail(self, error)
-        self.report({"WARNING" if said else "INFO"}, said or turn.said(*spot.line.lean(spot.index, axis)))
+    def invoke(self, context, event):
+        return PlanWork.invoke(self, context, event) if self._pointed(context, event) else {"PASS_THROUGH"}
+
+    def begin(self, context):
+        ob, _ = self.take(context)
+        self._spot, self._frame = _spot(context, ob, self.path, self.point)
+        if surroundings.part_of(context.scene, ob) is None:
+            return DoneJob(None)
+        scene, start = context.scene.name, riffler.tasks.free_orientations
+        return AfterJob(
+            surroundings.take(context, ob),
+            lambda near: TaskJob(looking.free_orientations(bpy.data.scenes[scene], near, self._spot, start)),
+        )
+
+    def finish(self, context, job):
+        axis, said = self._spot.axis, "There is no part: the orientation is the one it was"
+        if job.result is not None:
+            axis, said = job.result.suggestion, ""
+            if axis is None:
+                raise ValueError(f"No orientation is free here: {job.result.reason}: no key was set")
+        plan_keys.set_key(context.scene, self.ob, self._frame, axis=axis)
+        self._go(context)
+        lean = self._spot.line.lean(self._spot.index, axis)
+        self.report({"WARNING" if said else "INFO"}, said or turn.said(*lean))
         return {"FINISHED"}
-
-    def _axis(self, context, spot):
-        if surroundings.part_of(context.scene, spot.ob) is None:
-            return spot.axis, "There is no part: the orientation is the one it was"
-        found = looking.free_orientations(context.scene, surroundings.now(context, spot.ob), spot)
-        if found.suggestion is None:
-            return spot.axis, f"No orientation is free here: {found.reason}"
-        return found.suggestion, ""
 
 
 CLASSES = (RIFFLER_OT_plan_turn, RIFFLER_OT_plan_point, RIFFLER_OT_plan_point_key)

@@ -5,12 +5,12 @@ asks gets what is known, and where nothing is, a timer looks as soon as the scen
 """
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 import riffler
 
-from ..bl import events, live, parts, plan_curves, plan_store, units
+from ..bl import events, live, parts, plan_curves, plan_store, surroundings, units
 from . import shared
 
 CLASSES = ()
@@ -21,6 +21,7 @@ QUIET = 0.4  # s without a change, before a part is looked at
 class Verdict:
     part: str  # what is wrong with the part, or nothing
     edited: int  # paths whose curves are not what the plan says
+    tool: riffler.Tool | None = field(default=None, compare=False)  # that it was planned with
 
 
 _known = {}  # name of a plan → _key of the time, Verdict
@@ -31,18 +32,19 @@ _changed = 0.0
 def judge(context, ob):
     """The Verdict on a plan, now. ValueError where the plan cannot be read."""
     plan = plan_store.plan(ob)
-    return Verdict(_part(context, ob, plan), plan_curves.edited(ob, plan, units.mm_per_unit(context.scene)))
+    edited = plan_curves.edited(ob, plan, units.mm_per_unit(context.scene))
+    return Verdict(_part(context, ob, plan), edited, plan.tool)
 
 
-def gone(context, ob):
-    """True where the plan's part is not in the scene any more."""
-    part = ob.riffler.plan.part
-    return part is None or context.scene.objects.get(part.name) != part
+def part_of(scene, ob):
+    """The part that a plan is looked at with, or None where there is none in the scene."""
+    part = surroundings.part_of(scene, ob)
+    return part if part is not None and scene.objects.get(part.name) == part else None
 
 
 def _part(context, ob, plan):
-    part, name = ob.riffler.plan.part, plan.part.get("name", "")
-    if gone(context, ob):
+    part, name = part_of(context.scene, ob), plan.part.get("name", "")
+    if part is None:
         return f"The part, {name}, is gone from the scene"
     if part.mode != "OBJECT" or live.of(part) is not None:
         return ""  # half an edit is not looked at
@@ -50,8 +52,11 @@ def _part(context, ob, plan):
         mesh = parts.in_world(context, part)
     except ValueError as error:
         return str(error)
-    same = riffler.plan.part_of(mesh, name)["sha256"] == plan.part.get("sha256")
-    return "" if same else f"{part.name} was changed or moved since, or the scene's units were"
+    if riffler.plan.part_of(mesh, name)["sha256"] == plan.part.get("sha256"):
+        return ""
+    if part != ob.riffler.plan.part:
+        return f"The part, {name}, is gone from the scene, and {part.name} is not the same as it lies there"
+    return f"{part.name} was changed or moved since, or the scene's units were"
 
 
 def known(context, ob):
@@ -67,7 +72,8 @@ def known(context, ob):
 
 def _key(context, ob):
     """What a Verdict is on, as far as that costs nothing to compare."""
-    return plan_store.identity(ob), units.mm_per_unit(context.scene), gone(context, ob)
+    part = part_of(context.scene, ob)
+    return plan_store.identity(ob), units.mm_per_unit(context.scene), part.name if part else ""
 
 
 def _look():
@@ -98,7 +104,7 @@ def _on_update(scene, depsgraph):
     names = {ob.name for ob in objects}
     for name in [*_known, *_asked]:
         ob = scene.objects.get(name)
-        part = ob.riffler.plan.part if ob is not None else None
+        part = part_of(scene, ob) if ob is not None else None
         if name in curves or (part is not None and part.name in names):
             _known.pop(name, None)
             _changed = time.monotonic()

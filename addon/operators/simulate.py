@@ -3,7 +3,7 @@
 import bpy
 
 from .. import properties
-from ..bl import programs, simulating
+from ..bl import programs, replan, simulating, timeline
 from ..core import units as names
 from . import shared
 
@@ -31,6 +31,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
     def execute(self, context):
         try:
             simulating.end()
+            replan.flush()  # the program is that of the keys as they are now
             setup = programs.take(context, self)
             now = simulating.begin(context, setup)
             if now is None:
@@ -39,7 +40,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
             simulating.end()
             return shared.fail(self, error)
         first, last = now.course.first, now.course.last
-        context.scene.frame_end = max(context.scene.frame_end, last)
+        timeline.show_range(context.scene, first, last)
         count = names.format_count(len(setup.program.poses))
         self.report({"INFO"}, f"{setup.name}: {count} rows at frames {first} to {last}. Esc in the view ends it")
         return {"FINISHED"}

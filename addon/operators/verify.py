@@ -13,7 +13,8 @@ from .. import properties
 from ..bl import attributes, events, findings, meshes, parts, plan_store, programs, sculpts, surroundings, units
 from ..core import poses
 from ..core import units as names
-from ..core.job import TaskJob
+from ..core.job import ChainJob, ThreadTask
+from ..core.surroundings import check_fixture
 from . import shared, simulate
 from .long import LongWork
 
@@ -51,7 +52,10 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
             limits["rest_tolerance"] = None
         if setup.machine:
             limits.update(machine=setup.machine, machine_options=setup.options or {})
-        return TaskJob(riffler.tasks.run(_verification(setup, part, fixtures, limits), setup.program))
+        return ChainJob(
+            lambda _: ThreadTask(lambda progress: _verification(setup, part, fixtures, limits, progress)),
+            lambda verification: riffler.tasks.run(verification, setup.program),
+        )
 
     def lost(self, context):
         if context.scene.objects.get(self._setup.sculpt) is None:
@@ -150,25 +154,32 @@ def _around(context, setup):
     plan_ob = context.scene.objects.get(setup.plan) if setup.plan else plan_store.active(context)
     ob = surroundings.part_of(context.scene, plan_ob)
     to_stock = np.linalg.inv(setup.to_world)
-    held = [_moved(parts.in_world(context, f), to_stock) for f in parts.fixtures(context.scene.riffler.plan, ob)]
+    held = [_fixture(context, f, to_stock) for f in parts.fixtures(context.scene.riffler.plan, ob)]
     if ob is None:
         return "", None, held
     return ob.name, _moved(parts.in_world(context, ob), to_stock), held
+
+
+def _fixture(context, ob, to_stock):
+    mesh = parts.in_world(context, ob)
+    check_fixture(mesh, ob.name)
+    return _moved(mesh, to_stock)
 
 
 def _moved(mesh, matrix):
     return riffler.Mesh(poses.transform_points(matrix, np.asarray(mesh.vertices)), mesh.triangles)
 
 
-def _verification(setup, part, fixtures, limits):
-    """The one of before, where stock, surroundings and limits are the same."""
+def _verification(setup, part, fixtures, limits, progress):
+    """The one of before, where stock, surroundings and limits are the same. Not on Blender's thread."""
     global _last
     digest = hashlib.sha256(setup.stock.to_bytes())
     for mesh in (m for m in (part, *fixtures) if m is not None):
         digest.update(riffler.plan.part_of(mesh, "")["sha256"].encode())
     digest.update(json.dumps([part is None, limits], sort_keys=True).encode())
     if _last is None or _last.key != digest.hexdigest():
-        _last = _Kept(digest.hexdigest(), riffler.Verification(setup.stock, part, fixtures, **limits))
+        made = riffler.Verification(setup.stock, part, fixtures, progress=progress, **limits)
+        _last = _Kept(digest.hexdigest(), made)
     return _last.verification
 
 

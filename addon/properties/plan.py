@@ -68,7 +68,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
     )
     tool: StringProperty(name="Tool", description="Cutter, shank and holder as JSON", default="")
     source: StringProperty(name="From", description="The file that the tool was taken from; empty: the presets")
-    clearance: length("Clearance", 0.0, "That the whole tool keeps from part and fixtures beside its cut, in mm")
+    clearance: length("Clearance", 0.0, "That shank and holder keep from part and fixtures, in mm")
     feed: length("Feed", 800.0, "mm/min at the tip", 0.001, 1e6)
     spindle: FloatProperty(name="Spindle", default=12000.0, min=0.0, max=1e6, precision=0, description="rev/min")
     show: EnumProperty(
@@ -128,7 +128,15 @@ class RifflerPlanObject(bpy.types.PropertyGroup):
     part: PointerProperty(type=bpy.types.Object)
     paths: IntProperty()
     length: FloatProperty()
+    keyed: IntProperty()
+    resolved: IntProperty(default=-1)  # of those with keys; -1: in a file from before it was counted
     tool: StringProperty()
     curves: CollectionProperty(type=RifflerPathCurve)
     findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
     index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")
+
+    def forget(self, paths):
+        """What was found on paths, by their numbers from 0, that are others now."""
+        for k in reversed(range(len(self.findings))):
+            if self.findings[k].path in paths:
+                self.findings.remove(k)

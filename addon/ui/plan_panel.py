@@ -5,11 +5,11 @@ import bpy
 import riffler
 
 from .. import properties
-from ..bl import libraries, parts, plan_store, tool_pictures, versions
+from ..bl import libraries, parts, plan_fit, plan_store, tool_pictures, versions
 from ..bl.turning import plan_object
 from ..core import library
 from ..core import units as names
-from ..operators import plan_find, plan_setup, plan_watch, shared
+from ..operators import plan_find, plan_setup, plan_tool, plan_watch, shared
 from .panels import Sidebar, give, lines
 from .pen_panel import wrapped
 
@@ -75,7 +75,8 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
     def _plan(self, layout, context, ob):
         p = ob.riffler.plan
         layout.label(text=ob.name, icon="CURVE_DATA", translate=False)
-        part = p.part.name if p.part else "a part that is gone"
+        own = plan_watch.part_of(context.scene, ob)
+        part = own.name if own else "a part that is gone"
         count = f"Paths: {names.format_count(p.paths)}, {names.trim(p.length, 1)} mm"
         lines(layout, count, *wrapped(context, f"On {part} with {p.tool}"))
         verdict = plan_watch.known(context, ob)
@@ -87,6 +88,9 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
             edits = f"Curves that were edited or are gone: {names.format_count(verdict.edited)}. The plan is as it was."
             lines(layout, *wrapped(context, edits), icon="ERROR")
             layout.operator(plan_find.RIFFLER_OT_plan_show.bl_idname, icon="FILE_REFRESH")
+        if verdict.tool is not None and (note := plan_fit.tool_note(context.scene.riffler.plan, verdict.tool)):
+            lines(layout, *wrapped(context, f"{note}."), icon="ERROR")
+            layout.operator(plan_tool.RIFFLER_OT_plan_use_tool.bl_idname, icon="TOOL_SETTINGS")
 
     def _next(self, layout, context, ob):
         """What is missing for a search, and what comes next."""
@@ -121,7 +125,11 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
         row.prop(settings, "fixtures", text="")
         row.operator(plan_setup.RIFFLER_OT_plan_fixtures_add.bl_idname, text="", icon="ADD")
         row.operator(plan_setup.RIFFLER_OT_plan_fixtures_remove.bl_idname, text="", icon="REMOVE")
-        held = [ob.name for ob in parts.fixtures(settings, settings.part)]
+        try:
+            held = [ob.name for ob in parts.fixtures(settings, settings.part)]
+        except ValueError as error:
+            lines(layout, *wrapped(context, f"{error}."), icon="ERROR")
+            return
         if held:
             lines(layout, *wrapped(context, f"Stays clear of {', '.join(held)}"))
 

@@ -35,7 +35,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         self._turn(layout, context)
         layout.operator(plan_keys.RIFFLER_OT_plan_check.bl_idname, icon="MOD_PHYSICS")
         if plan_collisions.outdated(ob):
-            lines(layout, *wrapped(context, "The marks are of before part or fixtures changed."), icon="INFO")
+            lines(layout, *wrapped(context, "The marks of collisions may be of before."), icon="INFO")
         for first, last in now.colliding[:4]:
             lines(layout, f"Collides at frames {first} to {last}", icon="ERROR")
         if len(now.colliding) > 4:

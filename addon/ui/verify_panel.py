@@ -35,6 +35,14 @@ class RIFFLER_UL_findings(bpy.types.UIList):
         op.of, op.index = ("PLAN" if item.path >= 0 else "VERIFY"), index
 
 
+def resolved(p):
+    """How far a plan (properties.RifflerPlanObject) is from NC code; nothing where that was not counted yet."""
+    if p.resolved < 0:
+        return ""
+    said = f"{p.resolved} of {p.paths} paths resolved"
+    return f"{said}, {p.paths - p.keyed} without keys" if p.keyed < p.paths else said
+
+
 class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_nc"
     bl_label = "NC Code (mm)"
@@ -43,6 +51,8 @@ class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
         layout, ob = self.layout, turning.plan_object(context)
         layout.operator(plan_nc.RIFFLER_OT_plan_resolve.bl_idname, icon="MOD_PHYSICS")
         p = ob.riffler.plan
+        if said := resolved(p):
+            lines(layout, *wrapped(context, said), icon="CHECKMARK" if 0 < p.keyed == p.resolved else "INFO")
         if p.findings:
             layout.template_list(RIFFLER_UL_findings.bl_idname, "plan", p, "findings", p, "index", rows=3)
             if timeline.pair(ob) is None:

@@ -1,11 +1,23 @@
 """Long work in steps: of a cut and of a native task, on a clock, a volume and a task of our own."""
 
+import threading
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from addon.core.job import Cut, CutJob, DoneJob, PiecesJob, RefreshClock, TaskJob, run_through, slice_budget
+from addon.core.job import (
+    AfterJob,
+    Cut,
+    CutJob,
+    DoneJob,
+    PiecesJob,
+    RefreshClock,
+    TaskJob,
+    ThreadTask,
+    run_through,
+    slice_budget,
+)
 
 
 class Clock:
@@ -255,3 +267,71 @@ def test_work_in_pieces_that_is_cancelled_ends_where_it_is():
         work.step(0.0)
     work.cancel()
     assert ended and task.cancelled
+
+
+class Making:
+    """A task that is done when it is asked for the n-th time."""
+
+    def __init__(self, asked):
+        self.left, self.cancelled = asked, False
+
+    @property
+    def done(self):
+        self.left -= 1
+        return self.left < 0
+
+    @property
+    def share(self):
+        return 0.5
+
+    def result(self):
+        assert self.left < 0, "it was waited for"
+        return "part"
+
+    def cancel(self):
+        self.cancelled = True
+
+
+def test_a_job_begins_once_what_it_needs_is_made():
+    after = AfterJob(Making(3), lambda made: DoneJob([made]), text="making")
+    assert not after.step(0.0) and (after.fraction, after.text, after.in_background) == (0.25, "making", True)
+    assert not after.step(0.0) and after.step(0.0)
+    assert (after.result, after.fraction, after.text) == (["part"], 1.0, "")
+    at_once = AfterJob(Making(0), lambda made: DoneJob(made))
+    assert at_once.step(0.0) and at_once.result == "part"
+    making = Making(9)
+    waiting = AfterJob(making, DoneJob)
+    waiting.cancel()
+    assert making.cancelled
+    volume = Volume(Clock())
+    slices = AfterJob(Making(1), lambda _: job(volume, cut(0, 5)), in_background=False)
+    run_through(slices)
+    assert len(volume.log) == 5 and slices.removed == 5
+    slices.cancel()
+    assert volume.log == []
+
+
+def test_a_call_on_a_thread_is_a_task():
+    go = threading.Event()
+
+    def call(progress):
+        assert threading.current_thread() is not threading.main_thread()
+        assert progress(0.25)
+        go.wait(10)
+        return "going" if progress(0.5) else "cancelled"
+
+    for cancel, wanted in ((False, "going"), (True, "cancelled")):
+        go.clear()
+        task = TaskJob(ThreadTask(call))
+        assert not task.step(0.01)
+        if cancel:
+            task.cancel()
+        go.set()
+        run_through(task)
+        assert task.result == wanted and task.fraction == 0.5
+
+    def fails(progress):
+        raise ValueError("flat")
+
+    with pytest.raises(ValueError, match="flat"):
+        run_through(TaskJob(ThreadTask(fails)))

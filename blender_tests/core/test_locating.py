@@ -42,6 +42,14 @@ def test_a_run_of_lifted_rows_is_at_its_highest():
     assert found[0]["place"] == tuple(CENTRES[2])
 
 
+def test_a_lift_by_more_than_the_tolerance_leaves_material():
+    some, more = report(lift=np.array([0, 0.009, 0.02, 0.5, 0, 0, 0])), report(lift=np.array([0, 0, 0, 0, 0, 1.25, 0]))
+    assert locating.left([some], 0.01) == "2 rows are lifted by up to 0.5 mm: material stays"
+    assert locating.left([some, more], 0.02) == "2 rows are lifted by up to 1.25 mm: material stays"
+    assert locating.left([more], 0.01) == "1 row is lifted by up to 1.25 mm: material stays"
+    assert locating.left([some, report()], 0.5) == "" == locating.left([], 0.01)
+
+
 def test_ways_that_are_not_free_come_before_what_was_lifted():
     lines = said(unsafe=[(3, -0.2, 0.1, "no row frees it")], lift=np.array([1.0, 0, 0, 0, 0, 0, 0]))
     assert [line[0] for line in lines] == ["unsafe", "lifted", "inserted"]

@@ -1,6 +1,10 @@
 """The shell of long work, from a script: in one go, with the errors of the work, and seen by others."""
 
+import threading
+
 import bpy
+import programs
+import riffler
 import work
 
 import support
@@ -52,3 +56,55 @@ def test_what_has_to_wait_says_for_what():
             support.refused(call, "Finding pencil paths: Esc cancels")
         progress().running = ""
         assert bpy.ops.riffler.cut_curve.poll() and bpy.ops.riffler.test_work.poll()
+
+
+def test_part_and_fixtures_are_made_while_the_window_goes_on():
+    """Nothing waits for surroundings in the making: they are asked for until they are there."""
+    programs.plan()
+    surroundings = support.part("bl.surroundings")
+    made, plain = [], surroundings.Making
+
+    class Slow(plain):
+        left = 3
+
+        @property
+        def done(self):
+            self.left -= 1
+            return self.left < 0 and super().done
+
+        def result(self):
+            assert self.left < 0, "waited for"
+            made.append(self)
+            return super().result()
+
+    surroundings.Making = Slow
+    try:
+        for call in (
+            bpy.ops.riffler.plan_resolve,
+            bpy.ops.riffler.plan_check,
+            lambda: bpy.ops.riffler.plan_least_tilt(paths="ALL"),
+            lambda: bpy.ops.riffler.plan_point_key(path=1, point=10),
+        ):
+            surroundings._kept.clear()
+            assert call() == {"FINISHED"}
+    finally:
+        surroundings.Making = plain
+    assert len(made) == 4
+
+
+def test_a_verification_is_made_on_a_thread():
+    programs.resolved()
+    programs.stock()
+    threads, plain = [], riffler.Verification
+
+    def noted(*given, **more):
+        threads.append(threading.current_thread())
+        return plain(*given, **more)
+
+    riffler.Verification = noted
+    try:
+        bpy.ops.riffler.verify(source="PLAN")
+        bpy.ops.riffler.verify(source="PLAN")  # which is there
+    finally:
+        riffler.Verification = plain
+    assert len(threads) == 1 and threads[0] is not threading.main_thread()

@@ -236,3 +236,45 @@ def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_agai
     update()
     looked_again()
     assert not outdated(ob) and state(ob).looks == looks and support.part("bl.surroundings").made == made + 1
+
+
+def test_marks_of_a_file_that_is_opened_or_of_a_plan_that_is_renamed_are_looked_at_again():
+    part = plans.part_object()
+    ob = plans.on_timeline(chosen=[plans.paths()[0].oriented({0: (0, -0.6, 0.8)})])
+    outdated = support.part("bl.plan_collisions").outdated
+    vise = fixture((20, 40), (0, 10), (8, 40))
+    bpy.context.scene.riffler.plan.part = part
+    bpy.ops.riffler.plan_check()
+    assert markers() == [(42, "collides 42–104")] and not outdated(ob)
+    vise.location.z = -100
+    path, name = support.out("marked.blend"), ob.name
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    ob = bpy.data.objects[name]
+    assert markers() and outdated(ob), "nothing says that the marks are of before"
+    looked_again()
+    assert not outdated(ob) and markers() == []
+    bpy.data.objects["Vise"].location.z = 0
+    ob.name = "Mine"
+    assert outdated(ob)
+    pair(ob)[0].update_tag()
+    update()
+    looked_again()
+    assert not outdated(ob) and markers() == [(42, "collides 42–104")]
+
+
+def test_marks_that_are_undone_do_not_come_back_by_themselves():
+    part = plans.part_object()
+    ob = plans.on_timeline(chosen=plans.paths()[:1])
+    bpy.context.scene.riffler.plan.part, name = part, ob.name
+    insert(pair(ob)[0], 73, (0, 1, 0.2))
+    support.push("plan")
+    bpy.ops.riffler.plan_check("EXEC_DEFAULT", True)
+    assert len(markers()) == 1
+    bpy.ops.ed.undo()
+    update()
+    assert markers() == [] and not support.part("bl.plan_collisions").outdated(bpy.data.objects[name])
+    bpy.ops.ed.redo()
+    update()
+    assert len(markers()) == 1

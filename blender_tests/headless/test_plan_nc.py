@@ -4,13 +4,16 @@ import json
 import os
 import re
 import subprocess
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import plans
 import programs
 import riffler
+from keyed import insert, pair, tracks
 
 import support
 
@@ -97,11 +100,11 @@ def test_what_collides_is_lifted_and_listed():
 
 
 def test_unresolved_paths_are_refused():
-    ob = programs.plan(programs.valley(programs.LEANING), plans.ring())
+    ob = programs.plan(plans.ring())
     path = support.out("refused.ngc")
     Path(path).unlink(missing_ok=True)
     call = lambda: bpy.ops.riffler.plan_nc(filepath=path)  # noqa: E731
-    support.refused(call, "path 2 without orientation", "set a key")
+    support.refused(call, "No path has an orientation", "set a key")
     support.part("bl.plan_store").write(ob, riffler.plan.Plan([programs.valley(programs.LEANING)], plans.TOOL))
     support.refused(call, "path 1 may collide", "Resolve")
     bpy.ops.riffler.plan_resolve()
@@ -123,8 +126,6 @@ def moved():
 
 
 def test_a_key_that_changes_takes_the_path_s_locations_away():
-    from keyed import insert, pair
-
     ob = programs.resolved(programs.valley(programs.LEANING), programs.valley((0, -0.3, 1)))
     assert programs.content(ob).cl[0] is not None and programs.content(ob).cl[1] is not None
     kept = programs.content(ob).cl[1]
@@ -142,7 +143,81 @@ def test_blocked_paths_stay_unresolved_and_name_their_points():
     assert programs.content(ob).cl[0] is None
     lines = programs.listed(ob.riffler.plan.findings)
     assert lines[0]["kind"] == "blocked" and "points from 0" in lines[0]["name"]
-    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "path 1 may collide")
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "path 1 may collide", "left out")
+
+
+def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
+    """The valley's finish is the same with 0.3 mm of it; where the shank is too near for 15 mm the tool is lifted, and
+    that is said."""
+    settings = bpy.context.scene.riffler.plan
+    ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
+    short = riffler.Tool.ball(6, 10).with_shank([(10, 3, 40, 3)])
+    support.part("bl.plan_store").write(ob, replace(programs.content(ob), tool=short))
+    settings.take(short.to_dict())
+    bpy.ops.riffler.plan_resolve()
+    (before,) = programs.content(ob).cl
+    settings.clearance = 0.3
+    said = support.printed(bpy.ops.riffler.plan_resolve)
+    assert np.array_equal(programs.content(ob).cl[0], before) and "Warning" not in said, said
+    settings.clearance = 15
+    said = support.printed(bpy.ops.riffler.plan_resolve)
+    (lifted,) = programs.content(ob).cl
+    up = np.linalg.norm(lifted[:, :3] - before[:, :3], axis=1).max()
+    assert len(lifted) == len(before) and up > 1
+    assert "Warning" in said and f"1 path is free, but {len(lifted)} rows are lifted by up to {up:.3f}" in said, said
+    assert "material stays" in said
+
+
+def test_a_key_that_was_refused_is_said_with_the_code():
+    """It is on the timeline, and the program has the orientation of before."""
+    ob = programs.resolved()
+    bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
+    (before,) = programs.content(ob).cl
+    assert "Warning" not in support.printed(write)
+    insert(pair(ob)[0], 73, -np.array(programs.LEANING))
+    assert np.array_equal(programs.content(ob).cl[0], before)
+    for call in (write, bpy.ops.riffler.plan_resolve):
+        said = support.printed(call)
+        assert "Warning" in said and "it stays as it was" in said, said
+
+
+def test_paths_without_keys_are_not_cut_and_that_is_said():
+    """The second of three has none, the third is blocked until it has none either."""
+    ob = programs.plan(programs.valley(programs.LEANING), plans.ring(), programs.valley(programs.INTO))
+    bpy.ops.riffler.plan_resolve(max_lift=0.01)
+    call = lambda: bpy.ops.riffler.plan_nc(filepath=support.out("some.ngc"))  # noqa: E731
+    support.refused(call, "path 3 may collide", "delete the keys")
+    tool = pair(ob)[0]
+    frames, quats = support.part("bl.timeline").read_keys(tool)
+    first = tracks(ob)[2].first
+    support.part("bl.timeline").write_keys(tool, frames[frames < first], quats[frames < first])
+    support.part("bl.replan").flush()
+    said = support.printed(call)
+    assert "Warning" in said and "Paths 2, 3 have no keys and are not cut" in said, said
+    read = riffler.Program.read(support.out("some.ngc"), machine="tcp")
+    (rows, *others) = programs.content(ob).cl
+    assert not any(o is not None and len(o) for o in others)
+    assert max(np.linalg.norm(read.poses[:, :3] - row[:3], axis=1).min() for row in rows) < 2e-4
+    assert "(paths: 1, 60 mm)" in Path(support.out("some.ngc")).read_text()
+
+
+def test_a_program_of_some_paths_is_at_their_frames():
+    ob = programs.plan(plans.ring(), programs.valley(programs.LEANING))
+    programs.stock()
+    bpy.ops.riffler.plan_resolve()
+    bpy.context.view_layer.objects.active = ob
+    made = support.part("bl.programs")
+    wanted = SimpleNamespace(source="PLAN", frame="WORLD")
+    second = tracks(ob)[1]
+    for setup in (made.take(bpy.context, wanted), made.take(bpy.context, in_file(write()))):
+        cut = np.flatnonzero(~setup.program.rapid)
+        frames = setup.course.frames[cut[[1, -1]]]
+        assert second.first - 6 < frames[0] < frames[1] < second.last + 6, (frames, second)
+
+
+def in_file(path):
+    more = {"machine": "tcp", "options": "", "frame": "WORLD"}
+    return SimpleNamespace(source="FILE", filepath=path, **more)
 
 
 def test_resolving_is_one_step_of_undo():

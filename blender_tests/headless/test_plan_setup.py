@@ -155,6 +155,65 @@ def test_fixtures_are_a_collection_and_never_the_part():
     support.refused(bpy.ops.riffler.plan_fixtures_remove, "Select the fixtures")
 
 
+def is_fixture(ob):
+    home = settings().fixtures
+    return home is not None and home.objects.get(ob.name) == ob
+
+
+def test_a_linked_vise_is_no_fixture_before_it_is_real():
+    """An object that stands for a collection has no surface of its own: it would be passed over."""
+    support.scale(1)
+    settings().part = cube("Part")
+    jaws, inside = cube("Jaws", location=(40, 0, 0)), bpy.data.collections.new("Vise")
+    for home in jaws.users_collection:
+        home.objects.unlink(jaws)
+    inside.objects.link(jaws)
+    bpy.ops.object.collection_instance_add(collection=inside.name)
+    vise = bpy.context.object
+    support.refused(bpy.ops.riffler.plan_fixtures_add, f"{vise.name} is an instance of Vise", "Make Instances Real")
+    home = settings().fixtures = bpy.data.collections.new("Fixtures")
+    bpy.context.scene.collection.children.link(home)
+    home.objects.link(vise)
+    text = support.refused(bpy.ops.riffler.plan_find, "Part: no pencil cut")  # the search looks at no fixture
+    take = support.part("bl.surroundings").take
+    ob = support.part("bl.plan_store").new(bpy.context, a_plan())
+    try:
+        take(bpy.context, ob)
+    except ValueError as error:
+        text = str(error)
+    assert "is an instance of Vise" in text and "take it out of the fixtures" in text
+    support.select(vise)
+    bpy.ops.object.duplicates_make_real()
+    real = bpy.context.selected_objects
+    bpy.data.objects.remove(vise)
+    support.select(real[0])
+    bpy.ops.riffler.plan_fixtures_add()
+    assert [name for name, _ in take(bpy.context, ob).fixtures] == [real[0].name]
+
+
+def test_a_flat_fixture_is_named_with_the_remedy():
+    """However it is turned; also one that became a fixture otherwise."""
+    support.scale(1)
+    settings().part = cube("Part")
+    for turn in ((0, 0, 0), (0.3, 0.4, 0.5)):
+        bpy.ops.mesh.primitive_plane_add(size=20, location=(40, 0, 0), rotation=turn)
+        plane = bpy.context.object
+        support.refused(bpy.ops.riffler.plan_fixtures_add, f"{plane.name} is flat", "Solidify", "out of the fixtures")
+        assert not is_fixture(plane)
+    plane.modifiers.new("Thick", "SOLIDIFY").thickness = 1
+    bpy.ops.riffler.plan_fixtures_add()
+    assert is_fixture(plane)
+    plane.modifiers.clear()
+    bpy.context.view_layer.update()
+    ob = support.part("bl.plan_store").new(bpy.context, a_plan())
+    try:
+        support.part("bl.surroundings").now(bpy.context, ob)
+    except ValueError as error:
+        assert plane.name in str(error) and "flat sheet" in str(error) and "Solidify" in str(error), error
+    else:
+        raise AssertionError("a sheet has become a volume")
+
+
 # ---- tools
 
 

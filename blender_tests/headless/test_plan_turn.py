@@ -2,6 +2,7 @@
 
 import math
 import time
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -108,6 +109,27 @@ def test_points_are_gone_to_and_free_keys_set_there():
     assert close(paths(ob)[0].keys[72], np.array((0, -1, 1)) / math.sqrt(2), 1e-9)
 
 
+def test_where_nothing_is_free_no_key_is_set():
+    """A plate over the step's whole floor, 5 mm above the ball's tip."""
+    part = plans.part_object()
+    ob = plans.on_timeline(chosen=plans.paths()[:1])
+    settings = bpy.context.scene.riffler.plan
+    settings.part, settings.fixtures = part, bpy.data.collections.new("Fixtures")
+    bpy.context.scene.collection.children.link(settings.fixtures)
+    mesh = bpy.data.meshes.new("Plate")
+    x, y, z = np.meshgrid((-50, 110), (-50, 90), (13, 20), indexing="ij")
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    mesh.from_pydata(np.c_[x.ravel(), y.ravel(), z.ravel()].tolist(), [], faces)
+    settings.fixtures.objects.link(bpy.data.objects.new("Plate", mesh))
+    update()
+    store = support.part("bl.plan_store")
+    identity, frame = store.identity(ob), bpy.context.scene.frame_current
+    call = lambda: bpy.ops.riffler.plan_point_key(path=1, point=72)  # noqa: E731
+    support.refused(call, "No orientation is free here", "no key was set")
+    assert store.identity(ob) == identity and bpy.context.scene.frame_current == frame
+    assert len(curves(pair(ob)[0])[0].keyframe_points) == 2
+
+
 def look(ob, axis):
     surroundings, looking, turning = (support.part(f"bl.{name}") for name in ("surroundings", "looking", "turning"))
     spot = turning.spot(bpy.context.scene, ob)
@@ -151,6 +173,28 @@ def test_surroundings_are_made_once_and_again_where_something_moved():
     part.location.z = 6  # a script's change, which Blender has not told of yet
     assert surroundings.known(ob) is not None
     assert surroundings.now(bpy.context, ob).collider is not None and surroundings.made == made + 3
+
+
+def test_a_fixture_that_comes_or_goes_makes_what_is_known_old():
+    """As + does it to a collection that is there: no object that is known of says that it has changed."""
+    ob = plans.on_timeline(chosen=plans.paths()[:1])
+    settings, surroundings = bpy.context.scene.riffler.plan, support.part("bl.surroundings")
+    settings.part = plans.part_object()
+    bpy.context.scene.frame_set(73)
+    assert look(ob, (0, -0.6, 0.8)).free
+    version = surroundings.version(ob)
+    clamp = bpy.data.objects.new("Clamp", plans.part_object().data)
+    settings.fixtures = bpy.data.collections.new("Fixtures")
+    bpy.context.scene.collection.children.link(settings.fixtures)
+    for change in (settings.fixtures.objects.link, settings.fixtures.objects.unlink):
+        known = surroundings.known(ob)
+        assert known is not None
+        change(clamp)
+        assert surroundings.known(ob) is None and surroundings.version(ob) != version
+        assert surroundings.now(bpy.context, ob) is not known
+        version = surroundings.version(ob)
+    settings.part = None
+    assert surroundings.known(ob) is None and surroundings.version(ob) != version
 
 
 def test_a_map_is_made_when_somebody_looks_and_again_only_where_the_point_is_another():
@@ -273,6 +317,72 @@ def test_the_contact_that_is_pointed_at_is_the_one_seen_nearest():
             found += 1
             assert abs(np.hypot(*(view.project([got.point])[0] - at)) - gap) < 1e-6 and got.path == path
     assert found > 5
+
+
+def from_above(scale=30.0):
+    """A parallel view along -z, `scale` pixels to the millimetre round the middle of the step."""
+    matrix = np.diag([scale / 400, scale / 400, -1 / 1000, 1.0])
+    matrix[:2, 3] = -matrix[0, 0] * np.array((30, 20))
+    return support.part("core.sight").Sight(matrix, (800, 800))
+
+
+def line(y, z, n=200):
+    """A path along x with both contacts 3 mm beside it; what is over z = 20 is in front."""
+    centres = np.c_[np.linspace(0, 60, n), np.full(n, y), np.full(n, z)]
+    aside = np.array((0, 3.0, 0))
+    contacts = np.stack([centres - aside, centres + aside], axis=1)
+    return riffler.plan.PencilPath(3.0, centres, contacts, np.tile((0, 0, 1.0), (n, 2, 1)), False)
+
+
+def test_a_contact_that_is_hidden_is_not_pointed_at():
+    drawn, view = support.part("drawing.paths"), from_above(3.0)
+    plan = riffler.plan.Plan([line(20, 0), line(20.5, 30)], plans.TOOL)
+    at, asked = view.project([(30, 17.1, 0)])[0], []
+
+    def below(place):
+        asked.append(place)
+        return place[2] < 20
+
+    assert drawn.nearest(plan, view, at).path == 0
+    found = drawn.nearest(plan, view, at, hidden=below)
+    assert found.path == 1 and abs(found.point[0] - 30) < 0.2 and abs(found.point[1] - 17.5) < 1e-9
+    assert len(asked) < 40, "every contact was asked for"
+    # Of a path that is hidden here and seen 4 mm on, that is 12 pixels, what is seen is taken.
+    found = drawn.nearest(riffler.plan.Plan([line(20, 0)], plans.TOOL), view, at, hidden=lambda place: place[0] < 34)
+    assert 34 <= found.point[0] < 36
+    asked.clear()
+    plan = riffler.plan.Plan([line(20 + 0.01 * k, 0) for k in range(300)], plans.TOOL)
+    assert drawn.nearest(plan, view, at, hidden=below) is None and len(asked) <= drawn.ASKED
+
+
+def test_what_is_seen_hides_and_nothing_else():
+    support.scale(1.0)
+    part = plans.part_object()
+    ob = plans.on_timeline(chosen=plans.paths()[:1])
+    space = SimpleNamespace(shading=SimpleNamespace(type="SOLID", show_xray=False))
+    context = SimpleNamespace(scene=bpy.context.scene, view_layer=bpy.context.view_layer, space_data=space)
+    view = from_above()
+
+    def hidden(place):
+        update()
+        return support.part("bl.hiding").hider(context, view)(np.array(place, float))
+
+    seen, below = (30, 10, 8.06), (30, 10, -0.06)  # over the step's floor, and under it
+    assert not hidden(seen) and hidden(below)
+    bpy.context.scene.frame_set(73)  # over the middle of the path
+    assert not hidden(paths(ob)[0].centres[72]), "the plan's own tool hides the part"
+    roof = bpy.data.objects.new("Roof", part.data)
+    bpy.context.scene.collection.objects.link(roof)
+    roof.location.z = 40
+    assert hidden(seen)
+    roof.display_type = "WIRE"
+    assert not hidden(seen) and hidden(below)
+    roof.display_type = "TEXTURED"
+    roof.hide_set(True)
+    assert not hidden(seen)
+    roof.hide_set(False)
+    space.shading.show_xray = True
+    assert not hidden(seen) and not hidden(below)
 
 
 def test_what_is_drawn_of_a_path():

@@ -3,6 +3,7 @@
 import bpy
 import keyed
 import numpy as np
+import plans
 import programs
 import riffler
 from mathutils import Matrix
@@ -50,7 +51,7 @@ def test_scrubbing_back_and_forth_equals_carving_the_prefix_by_bytes():
     scene = bpy.context.scene
     scene.frame_set(1)
     assert bpy.ops.riffler.simulate(source="PLAN") == {"FINISHED"}
-    assert stock.hide_get() and now().course.last <= scene.frame_end
+    assert stock.hide_get() and scene.frame_start <= now().course.first and now().course.last <= scene.frame_end
     rows = set()
     for frame in (1, 60, 145, 30, 1, 145, 100, 0, 72):
         scene.frame_set(frame)
@@ -171,6 +172,31 @@ def test_saving_and_undo_end_it():
     bpy.ops.wm.read_homefile()
     assert now() is None and not bpy.context.window_manager.riffler.simulating
     bpy.context.scene.frame_set(5)
+
+
+def test_a_plan_that_changes_ends_it():
+    """The tool plays the new keys: the old program is not shown beside it."""
+    ob, replan = programs.resolved(), support.part("bl.replan")
+    stock = programs.stock()
+    bpy.ops.riffler.simulate(source="PLAN")
+    keyed.insert(keyed.pair(ob)[0], 73, (0, -0.3, 1))
+    notice = bpy.context.window_manager.riffler.notice
+    assert now() is None and not stock.hide_get() and notice == f"{ob.name}: simulation ended: the plan has changed"
+    support.refused(bpy.ops.riffler.simulate, "path 1 may collide")
+    bpy.ops.riffler.plan_resolve()
+    bpy.ops.riffler.simulate(source="PLAN")
+    store = support.part("bl.plan_store")  # as a script changes it, which Blender does not tell of
+    store.write(ob, riffler.plan.Plan(keyed.paths(ob), plans.TOOL))
+    bpy.context.scene.frame_set(20)
+    assert now() is None
+    replan.flush()
+    bpy.ops.riffler.plan_resolve()
+    soon, replan._soon = replan._soon, lambda: None  # as in a window, in the tenth of a second before keys count
+    try:
+        keyed.insert(keyed.pair(ob)[0], 73, (0, -0.2, 1))
+        support.refused(bpy.ops.riffler.simulate, "path 1 may collide")
+    finally:
+        replan._soon = soon
 
 
 def test_what_is_missing_is_said():

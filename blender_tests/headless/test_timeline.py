@@ -24,6 +24,36 @@ def test_the_plan_s_keys_are_keyframes():
     assert np.linalg.norm(np.diff(paths(ob)[0].centres, axis=0), axis=1).max() <= 1 / 2.4 + 1e-9
 
 
+def test_a_scene_that_begins_later_plays_the_paths():
+    scene = bpy.context.scene
+    scene.frame_end, scene.frame_start = 1100, 1001
+    ob = plans.on_timeline()
+    assert (scene.frame_start, scene.frame_end) == (1, 1100)
+    bpy.ops.riffler.plan_to_timeline(first=5)
+    scene.frame_end = 5
+    bpy.ops.riffler.plan_to_timeline(first=3)
+    assert (scene.frame_start, scene.frame_end) == (1, tracks(ob)[1].last)
+
+
+def test_going_somewhere_goes_there_where_time_is_stretched():
+    scene = bpy.context.scene
+    for old, new in ((100, 200), (100, 300), (250, 100), (100, 100)):
+        bpy.ops.wm.read_homefile()
+        scene = bpy.context.scene
+        scene.render.frame_map_old, scene.render.frame_map_new = old, new
+        ob = plans.on_timeline()
+        first, second = tracks(ob)
+        assert scene.frame_end >= second.last * new / old
+        bpy.ops.riffler.plan_point(path=2, point=30)
+        assert abs(scene.frame_current_final - second.frame_of(30)) < 1e-3, (old, new)
+        bpy.ops.riffler.plan_key_jump(back=True)
+        assert abs(scene.frame_current_final - second.first) < 1e-3, (old, new)
+        found = {"kind": "lifted", "path": 0, "point": 7, "name": "here"}
+        support.part("bl.findings").write(ob.riffler.plan.findings, [found])
+        bpy.ops.riffler.finding_go(of="PLAN", index=0)
+        assert abs(scene.frame_current_final - first.frame_of(7)) < 1e-3, (old, new)
+
+
 def test_a_tool_that_was_deleted_is_in_the_scene_again():
     ob = plans.on_timeline()
     for gone in pair(ob):

@@ -3,8 +3,9 @@
 import bpy
 import numpy as np
 import plans
+import programs
 import riffler
-from keyed import close, curves, indices, insert, pair, paths, seen, state, tracks, update
+from keyed import close, curves, indices, insert, pair, paths, remove, seen, state, tracks, update
 
 import support
 
@@ -61,6 +62,35 @@ def test_undo_where_the_consequence_came_after_the_step():
         update()
         ob = bpy.data.objects[name]
         assert np.allclose(paths(ob)[0].axes, after, atol=1e-7) and close(seen(ob, 73)[1], after[72])
+
+
+def test_undo_brings_resolved_paths_back_and_so_does_a_key_that_is_moved_back():
+    """As in a window; Blender keeps the plan as it has become, since it is the same in both of its steps."""
+    ob = programs.resolved(programs.valley(programs.LEANING, programs.LEANING))
+    name, replan, store = ob.name, support.part("bl.replan"), support.part("bl.plan_store")
+    support.push("resolved")
+    identity, (rows,) = store.identity(ob), store.plan(ob).cl
+    with_held(replan, lambda: (insert(pair(ob)[0], 73, (0, -0.3, 1)), support.push("key")))
+    replan.flush()
+    assert store.plan(bpy.data.objects[name]).cl == [None]
+    for _ in range(2):
+        bpy.ops.ed.undo()
+        update()
+        ob = bpy.data.objects[name]
+        assert store.identity(ob) == identity and np.array_equal(store.plan(ob).cl[0], rows)
+        assert bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=support.out("undone.ngc")) == {"FINISHED"}
+        bpy.ops.ed.redo()
+        update()
+        ob = bpy.data.objects[name]
+        assert store.plan(ob).cl == [None] and store.identity(ob) != identity
+    remove(pair(ob)[0], 73)
+    assert store.identity(ob) == identity
+    bpy.context.scene.riffler.plan.clearance = 0.1
+    insert(pair(ob)[0], 73, (0, -0.3, 1))
+    bpy.ops.riffler.plan_resolve()
+    assert store.plan(ob).cl[0] is not None
+    remove(pair(ob)[0], 73)
+    assert store.plan(ob).cl == [None], "what was resolved for another clearance came back"
 
 
 def with_held(replan, action):
