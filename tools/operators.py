@@ -31,6 +31,7 @@ TOPICS = {
                          "export_recording"],
     "Recovery and reports": ["recover", "discard_journal", "dismiss", "doctor"],
     "Plans": ["plan_part", "plan_fixtures_add", "plan_fixtures_remove", "plan_tool", "plan_tool_open", "plan_tool_save",
+              "plan_use_tool",
               "plan_assembly", "plan_find", "plan_show"],
     "Orientations": ["plan_to_timeline", "plan_key", "plan_key_delete", "plan_key_jump", "plan_least_tilt",
                      "plan_check", "plan_point", "plan_point_key", "plan_turn"],

@@ -226,9 +226,7 @@ def test_work_in_pieces_goes_on_where_it_was_and_gets_what_its_task_has_made():
     work = PiecesJob(pieces(), 4, clock=clock)
     assert not work.step(0.0) and done == ["a"] and not work.in_background and work.fraction == 0.25
     assert not work.step(0.0) and done == ["a", "b"]
-    assert (
-        not work.step(0.0) and work.in_background and work.fraction == 0.75
-    )  # a window's tick only looks from here on
+    assert not work.step(0.0) and work.in_background and work.fraction == 0.75  # a window's tick only looks now
     assert not work.step(0.0) and done == ["a", "b"]
     clock.now = 1.0
     assert work.step(0.0) and done == ["a", "b", "made"] and work.result == "all" and not work.in_background
