@@ -2,7 +2,8 @@
 
     python addon/package.py --wheel dist/riffler-….whl [--wheel …] --out dist
 
-riffler-<version>.zip           extension for Blender 4.2 and later; several wheels (Pythons, platforms) may go in
+riffler-<version>.zip           extension for Blender from 4.2 on, of the Pythons and platforms whose wheels go in: with
+                                that for Python 3.11 alone it is for 4.2 to 5.0
 riffler-<version>-legacy.zip    add-on for Blender 3.x, with the package of the wheel for Python 3.11 (Debian 12's)
                                 unpacked inside; not made without such a wheel
 

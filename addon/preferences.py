@@ -12,9 +12,9 @@ from .translations import local
 from .ui import keymaps
 
 HID = (
-    "Pens and pucks are HID devices. Blender has no permission that an extension could ask for them: Riffler opens one "
-    "while a session runs, and asks those that it knows who they are for the report below. Where the system refuses, "
-    "the report has the line that lets you, and where it goes."
+    "Pens and pucks are HID devices. There is no permission in Blender for using them: Riffler opens one while a "
+    "session runs, and asks those that it knows who they are for the report below. Where the system refuses, the "
+    "report has the line that lets you, and where it goes."
 )
 SPACEMOUSE = (
     "Blender reads a SpaceMouse, too: while it sculpts, it may also turn the view. Preferences, Input, NDOF has what "

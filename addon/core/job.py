@@ -104,47 +104,6 @@ class ChainJob:
             self._job.cancel()
 
 
-class PiecesJob:
-    """Work of Python's in pieces: a generator, which yields after each of its `count` pieces; where it yields a native
-    task it is sent what that has made. What it returns is the `result`."""
-
-    def __init__(self, pieces, count: int, text="", clock=time.perf_counter):
-        self.text, self.result = text, None
-        self._pieces, self._count, self._clock = pieces, count, clock
-        self._done, self._task, self._made = 0, None, None
-
-    @property
-    def in_background(self) -> bool:
-        return self._task is not None
-
-    @property
-    def fraction(self) -> float:
-        now = 0.0 if self._task is None else self._task.fraction
-        return min(1.0, (self._done + now) / self._count)
-
-    def step(self, budget: float = 0.0) -> bool:
-        end = self._clock() + budget
-        while True:
-            if self._task is not None:
-                if not self._task.step(budget):
-                    return False
-                self._made, self._task = self._task.result, None
-            try:
-                wanted = self._pieces.send(self._made)
-            except StopIteration as end_of_all:
-                self.result = end_of_all.value
-                return True
-            self._done, self._made = self._done + 1, None
-            self._task = None if wanted is None else TaskJob(wanted)
-            if self._task is not None or self._clock() >= end:
-                return False
-
-    def cancel(self) -> None:
-        if self._task is not None:
-            self._task.cancel()
-        self._pieces.close()
-
-
 class AfterJob:
     """The job that `make` returns of what a task makes, once that is done; what it has made is asked of this as of that
     job. `in_background`: as that job's."""
@@ -210,6 +169,47 @@ class ThreadTask:
 
     def cancel(self) -> None:
         self._cancelled = True
+
+
+class PiecesJob:
+    """Work of Python's in pieces: a generator, which yields after each of its `count` pieces; where it yields a native
+    task it is sent what that has made. What it returns is the `result`."""
+
+    def __init__(self, pieces, count: int, text="", clock=time.perf_counter):
+        self.text, self.result = text, None
+        self._pieces, self._count, self._clock = pieces, count, clock
+        self._done, self._task, self._made = 0, None, None
+
+    @property
+    def in_background(self) -> bool:
+        return self._task is not None
+
+    @property
+    def fraction(self) -> float:
+        now = 0.0 if self._task is None else self._task.fraction
+        return min(1.0, (self._done + now) / self._count)
+
+    def step(self, budget: float = 0.0) -> bool:
+        end = self._clock() + budget
+        while True:
+            if self._task is not None:
+                if not self._task.step(budget):
+                    return False
+                self._made, self._task = self._task.result, None
+            try:
+                wanted = self._pieces.send(self._made)
+            except StopIteration as end_of_all:
+                self.result = end_of_all.value
+                return True
+            self._done, self._made = self._done + 1, None
+            self._task = None if wanted is None else TaskJob(wanted)
+            if self._task is not None or self._clock() >= end:
+                return False
+
+    def cancel(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+        self._pieces.close()
 
 
 @dataclass

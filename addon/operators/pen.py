@@ -232,11 +232,15 @@ def _tell(session):
     state = bpy.context.window_manager.riffler
     state.force = f"Hand: {run.state}, {run.force:.2f} N"
     what = " put on" if session.mode == "add" else ""
-    state.text = f"{names.format_volume(session.changed)}{what} in {session.count} strokes"
+    state.text = f"{names.format_volume(session.changed)}{what} in {_strokes(session)}"
     state.why = run.why
     why = f"    {run.why}" if run.why else ""
     _status(f"Riffler: {state.force}, {state.text}    Esc: end    Ctrl Z: take a stroke back{why}")
     shared.redraw_sidebars(bpy.context)
+
+
+def _strokes(session):
+    return "1 stroke" if session.count == 1 else f"{session.count} strokes"
 
 
 def _status(text):
@@ -275,7 +279,7 @@ def _said(operator, session):
         return {"CANCELLED"}
     note = f"; {session.problem}" if session.problem else ""
     changed = names.format_volume(session.changed)
-    text = f"{done.capitalize()} {changed} in {session.count} strokes, {session.seconds:.1f} s{note}"
+    text = f"{done.capitalize()} {changed} in {_strokes(session)}, {session.seconds:.1f} s{note}"
     operator.report({"WARNING"} if session.problem else {"INFO"}, text)
     return {"FINISHED"}
 

@@ -43,6 +43,13 @@ def resolved(p):
     return f"{said}, {p.paths - p.keyed} without keys" if p.keyed < p.paths else said
 
 
+def found(layout, context, name, of, rows):
+    """The list of findings of a plan or a verification, which cuts them off, and the chosen one whole below it."""
+    layout.template_list(RIFFLER_UL_findings.bl_idname, name, of, "findings", of, "index", rows=rows)
+    if 0 <= of.index < len(of.findings):
+        lines(layout, *wrapped(context, of.findings[of.index].name))
+
+
 class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_nc"
     bl_label = "NC Code (mm)"
@@ -54,7 +61,7 @@ class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
         if said := resolved(p):
             lines(layout, *wrapped(context, said), icon="CHECKMARK" if 0 < p.keyed == p.resolved else "INFO")
         if p.findings:
-            layout.template_list(RIFFLER_UL_findings.bl_idname, "plan", p, "findings", p, "index", rows=3)
+            found(layout, context, "plan", p, rows=3)
             if timeline.pair(ob) is None:
                 lines(layout, *wrapped(context, "Put the plan on the timeline to jump to frames."), icon="INFO")
         layout.operator(plan_nc.RIFFLER_OT_plan_nc.bl_idname, icon="EXPORT")
@@ -87,12 +94,8 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
 
     def _found(self, layout, context, settings):
         lines(layout, *wrapped(context, settings.said), icon="ERROR" if settings.findings else "CHECKMARK")
-        if not settings.findings:
-            return
-        kind = RIFFLER_UL_findings.bl_idname
-        layout.template_list(kind, "verify", settings, "findings", settings, "index", rows=4)
-        if 0 <= settings.index < len(settings.findings):
-            lines(layout, *wrapped(context, settings.findings[settings.index].name))
+        if settings.findings:
+            found(layout, context, "verify", settings, rows=4)
 
     def _program(self, layout, context, settings):
         column = layout.column(align=True)

@@ -212,61 +212,6 @@ def test_cancel_reaches_the_task():
     assert j._task.cancelled
 
 
-def test_work_in_pieces_goes_on_where_it_was_and_gets_what_its_task_has_made():
-    done, clock = [], Clock()
-
-    def pieces():
-        done.append("a")
-        yield
-        done.append("b")
-        yield
-        done.append((yield Task(clock, 1.0, "made")))
-        return "all"
-
-    work = PiecesJob(pieces(), 4, clock=clock)
-    assert not work.step(0.0) and done == ["a"] and not work.in_background and work.fraction == 0.25
-    assert not work.step(0.0) and done == ["a", "b"]
-    assert not work.step(0.0) and work.in_background and work.fraction == 0.75  # a window's tick only looks now
-    assert not work.step(0.0) and done == ["a", "b"]
-    clock.now = 1.0
-    assert work.step(0.0) and done == ["a", "b", "made"] and work.result == "all" and not work.in_background
-    clock.now, done = 5.0, []
-    whole = PiecesJob(pieces(), 4)
-    run_through(whole)
-    assert whole.result == "all" and done[-1] == "made"
-
-
-def test_work_in_pieces_does_as_many_as_its_budget_has_time_for():
-    clock, done = Clock(), []
-
-    def pieces():
-        for k in range(5):
-            clock.now += 0.1
-            done.append(k)
-            yield
-
-    work = PiecesJob(pieces(), 5, clock=clock)
-    assert not work.step(0.25) and done == [0, 1, 2]
-    assert work.step(1.0) and work.fraction == 1.0
-
-
-def test_work_in_pieces_that_is_cancelled_ends_where_it_is():
-    ended, task = [], Task(Clock(), 1.0, "made")
-
-    def pieces():
-        try:
-            yield
-            yield task
-        finally:
-            ended.append(True)
-
-    work = PiecesJob(pieces(), 3)
-    while not work.in_background:
-        work.step(0.0)
-    work.cancel()
-    assert ended and task.cancelled
-
-
 class Making:
     """A task that is done when it is asked for the n-th time."""
 
@@ -333,3 +278,60 @@ def test_a_call_on_a_thread_is_a_task():
 
     with pytest.raises(ValueError, match="flat"):
         run_through(TaskJob(ThreadTask(fails)))
+
+
+def test_work_in_pieces_goes_on_where_it_was_and_gets_what_its_task_has_made():
+    done, clock = [], Clock()
+
+    def pieces():
+        done.append("a")
+        yield
+        done.append("b")
+        yield
+        done.append((yield Task(clock, 1.0, "made")))
+        return "all"
+
+    work = PiecesJob(pieces(), 4, clock=clock)
+    assert not work.step(0.0) and done == ["a"] and not work.in_background and work.fraction == 0.25
+    assert not work.step(0.0) and done == ["a", "b"]
+    assert (
+        not work.step(0.0) and work.in_background and work.fraction == 0.75
+    )  # a window's tick only looks from here on
+    assert not work.step(0.0) and done == ["a", "b"]
+    clock.now = 1.0
+    assert work.step(0.0) and done == ["a", "b", "made"] and work.result == "all" and not work.in_background
+    clock.now, done = 5.0, []
+    whole = PiecesJob(pieces(), 4)
+    run_through(whole)
+    assert whole.result == "all" and done[-1] == "made"
+
+
+def test_work_in_pieces_does_as_many_as_its_budget_has_time_for():
+    clock, done = Clock(), []
+
+    def pieces():
+        for k in range(5):
+            clock.now += 0.1
+            done.append(k)
+            yield
+
+    work = PiecesJob(pieces(), 5, clock=clock)
+    assert not work.step(0.25) and done == [0, 1, 2]
+    assert work.step(1.0) and work.fraction == 1.0
+
+
+def test_work_in_pieces_that_is_cancelled_ends_where_it_is():
+    ended, task = [], Task(Clock(), 1.0, "made")
+
+    def pieces():
+        try:
+            yield
+            yield task
+        finally:
+            ended.append(True)
+
+    work = PiecesJob(pieces(), 3)
+    while not work.in_background:
+        work.step(0.0)
+    work.cancel()
+    assert ended and task.cancelled

@@ -114,9 +114,13 @@ def begin(screen, millimetres=True):
 
 def tool(screen, name):
     """Clicks a tool's button in the toolbar."""
-    yield from press(screen, "tool_set_by_id", f'"{name}"', region="TOOLS")
-    active = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
-    assert active.idname == name, active.idname
+    for _ in range(3):  # a busy window may miss a click
+        yield from press(screen, "tool_set_by_id", f'"{name}"', region="TOOLS")
+        yield 1.0
+        active = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
+        if active.idname == name:
+            return
+    raise AssertionError(f"{active.idname} instead of {name}")
 
 
 def pie(screen, name):
@@ -147,16 +151,18 @@ def event(screen, kind, value, at, **modifiers):
     screen.window.event_simulate(kind, value, x=int(at[0]), y=int(at[1]), **modifiers)
 
 
-def brushed(screen, ob, places, steps=6, hold="", **modifiers):
-    """A stroke with the left button through places (mm, the object's frame); `hold`: a picture before it ends."""
+def brushed(screen, ob, places, steps=6, hold="", together=1, **modifiers):
+    """A stroke with the left button through places (mm, the object's frame); `hold`: a picture before it ends;
+    `together`: so many moves of the mouse between two drawings of the window."""
     way = [pixel(screen, ob, p) for p in places]
     screen.move(*map(int, way[0]))
     yield 0.15
     event(screen, "LEFTMOUSE", "PRESS", way[0], **modifiers)
     yield 0.05
-    for a, b in itertools.pairwise(way):
-        for share in np.linspace(0, 1, steps + 1)[1:]:
-            screen.move(*map(int, a + share * (b - a)))
+    moves = [a + share * (b - a) for a, b in itertools.pairwise(way) for share in np.linspace(0, 1, steps + 1)[1:]]
+    for k, at in enumerate(moves, 1):
+        screen.move(*map(int, at))
+        if k % together == 0 or k == len(moves):
             yield 0.01
     if hold:
         yield 1.0
@@ -201,12 +207,35 @@ def block(screen, size, pitch=0.25):
     return bpy.context.object
 
 
+def aside(screen):
+    """Steps: what was in the middle of the view is in the middle of what the sidebar leaves of it."""
+    yield 0.5  # the matrix is of the last drawing
+    region, view = screen.region(), screen.area.spaces.active.region_3d
+    sight = module("core.sight").Sight(np.array(view.perspective_matrix), (region.width, region.height))
+    pixels = screen.region("UI").width / 2 / sight.pixels_per_unit(np.array(view.view_location))
+    view.view_location += pixels * view.view_rotation.to_matrix().col[0]
+    yield 0.3
+
+
 def activate(ob):
     """As a click on it in the outliner."""
     for other in bpy.context.view_layer.objects:
         other.select_set(False)
     ob.select_set(True)
     bpy.context.view_layer.objects.active = ob
+
+
+def hidden(screen, ob):
+    """Steps: a click on the eye beside a name in the outliner, of a scene with one collection."""
+    area = next(a for a in screen.window.screen.areas if a.type == "OUTLINER")
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    system = bpy.context.preferences.system
+    line = round(18 * system.ui_scale) + 2 * system.pixel_size
+    row = 2 + sorted(o.name.lower() for o in bpy.context.view_layer.objects).index(ob.name.lower())
+    screen.click(region.x + region.width - 2.05 * line, region.y + region.height - (row + 0.6) * line)
+    yield 0.5
+    assert ob.hide_get(), f"{ob.name}: the eye is not in row {row} of lines of {line}"
+    screen.to_view()
 
 
 def interpreted(path, rows):

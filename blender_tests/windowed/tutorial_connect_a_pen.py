@@ -1,5 +1,6 @@
 """docs/connect-a-pen.md: preferences with limits and doctor, then a session with the simulated pen, undo and Esc."""
 
+import time
 from pathlib import Path
 
 import bpy
@@ -10,6 +11,7 @@ import support
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 SIZE = (60.0, 60.0, 20.0)
+SEEN = 0.12  # N: an arrow that is longer than its head
 
 
 def steps(screen):
@@ -18,6 +20,7 @@ def steps(screen):
     yield from preferences(screen)
     name = lessons.block(screen, SIZE).name
     bpy.context.scene.riffler.tool.diameter = 8
+    yield from lessons.aside(screen)
     with screen.override():
         bpy.ops.ed.undo_push(message="Stock")
     yield from session(screen, name)
@@ -40,7 +43,7 @@ def preferences(screen):
     region = next(r for r in area.regions if r.type == "WINDOW")
     # Above lies the add-on's file, below are folders: of a computer, not of the page.
     top = area.y + area.height
-    yield from lessons.picture(screen, "connect-a-pen-1", (area.x + 172, top - 472, area.x + 1147, top - 254))
+    yield from lessons.picture(screen, "connect-a-pen-1", (area.x + 172, top - 463, area.x + 1147, top - 254))
     with bpy.context.temp_override(window=screen.window, area=area, region=region):
         assert bpy.ops.riffler.doctor("INVOKE_DEFAULT") == {"FINISHED"}
     report = bpy.data.texts["Riffler Doctor"].as_string()
@@ -50,6 +53,21 @@ def preferences(screen):
     yield 1.0
 
 
+def cutting():
+    """Steps: until the hand is in a stroke and feels it; a machine that keeps no time gets any stroke in the end."""
+    force, begin = support.part("drawing.force"), time.perf_counter()
+
+    def cuts():
+        session = support.part("bl.pen_session").running
+        if session is None:
+            return True
+        run, waited = session.run, time.perf_counter() - begin
+        felt = run.state == "active" and min(run.force, force._shown.size if force._shown else 0) > SEEN
+        return run.in_stroke and run.pose[2] < -1.5 and (felt or waited > 100)
+
+    yield cuts
+
+
 def session(screen, name):
     state, settings = bpy.context.window_manager.riffler, bpy.context.scene.riffler.pen
     settings.device, settings.removal_constant = "simulated", 0.02
@@ -57,15 +75,18 @@ def session(screen, name):
     yield from lessons.press(screen, "riffler.pen_sculpt")
     yield lambda: state.sculpting
     screen.to_view()
-    yield 5.0  # the simulated hand cuts for four seconds of eight
-    yield from lessons.picture(screen, "connect-a-pen-2", lessons.view_box(screen))
+    yield from cutting()
+    session = support.part("bl.pen_session").running
     assert state.sculpting and state.force, "the session was over before it could be looked at"
+    look, session.look = session.look, lambda: True  # the picture is of this moment
+    yield from lessons.picture(screen, "connect-a-pen-2", lessons.view_box(screen))
+    session.look = look
     screen.key("ESC")
     yield lambda: not state.sculpting
     yield 1.0
     removed = np.prod(SIZE) - lessons.volume(bpy.data.objects[name]).volume
     assert removed > 100, removed
-    screen.to_view()
+    screen.move(screen.area.x + 300, screen.area.y - 30)  # no cutter under the pointer
     yield from lessons.picture(screen, "connect-a-pen-3", lessons.view_box(screen))
     less = lessons.volume(bpy.data.objects[name]).volume
     screen.key("Z", ctrl=True)  # one stroke

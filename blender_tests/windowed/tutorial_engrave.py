@@ -30,13 +30,27 @@ def steps(screen):
 def written(screen):
     """A text becomes a curve."""
     with screen.override():
-        bpy.ops.object.text_add("INVOKE_DEFAULT", True)
-        text = bpy.context.object
-        text.data.body, text.data.size = "Riffler", 24
-        text.data.align_x, text.data.align_y = "CENTER", "CENTER"
-        bpy.ops.view3d.view_axis(type="TOP")
-    screen.area.spaces.active.region_3d.view_distance *= 0.6
+        bpy.ops.object.text_add("INVOKE_DEFAULT", True, radius=24)
+    text = bpy.context.object
+    assert text.data.body == "Text" and np.isclose(text.data.size, 24), (text.data.body, text.data.size)
+    screen.to_view()
     yield 0.5
+    for key in ("TAB", *["BACK_SPACE"] * 4):
+        screen.key(key)
+        yield 0.2
+    for letter in "Riffler":
+        for value in ("PRESS", "RELEASE"):
+            unicode = {"unicode": letter} if value == "PRESS" else {}
+            lessons.event(screen, letter.upper(), value, screen.at, **unicode)
+        yield 0.1
+    screen.key("TAB")
+    yield lambda: bpy.context.mode == "OBJECT"
+    assert text.data.body == "Riffler", text.data.body
+    text.data.align_x, text.data.align_y = "CENTER", "CENTER"
+    with screen.override():
+        bpy.ops.view3d.view_axis(type="TOP")
+    screen.area.spaces.active.region_3d.view_distance *= 0.75
+    yield from lessons.aside(screen)
     yield from lessons.picture(screen, "engrave-1", lessons.view_box(screen))
     with screen.override():
         bpy.ops.object.convert("EXEC_DEFAULT", True, target="CURVE")
@@ -52,8 +66,7 @@ def engraved(screen, stock, curve):
     yield 0.3
     yield from lessons.press(screen, "riffler.cut_curve")
     yield lambda: lessons.idle() and lessons.volume(stock).volume < np.prod(SIZE)
-    curve.hide_set(True)
-    screen.to_view()
+    yield from lessons.hidden(screen, curve)
     # a groove of the cone's section along all outlines; corners and crossings are cut once
     radius, half = 0.1, np.radians(30)
     section = np.tan(half) * (DEPTH + radius / np.sin(half) - radius) ** 2 - radius**2 * (
@@ -87,6 +100,7 @@ def replayed(screen, first, curve, recording):
         bpy.ops.view3d.view_orbit(type="ORBITDOWN", angle=0.5)
         first.select_set(False)
     screen.area.spaces.active.region_3d.view_distance *= 1.15
+    yield from lessons.aside(screen)
     screen.to_view()
     yield from lessons.picture(screen, "engrave-3", lessons.view_box(screen))
     path = support.out("name.stl")

@@ -1,4 +1,5 @@
-"""docs/pencil-cut.md: part, clamp, tool; path, keys by click and by dial; resolved, written, simulated, verified."""
+"""docs/pencil-cut.md: part, clamp, tool; path, keys by click, by dial and in the map; resolved, written, simulated,
+verified."""
 
 from pathlib import Path
 
@@ -12,40 +13,55 @@ HERE = Path(__file__)
 lessons = harness.load(HERE.with_name("lessons.py"))
 gizmo = harness.load(HERE.with_name("window_gizmo.py"))
 line = gizmo.line
+# Inclination and tilt at the key by the clamp, degrees: one of two that lean least, with which the clamp is hit further
+# on, and one that stays clear of it all the way.
+LEAST, CLEAR = (-30.0, 22.5), (0.0, 37.5)
 CENTRES = np.array([17.0, 11.0])  # y and z of the ball along the valley: 3 mm off wall and plate
 
 
 def steps(screen):
     yield from lessons.begin(screen)
-    part = made_part()
+    yield from higher_timeline(screen, 45)
+    part = made_part(screen)
+    clamp = cube(screen, "Clamp", (8, 4, 20), (10, 10, 24))
     stock = made_stock(screen, part)
-    clamp = cube("Clamp", (8, 4, 20), (10, 10, 24))
     with screen.override():
         bpy.ops.view3d.view_all()
-    screen.area.spaces.active.region_3d.view_rotation = gizmo.Vector((1.0, -0.5, 0.6)).to_track_quat("Z", "Y")
-    screen.area.spaces.active.region_3d.view_distance = 140
-    screen.area.spaces.active.region_3d.view_location = (30, 2, 24)
+    look(screen, (1.0, -0.5, 0.6), (30, 2, 24))
     yield from lessons.cut.open_tab(screen, "RIFFLER_PT_plan")
     yield from set_up(screen, part, clamp)
     ob = yield from searched(screen)
-    yield from keyed(screen, ob)
+    near = yield from keyed(screen, ob)
     yield from turned(screen)
+    yield from resolved(screen, ob)
+    yield from turned_again(screen, near)
     yield from to_code(screen, ob)
     yield from simulated(screen, stock)
     yield from verified(screen, stock)
 
 
-def cube(name, middle, size):
-    bpy.ops.mesh.primitive_cube_add(size=1, location=middle)
+def look(screen, direction, at):
+    """From a direction, with a place (mm) in the middle of the view."""
+    view = screen.area.spaces.active.region_3d
+    view.view_rotation = gizmo.Vector(direction).to_track_quat("Z", "Y")
+    view.view_distance, view.view_location = 140, at
+
+
+def cube(screen, name, middle, size):
+    """As the menu adds one; Dimensions and Location in the sidebar make it what it should be."""
+    with screen.override():
+        bpy.ops.mesh.primitive_cube_add("INVOKE_DEFAULT", True)
     ob = bpy.context.object
-    ob.name, ob.scale = name, size
+    assert np.allclose(ob.dimensions, 2000), ob.dimensions[:]
+    ob.name, ob.dimensions, ob.location = name, size, middle
+    bpy.context.view_layer.update()
     return ob
 
 
-def made_part():
+def made_part(screen):
     """A plate and a wall, joined: their inner edge is the valley."""
-    plate = cube("Part", (30, 20, 4), (60, 40, 8))
-    wall = cube("Wall", (30, 30, 13), (60, 20, 22))
+    plate = cube(screen, "Part", (30, 20, 4), (60, 40, 8))
+    wall = cube(screen, "Wall", (30, 30, 13), (60, 20, 22))
     wall.select_set(True)
     bpy.context.view_layer.objects.active = plate
     plate.select_set(True)
@@ -101,7 +117,8 @@ def searched(screen):
 
 
 def keyed(screen, ob):
-    """Ctrl-click near the far end, and then by the clamp, sets the free orientation that leans least."""
+    """Ctrl-click near the far end, and then by the clamp, sets the free orientation that leans least. The frame of the
+    latter."""
     bpy.context.scene.riffler.plan.feed = 600
     yield from lessons.press(screen, "riffler.plan_to_timeline")
     yield lambda: lessons.module("bl.timeline").pair(ob) is not None
@@ -117,9 +134,21 @@ def keyed(screen, ob):
         gizmo.press(screen, at, "RELEASE", ctrl=True)
         yield lambda count=count: len(line.indices()) == count + 1
         yield gizmo.quiet
+    alike = (LEAST, (-LEAST[1], -LEAST[0]))  # rounding decides
+    assert min(np.abs(gizmo.lean() - angles).max() for angles in alike) < 0.1, gizmo.lean()
+    yield from in_map(screen, LEAST)
     screen.to_view()
     yield 0.5
-    yield from lessons.picture(screen, "pencil-cut-3", lessons.view_box(screen))
+    yield from lessons.picture(screen, "pencil-cut-3", (0, 0, *lessons.view_box(screen)[2:]))
+    return line.key_frames()[line.indices().index(round(0.13 * last))]
+
+
+def higher_timeline(screen, pixels):
+    """Its upper edge is pulled, so that keys are seen."""
+    area = line.area(screen, "DOPESHEET_EDITOR")
+    before, x, y = area.height, area.x + area.width // 2, area.y + area.height
+    yield from screen.drag([(x, y), (x, y + pixels // 2), (x, y + pixels)], pause=0.3)
+    assert abs(area.height - before - pixels) < 9, (before, area.height)
 
 
 def lower(path):
@@ -146,15 +175,68 @@ def turned(screen):
     assert abs((gizmo.lean() - before)[1] - 15) < 1, (before, gizmo.lean())
 
 
-def to_code(screen, ob):
-    yield from lessons.press(screen, "riffler.plan_check")
-    yield lessons.idle
+def by_resolve(screen, ob):
     yield from lessons.press(screen, "riffler.plan_resolve")
     yield lambda: lessons.idle() and len(lessons.module("bl.plan_store").plan(ob).cl) > 0
     assert lessons.module("bl.plan_store").plan(ob).cl[0] is not None, "the paths still collide"
+
+
+def resolved(screen, ob):
+    """What would hit the clamp is lifted, and the list says so."""
+    yield from lessons.press(screen, "riffler.plan_check")
+    yield lessons.idle
+    yield from by_resolve(screen, ob)
+    kinds = [f.kind for f in ob.riffler.plan.findings]
+    assert "lifted" in kinds, kinds
+    view = screen.area.spaces.active.region_3d
+    before = view.view_location.copy(), view.view_distance
+    yield from lessons.press(screen, "riffler.finding_go", share=0.76)
+    assert ob.riffler.plan.findings[ob.riffler.plan.index].kind == "lifted"
+    yield gizmo.quiet
     screen.to_view()
     yield 0.5
     yield from lessons.picture(screen, "pencil-cut-5", (0, 0, *lessons.view_box(screen)[2:]))
+    view.view_location, view.view_distance = before  # the glass has moved it
+
+
+def turned_again(screen, frame):
+    """At the key by the clamp the map's cell of no inclination, and the tilt that goes by the clamp."""
+    scene = bpy.context.scene
+    for _ in range(len(line.key_frames())):
+        away = frame - scene.frame_current_final
+        if abs(away) < 0.01:
+            break
+        yield from lessons.press(screen, "riffler.plan_key_jump", share=0.08 if away < 0 else 0.79)
+    assert abs(frame - scene.frame_current_final) < 0.01, (frame, scene.frame_current_final)
+    yield gizmo.quiet
+    yield from in_map(screen, CLEAR)
+
+
+def in_map(screen, angles):
+    """A click on the cell of an inclination and a tilt (degrees) turns the key."""
+    looking, drawn = gizmo.module("bl.looking"), gizmo.module("drawing.cspace")
+    found, count = looking._known.map, len(line.indices())
+    steps = (np.degrees(found.inclinations), np.degrees(found.tilts))
+    cell = tuple(np.abs(s - angle).argmin() for s, angle in zip(steps, angles, strict=True))
+    with screen.override():
+        grid = drawn.grid_of(found, bpy.context.preferences.system.ui_scale)
+        x, y = drawn.corner(bpy.context, grid)
+    at, region = grid.place(*grid.angles_of(*cell)), screen.region()
+    screen.click(region.x + x + at[0], region.y + y + at[1])
+    yield lambda: np.abs(gizmo.axis() - found.axes[cell]).max() < 1e-9
+    yield gizmo.quiet
+    assert np.abs(gizmo.lean() - angles).max() < 0.1, gizmo.lean()
+    assert len(line.indices()) == count
+
+
+def to_code(screen, ob):
+    """Nothing is lifted any more."""
+    yield from by_resolve(screen, ob)
+    kinds = [f.kind for f in ob.riffler.plan.findings]
+    assert "lifted" not in kinds and "blocked" not in kinds, [f.name for f in ob.riffler.plan.findings]
+    screen.to_view()
+    yield 0.5
+    yield from lessons.picture(screen, "pencil-cut-6", (0, 0, *lessons.view_box(screen)[2:]))
     path = support.out("pencil.ngc")
     with screen.override():
         assert bpy.ops.riffler.plan_nc(filepath=path, post="linuxcnc-xyzac") == {"FINISHED"}
@@ -174,9 +256,10 @@ def simulated(screen, stock):
     yield lambda: not bpy.app.timers.is_registered(lessons.module("bl.simulating")._tick)
     whole = lessons.volume(stock).volume
     assert 5 < whole - now.prefix.volume.volume < 200
+    look(screen, (-0.9, -0.9, 0.9), (33, 10, 22))  # the tool does not hide what it has cut
     screen.to_view()
     yield 1.0
-    yield from lessons.picture(screen, "pencil-cut-6", (0, 0, *lessons.view_box(screen)[2:]))
+    yield from lessons.picture(screen, "pencil-cut-7", (0, 0, *lessons.view_box(screen)[2:]))
     screen.key("ESC")
     yield lambda: lessons.module("bl.simulating").active() is None
 
@@ -184,10 +267,11 @@ def simulated(screen, stock):
 def verified(screen, stock):
     settings = bpy.context.scene.riffler.verify
     settings.coloured = "LEFT"
+    bpy.data.objects["Riffler Tool"].hide_set(True)
     yield from lessons.press(screen, "riffler.verify")
     yield lambda: lessons.idle() and settings.said != ""
     kinds = [f.kind for f in settings.findings]
     assert "gouge" not in kinds, settings.said
     screen.to_view()
     yield 1.0
-    yield from lessons.picture(screen, "pencil-cut-7", lessons.view_box(screen))
+    yield from lessons.picture(screen, "pencil-cut-8", lessons.view_box(screen))

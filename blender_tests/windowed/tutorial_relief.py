@@ -42,9 +42,11 @@ def steps(screen):
     lessons.only_open("RIFFLER_PT_clay", "RIFFLER_PT_mask", "RIFFLER_PT_relief", "RIFFLER_PT_sculpt")
     yield from lessons.begin(screen, millimetres=False)
     ob = lessons.block(screen, (SIDE, SIDE, DEEP))
+    yield from lessons.aside(screen)
     yield from embossed(screen, ob)
     yield from smoothed(screen, ob)
     yield from masked(screen, ob)
+    assert 0 < len(support.content(ob).cuts) <= 64  # the dimples: all that NC code would have
     path = support.out("relief.stl")
     with screen.override():
         assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
@@ -67,8 +69,7 @@ def embossed(screen, ob):
     yield from lessons.picture(screen, "relief-1", lessons.view_box(screen))
     yield from lessons.press(screen, "riffler.relief")
     yield lambda: lessons.volume(ob).volume < SIDE * SIDE * DEEP
-    screen.to_view()
-    bpy.data.objects["Place"].hide_set(True)
+    yield from lessons.hidden(screen, bpy.data.objects["Place"])
     removed = SIDE * SIDE * DEEP - lessons.volume(ob).volume
     exact = DEPTH * WIDTH**2 * (1 - heights.mean())
     assert abs(removed / exact - 1) < 0.02, (removed, exact)
@@ -104,7 +105,7 @@ def masked(screen, ob):
     yield lambda: ob.visible_get()
     yield from lessons.press(screen, "riffler.mask_form", share=0.25)
     yield lambda: lessons.module("bl.store").content(ob.data).mask is not None
-    circle.hide_set(True)
+    yield from lessons.hidden(screen, circle)
     yield 0.5
     mask = lessons.module("bl.store").content(ob.data).mask
     assert mask is not None and abs(mask.volume / (np.pi * 25**2 * DEEP) - 1) < 0.02

@@ -102,6 +102,8 @@ def of_the_page(screen):
 
     view = screen.area.spaces.active.region_3d
     view.view_distance *= 1.25
+    at = view.view_location.copy()
+    yield from lessons.aside(screen)
     yield cuts
     assert sculpting(), "the session was over before it could be looked at"
     look, session().look = session().look, lambda: True
@@ -109,6 +111,7 @@ def of_the_page(screen):
     yield from lessons.picture(screen, "session", lessons.view_box(screen))
     session().look = look
     view.view_distance /= 1.25
+    view.view_location = at
 
 
 def steps(screen):

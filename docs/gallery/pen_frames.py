@@ -77,6 +77,7 @@ def above(axis, both: dict[str, Arm]) -> None:
     axis.annotate("", (45, 0), (0, 0), arrowprops={"arrowstyle": "->"})
     axis.annotate("x", (47, -3))
     axis.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", title="From above")
+    axis.margins(x=0.12)  # the ends' names are within
 
 
 def space(axis, both: dict[str, Arm], pose: np.ndarray) -> None:
@@ -88,12 +89,13 @@ def space(axis, both: dict[str, Arm], pose: np.ndarray) -> None:
     axis.plot(*grip.T, "-", color="black", lw=4)
     pivot, along = pose[:3], pose[3:]
     axis.quiver(*pivot, *(90 * along), color="black", arrow_length_ratio=0.15)
-    axis.text(*(pivot + 95 * along), "pose's axis")
+    axis.text(*(pivot + 95 * along), "pose's axis  ", ha="right")
     axis.text(*(pivot + np.array([10, 0, -14])), "r_G")
     for direction, letter in zip(50 * np.eye(3), "xyz", strict=True):
         axis.quiver(0, 0, 0, *direction, color="gray")
         axis.text(*(1.15 * direction), letter, color="gray")
     axis.set(title="Base frame, grip and pose", xlabel="x", ylabel="y", zlabel="z")
+    axis.set(xticks=(0, 100, 200), yticks=(-50, 0, 50), zticks=(-150, -100, -50, 0))
     axis.set_aspect("equal")
     axis.view_init(22, -52)
 

@@ -36,9 +36,7 @@ def entries(data: Data) -> Figure:
         axis.set_ylabel("deepest entry  mm")
     for axis in axes[-1]:
         axis.set_xlabel("along the paths, one after the other  mm")
-    axes[0, 0].annotate("nothing, or less", (0.99, LEAST), xycoords=("axes fraction", "data"), xytext=(0, 2),
-                        textcoords="offset points", ha="right", fontsize=7, color="#777777")  # fmt: skip
-    title(figure, data, "Part and vise in cutter, shank or holder, by the independent judge")
+    title(figure, data, "Part and vise in cutter, shank or holder, by the independent judge (lowest: nothing, or less)")
     low = 0.35 / figure.get_figheight()
     figure.tight_layout(rect=(0, low, 1, 0.98))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower right", ncols=2, bbox_to_anchor=(1.0, 0.0))

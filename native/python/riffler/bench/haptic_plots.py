@@ -44,7 +44,9 @@ def rendered(data: Data) -> Figure | None:
         for row, a, b in zip(table, x, y, strict=True):
             words = row["scheme"].split(", ")
             text = words[0] if k == 2 else words[-1].replace("budget ", "").replace(" parts", "").replace(" part", "")
-            right.annotate(text, (a, b), xytext=(4, 4), textcoords="offset points", fontsize=7.5, color=INK)
+            right.annotate(
+                text, (a, b), xytext=(4, -11 if k == 1 else 4), textcoords="offset points", fontsize=7.5, color=INK
+            )
     right.set(xlabel="mean processor time of a step  µs", ylabel="error of the force, RMS  % of the largest")
     logarithmic(right.xaxis, sub=True)
     logarithmic(right.yaxis, sub=True)

@@ -159,8 +159,8 @@ def single(data: Data) -> Figure | None:
     right.set_xlabel("largest error ÷ tolerance, all tolerances")
     logarithmic(right.xaxis)
     right.set_yticks(range(len(motions)), motions)
-    right.annotate("allowed", (1, 1), xycoords=("data", "axes fraction"), rotation=90, va="top", ha="right",
-                   fontsize=8, color=TARGET, xytext=(-2, -2), textcoords="offset points")  # fmt: skip
+    right.annotate("allowed", (1, 1), xycoords=("data", "axes fraction"), va="bottom", ha="center", fontsize=8,
+                   color=TARGET, xytext=(0, 2), textcoords="offset points")  # fmt: skip
     title(figure, data, f"Single rotations (h = {table[0]['pitch']:g} mm)")
     figure.tight_layout(rect=(0, 0.06, 1, 0.97))
     return figure
@@ -326,11 +326,13 @@ def mesh(data: Data) -> Figure:
         at = start["max_mm" if power == 1 else "rms_mm"] * (h / h[-1]) ** power
         left.plot(h, at, line, color="#777777", linewidth=1, label=f"order {power}")
     timed = [row for row in rows(data, "b200") if row.get("threads") == "1"]
-    for engine, (colour, mark) in colours(values(timed, "engine")).items():
+    beside = ((3, 3, "left"), (-3, -9, "right"), (3, -9, "left"), (-3, 3, "right"))  # lines lie on each other
+    for k, (engine, (colour, mark)) in enumerate(colours(values(timed, "engine")).items()):
+        *off, side = beside[k % len(beside)]
         mine = pick(timed, engine=engine)
         right.plot(column(mine, "cpu_s"), column(mine, "rms_mm"), f"-{mark}", color=colour, label=engine)
         for row in mine:
-            right.annotate(f"{row['pitch']:g}", (row["cpu_s"], row["rms_mm"]), xytext=(3, 3),
+            right.annotate(f"{row['pitch']:g}", (row["cpu_s"], row["rms_mm"]), xytext=off, ha=side,
                            textcoords="offset points", fontsize=6.5, color=colour)  # fmt: skip
     left.set(xlabel="pitch  mm", ylabel="distance of vertices from the exact surface  mm")
     right.set(xlabel="processor time of the mesh  s", ylabel="RMS distance of vertices from the exact surface  mm")

@@ -58,7 +58,7 @@ def steps(axis: object, spent: np.ndarray) -> None:
     spent = np.sort(spent[spent > 0])
     if len(spent):
         axis.plot(spent, 100 * (1 - np.arange(len(spent)) / len(spent)), color=COLOURS[4])
-    logarithmic(axis.xaxis, sub=True)
+    logarithmic(axis.xaxis, sub=len(spent) > 0 and spent[-1] < 100 * spent[0])  # the axis is short
     logarithmic(axis.yaxis)
     axis.set(xlabel="processor's time of a step  µs", ylabel="of the steps took longer  %")
 
