@@ -24,13 +24,14 @@ ADDON = "riffler_addon"
 # Topic → its operators. Every registered one stands in exactly one, which `page` checks.
 TOPICS = {
     "Stock and tools": ["new_stock", "fit_pitch", "rebuild", "millimetres", "tool_preset"],
-    "Sculpting": ["stroke", "cut_curve", "cut_recording"],
-    "Clay": ["resample", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"],
+    "Sculpting": ["stroke", "frame", "leave", "cut_curve", "cut_recording"],
+    "Clay": ["resample", "room", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"],
     "Devices": ["pen_sculpt", "pen_stop", "pen_home", "pen_reset"],
     "Meshes and files": ["to_mesh", "show_deviation", "hide_deviation", "export_stl", "export_3mf", "export_nc",
                          "export_recording"],
     "Recovery and reports": ["recover", "discard_journal", "dismiss", "doctor"],
     "Plans": ["plan_part", "plan_fixtures_add", "plan_fixtures_remove", "plan_tool", "plan_tool_open", "plan_tool_save",
+              "plan_use_tool",
               "plan_assembly", "plan_find", "plan_show"],
     "Orientations": ["plan_to_timeline", "plan_key", "plan_key_delete", "plan_key_jump", "plan_least_tilt",
                      "plan_check", "plan_point", "plan_point_key", "plan_turn"],

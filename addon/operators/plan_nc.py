@@ -80,10 +80,10 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
         free = [report for _, report in found if report.ok]
-        self._tell(ob, blocked, locating.left(free, plan.tolerance or 0.01))
+        self._say(ob, blocked, locating.left(free, plan.tolerance or 0.01))
         return {"FINISHED"}
 
-    def _tell(self, ob, blocked, left):
+    def _say(self, ob, blocked, left):
         count, played = names.format_count(len(self._paths)), timeline.pair(ob) is not None
         notes = [*self._notes, *(plan_states.state(ob).problems if played else [])]
         if blocked:

@@ -14,6 +14,18 @@ def progress():
     return bpy.context.window_manager.riffler
 
 
+def test_no_operator_takes_the_shell_s_own_functions_for_others():
+    """Without a window those of the shell are not called, so that nothing else would tell."""
+    shell = support.part("operators.long").LongWork
+    own = {name for name, value in vars(shell).items() if name.startswith("_") and callable(value)} - set(vars(object))
+    assert {"_tell", "_end"} <= own
+    for module in support.part("registration").modules():
+        for cls in module.CLASSES:
+            if issubclass(cls, shell):
+                taken = [name for name in own if getattr(cls, name) is not getattr(shell, name)]
+                assert not taken, (cls.__name__, taken)
+
+
 def test_a_script_gets_the_finished_work():
     with work.Stage() as stage:
         stage.task = work.Task(looks=30)
