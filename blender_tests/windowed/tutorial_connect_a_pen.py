@@ -63,7 +63,7 @@ def cutting():
             return True
         run, waited = session.run, time.perf_counter() - begin
         felt = run.state == "active" and min(run.force, force._shown.size if force._shown else 0) > SEEN
-        return run.in_stroke and run.pose[2] < -1.5 and (felt or waited > 100)
+        return run.in_stroke and run.pose[2] < -2.5 and (felt or waited > 100)
 
     yield cuts
 
