@@ -68,12 +68,12 @@ def list_anew():
 
 
 def on_timeline():
-    """All plans that are. Objects are looked through only when there are more or fewer of them than before."""
+    """All plans that are, in a scene. Objects are looked through only where there are more or fewer than before."""
     global _known
     if len(bpy.data.objects) != _known[0] or any(_pair_of(key) is None for key in _known[1]):
         found = [sculpts.key_of(ob) for ob in bpy.data.objects if timeline.TOOL in ob and timeline.pair(ob)]
         _known = (len(bpy.data.objects), tuple(found))
-    return [bpy.data.objects[key] for key in _known[1]]
+    return [ob for ob in map(bpy.data.objects.get, _known[1]) if timeline.placed(ob)]
 
 
 def _pair_of(key):

@@ -24,6 +24,7 @@ ROTATION, LOCATION = "rotation_quaternion", "location"
 # The tool's constraints: they let go of it while somebody turns it, the place only where the add-on does.
 PLACE, TURN = "Riffler: place", "Riffler: orientation"
 CONSTANT, LINEAR = 0, 1
+SCALED = 1e-4
 TURNED = 1e-5  # of a quaternion's components: what single precision does not do by itself
 
 
@@ -47,6 +48,23 @@ def plan_of(ob):
     return plan_ob if found and found[0] == ob else None
 
 
+def placed(ob):
+    """True where the object is in a scene: one that was deleted stays in the file as long as its plan points to it."""
+    named = [scene.objects.get(ob.name) for scene in bpy.data.scenes]
+    if ob in named or not any(named):
+        return ob in named
+    return any(ob in scene.objects[:] for scene in bpy.data.scenes)  # a linked one of that name is before it
+
+
+def faults(tool):
+    """What keeps a plan's tool from being seen as it is, with the remedy."""
+    if not placed(tool):
+        return [f"{tool.name} was deleted: use Plan to Timeline to have it again"]
+    if max(abs(size - 1) for size in tool.matrix_world.to_scale()) > SCALED:
+        return [f"{tool.name} is scaled, and is not as large as it is shown: use Object > Clear > Scale"]
+    return []
+
+
 def make(context, plan_ob, tool):
     """The objects of a plan with a riffler.Tool, made where they are missing, the tool's shape in any case."""
     home = plan_ob.users_collection[0] if plan_ob.users_collection else context.collection
@@ -60,6 +78,7 @@ def make(context, plan_ob, tool):
     for ob in (shown, ghost):
         if not ob.users_collection:  # new, or deleted: the plan keeps what it refers to
             home.objects.link(ob)
+    shown.lock_scale = (True, True, True)
     shown.rotation_mode = ghost.rotation_mode = "QUATERNION"
     _follow(shown, ghost)
     vertices, triangles = pen.solid(tool.outline())

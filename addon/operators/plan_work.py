@@ -37,8 +37,9 @@ def part_poll(cls, context):
 def tell(operator, ob):
     """How the plan plays now, or what is wrong with it."""
     now = plan_states.state(ob)
-    if now.problems:
-        operator.report({"WARNING"}, "; ".join(now.problems))
+    problems = timeline.faults(timeline.pair(ob)[0]) + now.problems
+    if problems:
+        operator.report({"WARNING"}, "; ".join(problems))
     elif not now.difference.small:
         operator.report({"WARNING"}, str(now.difference))
     else:

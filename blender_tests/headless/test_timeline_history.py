@@ -201,6 +201,27 @@ def test_a_copy_of_the_tool_is_nobody_s_and_a_deleted_tool_is_made_again():
     assert pair(ob)[1] == ghost and close(seen(ob, 73)[1], np.array((0, -0.3, 1)) / np.sqrt(1.09))
 
 
+def test_a_tool_that_is_deleted_or_scaled_is_said_and_a_plan_that_is_deleted_is_on_no_timeline():
+    ob = plans.on_timeline()
+    tool, timeline = pair(ob)[0], support.part("bl.timeline")
+    assert tuple(tool.lock_scale) == (True, True, True) and timeline.faults(tool) == []
+    tool.scale = (2, 2, 2)
+    update()
+    assert "is scaled" in timeline.faults(tool)[0]
+    tool.scale = (1, 1, 1)
+    support.select(tool)
+    bpy.ops.object.delete()
+    update()
+    assert pair(ob) is not None and "was deleted: use Plan to Timeline" in timeline.faults(tool)[0]
+    support.select(ob)
+    bpy.ops.riffler.plan_to_timeline()
+    update()
+    assert timeline.faults(tool) == [] and support.part("bl.plan_states").on_timeline() == [ob]
+    support.select(ob)
+    bpy.ops.object.delete()
+    assert support.part("bl.plan_states").on_timeline() == []
+
+
 def duplicated(*objects):
     """What Shift D makes of the first of them, with the others."""
     bpy.ops.object.select_all(action="DESELECT")
