@@ -23,6 +23,7 @@ NOT_SHIPPED = {"package.py", "ruff.toml"}
 # Folder of the legacy add-on. It is imported by this name, so it cannot be `riffler`, the native package's.
 LEGACY_NAME = "riffler_addon"
 LEGACY_PYTHON = (3, 11)
+FIXED = (2020, 1, 1, 0, 0, 0)  # the time of all entries
 # The pipeline's names for what a wheel's platform tag begins with.
 PLATFORMS = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm64"}
 
@@ -94,11 +95,16 @@ def check_choice(wheels: list[Path]) -> None:
             raise ValueError(f"{wheel.name} and {other.name} are for the same Python and system")
 
 
-def write_zip(path: Path, entries: dict[str, bytes]) -> None:
+def write_zip(path: Path, entries: dict[str, bytes], folder: str = "") -> None:
+    """`folder`: one that gets an entry of its own, before all others."""
     part = path.with_suffix(".part")
     with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
+        if folder:
+            info = zipfile.ZipInfo(f"{folder}/", FIXED)
+            info.external_attr = 0o40755 << 16 | 0x10
+            archive.writestr(info, b"")
         for name in sorted(entries):
-            info = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
+            info = zipfile.ZipInfo(name, FIXED)
             info.compress_type = zipfile.ZIP_STORED if name.endswith(".whl") else zipfile.ZIP_DEFLATED
             info.external_attr = 0o644 << 16
             archive.writestr(info, entries[name])
@@ -124,7 +130,9 @@ def build_legacy(wheel: Path, out: Path) -> Path:
             if name.startswith(("riffler/", "riffler.libs/")) and not name.endswith("/"):
                 entries[f"_vendor/{name}"] = archive.read(name)
     path = out / f"riffler-{version()}-legacy.zip"
-    write_zip(path, {f"{LEGACY_NAME}/{name}": data for name, data in entries.items()})
+    # Blender removes what it had before where an entry of the zip names it. Otherwise it writes into the file of the core
+    # that is running, and crashes.
+    write_zip(path, {f"{LEGACY_NAME}/{name}": data for name, data in entries.items()}, folder=LEGACY_NAME)
     return path
 
 

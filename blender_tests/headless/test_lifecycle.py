@@ -106,6 +106,15 @@ def test_whatever_is_left_behind_is_noticed():
         assert any(line.startswith(kind) for line in more), (kind, more)
 
 
+def test_it_is_installed_over_itself():
+    """As an update is, while the core is in use: whoever writes into its file lets Blender crash in the next call."""
+    import harness
+
+    for _ in range(2):
+        assert harness.install() == support.MODULE
+        support.content(support.stock()).volume.to_bytes()
+
+
 def test_a_sculpt_outlives_a_disabled_addon():
     ob = support.stock()
     name, before = ob.name, support.shape(support.content(ob).volume)
