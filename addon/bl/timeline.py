@@ -21,6 +21,7 @@ TOOL, MOTION, PLAN = "riffler_tool", "riffler_motion", "riffler_plan"
 # Of the tool: how time is laid out, and for which paths.
 RATE, FIRST, PATHS = "riffler_frames_per_mm", "riffler_first_frame", "riffler_paths"
 ROTATION, LOCATION = "rotation_quaternion", "location"
+UNIT = "riffler_mm_per_unit"  # of the tool: the scene's, when it was made
 # The tool's constraints: they let go of it while somebody turns it, the place only where the add-on does.
 PLACE, TURN = "Riffler: place", "Riffler: orientation"
 CONSTANT, LINEAR = 0, 1
@@ -56,12 +57,15 @@ def placed(ob):
     return any(ob in scene.objects[:] for scene in bpy.data.scenes)  # a linked one of that name is before it
 
 
-def faults(tool):
+def faults(tool, scene):
     """What keeps a plan's tool from being seen as it is, with the remedy."""
     if not placed(tool):
         return [f"{tool.name} was deleted: use Plan to Timeline to have it again"]
     if max(abs(size - 1) for size in tool.matrix_world.to_scale()) > SCALED:
         return [f"{tool.name} is scaled, and is not as large as it is shown: use Object > Clear > Scale"]
+    mm = units.mm_per_unit(scene)
+    if tool.get(UNIT, mm) != mm:
+        return [f"The scene's unit has changed: use Plan to Timeline, so that {tool.name} is seen as it is"]
     return []
 
 
@@ -83,6 +87,7 @@ def make(context, plan_ob, tool):
     _follow(shown, ghost)
     vertices, triangles = pen.solid(tool.outline())
     meshes.fill(shown.data, vertices / units.mm_per_unit(context.scene), triangles)
+    shown[UNIT] = units.mm_per_unit(context.scene)
     shown[PLAN] = ghost[PLAN] = plan_ob
     plan_ob[TOOL], plan_ob[MOTION] = shown, ghost
     return shown, ghost

@@ -37,7 +37,7 @@ def part_poll(cls, context):
 def tell(operator, ob):
     """How the plan plays now, or what is wrong with it."""
     now = plan_states.state(ob)
-    problems = timeline.faults(timeline.pair(ob)[0]) + now.problems
+    problems = timeline.faults(timeline.pair(ob)[0], plan_states.scene_of(ob)) + now.problems
     if problems:
         operator.report({"WARNING"}, "; ".join(problems))
     elif not now.difference.small:

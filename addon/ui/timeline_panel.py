@@ -27,7 +27,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
             plan_least_tilt.RIFFLER_OT_plan_least_tilt.bl_idname, "paths", icon="KEYTYPE_KEYFRAME_VEC"
         )
         now = plan_states.state(ob)
-        for problem in (*timeline.faults(timeline.pair(ob)[0]), *now.problems):
+        for problem in (*timeline.faults(timeline.pair(ob)[0], context.scene), *now.problems):
             lines(layout, *wrapped(context, problem), icon="ERROR")
         if now.motions:
             icon = "CHECKMARK" if now.difference.small else "ERROR"

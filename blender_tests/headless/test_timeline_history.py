@@ -203,20 +203,28 @@ def test_a_copy_of_the_tool_is_nobody_s_and_a_deleted_tool_is_made_again():
 
 def test_a_tool_that_is_deleted_or_scaled_is_said_and_a_plan_that_is_deleted_is_on_no_timeline():
     ob = plans.on_timeline()
-    tool, timeline = pair(ob)[0], support.part("bl.timeline")
-    assert tuple(tool.lock_scale) == (True, True, True) and timeline.faults(tool) == []
+    tool = pair(ob)[0]
+
+    def faults(tool):
+        return support.part("bl.timeline").faults(tool, bpy.context.scene)
+
+    assert tuple(tool.lock_scale) == (True, True, True) and faults(tool) == []
     tool.scale = (2, 2, 2)
     update()
-    assert "is scaled" in timeline.faults(tool)[0]
+    assert "is scaled" in faults(tool)[0]
     tool.scale = (1, 1, 1)
+    update()
+    support.scale(1000.0)
+    assert "unit has changed" in faults(tool)[0]
+    support.scale(1.0)
     support.select(tool)
     bpy.ops.object.delete()
     update()
-    assert pair(ob) is not None and "was deleted: use Plan to Timeline" in timeline.faults(tool)[0]
+    assert pair(ob) is not None and "was deleted: use Plan to Timeline" in faults(tool)[0]
     support.select(ob)
     bpy.ops.riffler.plan_to_timeline()
     update()
-    assert timeline.faults(tool) == [] and support.part("bl.plan_states").on_timeline() == [ob]
+    assert faults(tool) == [] and support.part("bl.plan_states").on_timeline() == [ob]
     support.select(ob)
     bpy.ops.object.delete()
     assert support.part("bl.plan_states").on_timeline() == []
