@@ -225,6 +225,9 @@ def click_the_map(screen):
 
 
 def click_a_path(screen):
+    """From before the wall, as what it hides is not pointed at."""
+    line.area(screen, "VIEW_3D").spaces.active.region_3d.view_rotation = Vector((0.4, -0.8, 1)).to_track_quat("Z", "Y")
+    yield 0.5
     at = spot()
     place = at.line.contacts[8, 0]  # no handle is over it
     seen = module("drawing.paths").kept
