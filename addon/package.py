@@ -130,8 +130,8 @@ def build_legacy(wheel: Path, out: Path) -> Path:
             if name.startswith(("riffler/", "riffler.libs/")) and not name.endswith("/"):
                 entries[f"_vendor/{name}"] = archive.read(name)
     path = out / f"riffler-{version()}-legacy.zip"
-    # Blender removes what it had before where an entry of the zip names it. Otherwise it writes into the file of the core
-    # that is running, and crashes.
+    # Blender removes what it had before where an entry of the zip names it. Otherwise it writes into the file of the
+    # core that is running, and crashes.
     write_zip(path, {f"{LEGACY_NAME}/{name}": data for name, data in entries.items()}, folder=LEGACY_NAME)
     return path
 
