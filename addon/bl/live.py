@@ -6,8 +6,9 @@ import bpy
 
 from ..core.cache import Content
 from ..core.problems import said
-from . import chunks, events, keeping, leaving, sculpts, store, working
-from .working import Live, lives, snapshots
+from . import chunks, events, keeping, leaving, sculpts, states, store
+from .states import snapshots
+from .working import Live, lives
 
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
 _told = {}  # mark of a sculpt → what went wrong with it last
@@ -67,7 +68,7 @@ def _safely(mark, name, call, *args):
         text = f"{name}: {said(error)}"
         if _told.get(mark) != text:
             _told[mark] = text
-            working.tell(text)
+            states.tell(text)
         return None
     _told.pop(mark, None)
     return result
@@ -136,10 +137,10 @@ def _settle(ob):
     try:
         sculpts.refill(ob.data, sculpts.shown_mm_per_unit(ob.data))
     except ValueError as error:
-        working.tell(str(error))
+        states.tell(str(error))
         return
     if store.token(ob.data) != token:
-        working.tell(f"{ob.name} is as it was last packed: the strokes since are in its journal, if there is one")
+        states.tell(f"{ob.name} is as it was last packed: the strokes since are in its journal, if there is one")
 
 
 @bpy.app.handlers.persistent
@@ -167,7 +168,7 @@ def _revive(mark):
     what is packed."""
     ob = sculpts.marked(mark)
     if ob is not None:
-        state = working.state_of(ob)
+        state = states.state_of(ob)
         if state is not None:
             lives[mark] = Live.revived(ob, state)
             return

@@ -14,8 +14,8 @@ from pathlib import Path
 import bpy
 
 from ..core import journal, pen
-from . import live, working
-from .working import snapshots
+from . import live
+from .states import SPARE, snapshots
 
 LABEL = "Pen Stroke"
 
@@ -33,7 +33,7 @@ class PenSession:
         self.ended = False
         self.problem, self.count = "", 0  # what went wrong; strokes
         self._tool, self.mode = tool, options.get("mode", "remove")
-        self.run = pen.PenRun(device, tool, {**options, "undo": context.preferences.edit.undo_steps + working.SPARE})
+        self.run = pen.PenRun(device, tool, {**options, "undo": context.preferences.edit.undo_steps + SPARE})
         fresh = live.of(ob) is None
         self.live = None
         try:

@@ -14,7 +14,7 @@ import riffler
 from ..core import pen
 from ..core.prefix import Prefix
 from ..core.problems import said
-from . import chunks, events, plan_store, sculpts, timeline, working
+from . import chunks, events, plan_store, sculpts, states, timeline
 
 CLASSES = ()
 BUDGET, PAUSE = 0.02, 0.01  # s of carving, and between two lots of it
@@ -111,7 +111,7 @@ def drop_outdated():
         return False
     name = _now.name
     end()
-    working.tell(f"{name}: simulation ended: the plan has changed")
+    states.tell(f"{name}: simulation ended: the plan has changed")
     return True
 
 
@@ -141,7 +141,7 @@ def _lot(budget):
     except (ValueError, OSError, RuntimeError, MemoryError) as error:
         name = _now.name
         end()
-        working.tell(f"{name}: simulation stopped: {said(error)}")
+        states.tell(f"{name}: simulation stopped: {said(error)}")
         return True
 
 
@@ -163,7 +163,7 @@ def _before_render(*_):
         try:
             chunks.weigh(_now.object)
         except ValueError as error:
-            working.tell(str(error))
+            states.tell(str(error))
 
 
 _HANDLERS = {

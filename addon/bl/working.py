@@ -1,41 +1,31 @@
 """Sculpts that somebody works at: a volume that changes stroke by stroke, shown in chunks, each stroke one of Blender's
 own undo steps.
 
-A stroke ends with a new token on the object; the state it stands for is kept here (volumes share the tiles that did not
-change). Undo and redo bring back the token and the chunks' meshes, and `_after_undo` brings the volume. So a step costs
-what Blender takes for its objects, whatever the size of the sculpt. The sculpt's own mesh and the data in the file
-follow when they are needed: when the work ends, before the file is saved, when something else wants the sculpt. What
-happens to the work otherwise is in bl/keeping.py.
+A stroke ends with a new token on the object; the state it stands for is kept in memory (bl/states.py). Undo and redo
+bring back the token and the chunks' meshes, and `follow` brings the volume. So a step costs what Blender takes for its
+objects, whatever the size of the sculpt. The sculpt's own mesh and the data in the file follow when they are needed:
+when the work ends, before the file is saved, when something else wants the sculpt. What happens to the work otherwise is
+in bl/keeping.py.
 
 The work ends by itself once the artist has left (bl/leaving.py). A timer looks; nothing modal runs between strokes,
 since Blender makes no autosave while something does.
 """
 
 import uuid
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
 import riffler
 
 from ..core import blocks, symmetry
-from ..core.cache import Content, Snapshots
+from ..core.cache import Content
 from ..core.job import cuts_of
 from ..core.poses import moving
 from ..core.stages import Stages
 from . import chunks, keeping, leaving, parts, sculpts, store, versions
-
-SPARE = 2  # states beyond Blender's undo steps: the one that is shown, and the one before the first step
+from .states import SPARE, State, snapshots, state_of
 
 lives = {}  # by the mark of the object (sculpts.new_mark); bl/live.py keeps it
-snapshots = Snapshots()
-
-
-@dataclass
-class State:
-    content: Content
-    shape: tuple  # of the mesh's lattice of bricks
-    fillings: dict | None  # what the chunks showed; None: not known
 
 
 class Live:
@@ -409,22 +399,3 @@ def _copy(volume):
 
 def _revision(volume):
     return None if volume is None else volume.revision
-
-
-def state_of(ob):
-    """The state that the object's token names, or None. What memory does not have any more, a journal may tell."""
-    token = ob.riffler.token
-    state = snapshots.get(token)
-    if state is None and token:
-        content = keeping.told(token)
-        if content is not None:
-            tell(f"{ob.name}: the state was made again from its journal")
-            state = State(content, tuple(riffler.Mesher(content.volume).shape), None)
-            snapshots.put(token, state)
-    return state
-
-
-def tell(message):
-    """What nobody asked for has no report line: the panel shows it (ui/recover_panel.py)."""
-    print(f"Riffler: {message}")
-    bpy.context.window_manager.riffler.notice = message

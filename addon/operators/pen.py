@@ -10,7 +10,7 @@ import numpy as np
 import riffler
 
 from .. import properties
-from ..bl import chosen, events, fixtures, pen_session, sculpts, working
+from ..bl import chosen, events, fixtures, pen_session, sculpts, states
 from ..core import brush, problems
 from ..core import units as names
 from ..drawing import force, pace
@@ -216,7 +216,7 @@ def _look():
     except shared.ERRORS as error:
         session.fail(error)
     if session.problem:
-        working.tell(session.problem)
+        states.tell(session.problem)
     return None
 
 

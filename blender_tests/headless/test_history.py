@@ -231,14 +231,14 @@ def test_a_state_that_memory_lost_is_told_again_from_the_journal():
     steps = ((0, "remove"), (0, "add"), (2, "mask"), (1, "remove"), (3, "remove"), (3, "add"))
     states += [stroke(name, k, mode) for k, mode in steps]
     work(name)
-    support.part("bl.working").snapshots.clear()
+    support.part("bl.states").snapshots.clear()
     bpy.ops.ed.undo()
     assert current(name) == states[5]
     assert "journal" in bpy.context.window_manager.riffler.notice
     is_shown(name)
     assert live().of(bpy.data.objects[name]).mask.volume > 0
     # and without a journal, the sculpt is what the file has, which is said
-    support.part("bl.working").snapshots.clear()
+    support.part("bl.states").snapshots.clear()
     for begun in (*support.part("bl.keeping")._open, *support.part("bl.keeping")._parked):
         begun.whole = False
     bpy.ops.ed.undo()

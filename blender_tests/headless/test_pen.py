@@ -336,7 +336,7 @@ def test_a_state_that_memory_has_no_more_is_told_by_the_sessions_journal():
     hand = Hand(bpy.data.objects[NAME])
     states = [hand.stroke(y) for y in (10, 30, 50)]
     assert hand.session.run.session.journal_written(20.0)
-    snapshots = support.part("bl.working").snapshots
+    snapshots = support.part("bl.states").snapshots
     token = work().keeping.journal._tokens[1]
     del snapshots._items[token]
     bpy.ops.ed.undo()
