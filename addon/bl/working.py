@@ -4,8 +4,8 @@ own undo steps.
 A stroke ends with a new token on the object; the state it stands for is kept in memory (bl/states.py). Undo and redo
 bring back the token and the chunks' meshes, and `follow` brings the volume. So a step costs what Blender takes for its
 objects, whatever the size of the sculpt. The sculpt's own mesh and the data in the file follow when they are needed:
-when the work ends, before the file is saved, when something else wants the sculpt. What happens to the work otherwise is
-in bl/keeping.py.
+when the work ends, before the file is saved, when something else wants the sculpt. What happens to the work otherwise
+is in bl/keeping.py.
 
 The work ends by itself once the artist has left (bl/leaving.py). A timer looks; nothing modal runs between strokes,
 since Blender makes no autosave while something does.
