@@ -4,6 +4,8 @@ This module imports neither bpy nor the native core, so `addon.core` is importab
 load ends in a panel that says why rather than in a traceback.
 """
 
+import sys
+
 bl_info = {  # Blender before 4.2; later ones read blender_manifest.toml
     "name": "Riffler",
     "description": "Carve stock as if milling it, take STL and NC code away",
@@ -13,6 +15,17 @@ bl_info = {  # Blender before 4.2; later ones read blender_manifest.toml
     "location": "3D View > Sidebar > Riffler",
     "category": "Sculpt",
 }
+VERSION = ".".join(map(str, bl_info["version"]))  # before Blender puts the manifest's into bl_info
+
+
+def _forget_submodules():
+    """After an update, and for Reload Scripts, Blender reads this file anew, and would run it with the old rest."""
+    for name in [n for n in sys.modules if n.startswith(f"{__name__}.")]:
+        del sys.modules[name]
+        globals().pop(name.removeprefix(f"{__name__}."), None)  # where `from . import` looks first
+
+
+_forget_submodules()
 
 
 def register():

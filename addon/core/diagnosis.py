@@ -34,7 +34,10 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
     text = f"{type(error).__name__}: {error}"
     tag = "cp" + "".join(machine.python.split(".")[:2])
     steps = []
-    if "GLIBC" in text or "CXXABI" in text or "GLIBCXX" in text:
+    if "is in use, this add-on is" in text:
+        steps.append("Restart Blender: it holds the core of before the update.")
+        steps.append("If that does not help, another riffler comes first on Python's path: remove it.")
+    elif "GLIBC" in text or "CXXABI" in text or "GLIBCXX" in text:
         steps.append("The system's C library is older than the package needs: update the system, or build from source.")
     elif "numpy" in text:
         steps.append("numpy is missing or too old in this Python: install Blender from blender.org, which carries it.")

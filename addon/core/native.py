@@ -6,6 +6,8 @@ import importlib
 import sys
 from pathlib import Path
 
+from .. import VERSION
+
 # Names of the native package that the add-on uses: an older riffler on the path would otherwise fail in mid-work.
 NEEDED = ("Tool", "Volume", "Mesh", "Program", "Journal", "Session", "Mesher", "Material", "Task")
 
@@ -23,12 +25,28 @@ def load():
         sys.path.insert(0, str(folder))
     try:
         module = importlib.import_module("riffler")
-        missing = [name for name in NEEDED if not hasattr(module, name)]
-        if missing:
-            where = getattr(module, "__file__", None) or list(getattr(module, "__path__", []))
-            raise ImportError(f"the package riffler at {where} lacks {', '.join(missing)}")
+        _check(module)
     except Exception as error:  # a broken binary may raise anything; the panel shows it
-        for name in [n for n in sys.modules if n == "riffler" or n.startswith("riffler.")]:
-            del sys.modules[name]
+        _forget()
         return None, error
     return module, None
+
+
+def _check(module):
+    """ImportError where that is not the core this add-on was made with: an update in a running Blender brings the
+    add-on, and the old core stays."""
+    where = getattr(module, "__file__", None) or list(getattr(module, "__path__", []))
+    found = getattr(module, "__version__", VERSION)
+    if found != VERSION:
+        raise ImportError(f"riffler {found} is in use, this add-on is {VERSION}: {where}")
+    missing = [name for name in NEEDED if not hasattr(module, name)]
+    if missing:
+        raise ImportError(f"the package riffler at {where} lacks {', '.join(missing)}")
+
+
+def _forget():
+    """So that it is looked for again, unless its binary is loaded: no process bears a second one."""
+    if "riffler._core" in sys.modules:
+        return
+    for name in [n for n in sys.modules if n == "riffler" or n.startswith("riffler.")]:
+        del sys.modules[name]

@@ -1,5 +1,6 @@
 """Enabled, disabled and enabled again: nothing stays behind, nothing is missing."""
 
+import importlib
 import sys
 
 import bpy
@@ -104,6 +105,46 @@ def test_whatever_is_left_behind_is_noticed():
     kinds = ("class", "draw handler", "handler", "key", "menu", "preview collection", "property", "timer", "tool")
     for kind in kinds:
         assert any(line.startswith(kind) for line in more), (kind, more)
+
+
+def test_what_is_reloaded_is_other_code():
+    """After an update, and for Reload Scripts, Blender reads the add-on's __init__ anew: the rest has to be, too."""
+    disable()
+    with leftovers.Watch(support.MODULE) as watch:
+        enable()
+        first = watch.left()
+        seen = [support.part("operators.doctor").RIFFLER_OT_doctor]
+        for _ in range(3):
+            disable()
+            importlib.reload(sys.modules[support.MODULE])
+            enable()
+            seen.append(support.part("operators.doctor").RIFFLER_OT_doctor)
+            assert support.part("registration") is sys.modules[support.MODULE].registration
+            assert watch.left() == first and set(dir(bpy.ops.riffler)) == operators()
+        assert len(set(seen)) == 4
+        test_everything_is_registered()
+        disable()
+        assert watch.left() == []
+        enable()
+
+
+def test_an_update_that_finds_the_old_core_at_work_says_so():
+    import riffler
+
+    disable()
+    version, riffler.__version__ = riffler.__version__, "0.0.9"
+    try:
+        enable()
+        fallback = support.part("ui.fallback")
+        assert {n for n in dir(bpy.types) if n.startswith("RIFFLER_")} == {c.__name__ for c in fallback.CLASSES[:2]}
+        for words in (f"riffler 0.0.9 is in use, this add-on is {version}", "Restart Blender: it holds the core"):
+            assert words in fallback.text(), fallback.text()
+        disable()
+        assert sys.modules["riffler"] is riffler, "a second core would have been loaded"
+    finally:
+        riffler.__version__ = version
+        enable()
+    test_everything_is_registered()
 
 
 def test_it_is_installed_over_itself():
