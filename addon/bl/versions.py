@@ -1,10 +1,10 @@
 """Where Blender's versions differ: the only module that asks which one it runs in, or tries what is there.
 
-A function does one thing in this Blender's way, and says how the ways differ.
+A function does one thing in this Blender's way, and says how the ways differ. numpy is imported where it is used: the
+panel that says that it is missing needs this module.
 """
 
 import bpy
-import numpy as np
 
 from ..translations import CONTEXT, local
 
@@ -81,6 +81,8 @@ def read_positions(mesh, co):
 
 def write_triangles(mesh, tri):
     """`tri`: flat int32, the vertices of all corners of a mesh whose polygons are all triangles."""
+    import numpy as np
+
     faces = len(mesh.polygons)
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * faces, 3, dtype=np.int32))
     if not _SINCE_4_0:
@@ -93,6 +95,8 @@ def write_triangles(mesh, tri):
 
 def write_edges(mesh, ends, corners):
     """`ends`: flat int32, both vertices of all edges; `corners`: the edge that each corner of a polygon begins."""
+    import numpy as np
+
     if ".edge_verts" in mesh.attributes:
         mesh.attributes[".edge_verts"].data.foreach_set("value", ends)
         mesh.attributes[".corner_edge"].data.foreach_set("value", corners)
@@ -124,6 +128,8 @@ def lighten(mesh):
     while gives way to the corners of its box. Since then it costs nothing."""
     if _SINCE_4_0 or mesh.users > 1 or not mesh.polygons:
         return
+    import numpy as np
+
     co = np.empty((len(mesh.vertices), 3), np.float32)
     mesh.vertices.foreach_get("co", co.ravel())
     low, high = co.min(axis=0), co.max(axis=0)
@@ -139,7 +145,7 @@ def shade_by_angle(mesh, angle):
     if _SINCE_4_1:
         mesh.set_sharp_from_angle(angle=angle)
     else:
-        mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+        mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
         mesh.use_auto_smooth = True
         mesh.auto_smooth_angle = angle
 

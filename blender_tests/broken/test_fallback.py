@@ -52,8 +52,23 @@ def test_a_broken_binary():
     check("raise OSError('invalid ELF header')", "OSError: invalid ELF header")
 
 
+def test_numpy_is_missing():
+    """It is what the core and most of the add-on are made with; the panel does without."""
+    kept = {name: sys.modules.pop(name) for name in list(sys.modules) if name.partition(".")[0] == "numpy"}
+    sys.modules["numpy"] = None
+    try:
+        check("import numpy", "ModuleNotFoundError", "numpy is missing")
+    finally:
+        del sys.modules["numpy"]
+        sys.modules.update(kept)
+
+
 def test_another_package_of_that_name():
-    check("__version__ = '9'", "lacks Tool", "Another package named riffler")
+    check("x = 1", "lacks Tool", "Another package named riffler")
+
+
+def test_a_core_of_another_version():
+    check("__version__ = '9'", "riffler 9 is in use, this add-on is", "Restart Blender: it holds the core of before")
 
 
 def test_a_missing_package():
