@@ -21,8 +21,9 @@ class Key:
     space: str = "EMPTY"
 
     def is_of(self, item):
-        same = all(getattr(item.properties, name) == value for name, value in self.given.items())
-        return item.idname == self.operator and same
+        """Keys of others may be of operators that have nothing of such a name, or that are gone."""
+        given = self.given.items()
+        return item.idname == self.operator and all(getattr(item.properties, n, None) == v for n, v in given)
 
 
 def _menu(operator, menu, **event):

@@ -97,6 +97,28 @@ def pen_session(screen):
     return before
 
 
+def keys_of_others(screen):
+    """The list of keys finds ours beside the key of another add-on, which came first, and says where the user has removed
+    one."""
+    configurations = bpy.context.window_manager.keyconfigs
+    disable()
+    keymap = configurations.addon.keymaps.new("Object Mode")
+    other = keymap.keymap_items.new("object.select_all", "F13", "PRESS")
+    enable()
+    yield 1.0  # for the user's configuration to have both
+    keys = support.part("ui.keymaps")
+    found = list(keys.users())
+    assert [item and item.idname for _, item in found] == [key.operator for key in keys.KEYS], found
+    found[0][0].keymap_items.remove(found[0][1])
+    yield 0.5
+    found = [item and item.idname for _, item in keys.users()]
+    assert found == [None, *(key.operator for key in keys.KEYS[1:])], found
+    configurations.user.keymaps["Object Mode"].restore_to_default()
+    keymap.keymap_items.remove(other)
+    yield 0.5
+    assert None not in [item for _, item in keys.users()]
+
+
 def preferences(screen):
     """As they look, in the place of the 3D view."""
     if bpy.app.version >= (4, 2, 0):  # extensions are listed in another way there
@@ -126,6 +148,7 @@ def steps(screen):
         assert watch.left() == []
         enable()
         first = watch.left()
+        yield from keys_of_others(screen)
         yield from preferences(screen)
         yield from cut.open_tab(screen)
         with screen.override():
