@@ -5,7 +5,7 @@ import importlib
 from .core import native
 
 # A module has CLASSES, which may be empty, and may have attach(), called once they are registered, and detach(), called
-# before they are unregistered.
+# before they are unregistered, even where attach() has failed in the middle.
 MODULES = (
     "properties",
     "preferences",
@@ -114,7 +114,7 @@ def _take(module):
         _module("bl.versions").own_words(cls)
         bpy.utils.register_class(cls)
         _undo.append(lambda cls=cls: bpy.utils.unregister_class(cls))
+    if hasattr(module, "detach"):  # first: what fails in the middle leaves something to be taken back
+        _undo.append(module.detach)
     if hasattr(module, "attach"):
         module.attach()
-    if hasattr(module, "detach"):
-        _undo.append(module.detach)

@@ -195,12 +195,14 @@ def attach():
 
 
 def detach():
-    _end_safely()
-    _told.clear()
-    keeping.leave()
-    snapshots.clear()
+    events.ignore(HANDLERS)  # nobody listens any more, whatever comes of the work
     events.stop(_look)
-    events.ignore(HANDLERS)
+    try:
+        _end_safely()
+    finally:
+        _told.clear()
+        keeping.leave()
+        snapshots.clear()
 
 
 CLASSES = ()

@@ -181,5 +181,5 @@ def attach():
 
 
 def detach():
-    end()
     events.ignore(_HANDLERS)
+    end()

@@ -177,6 +177,8 @@ def _status(context, text):
 
 def detach():
     """Whatever runs is cancelled."""
-    if _running is not None:
-        _running.cancel(bpy.context)
-    events.stop(_redraw)
+    try:
+        if _running is not None:
+            _running.cancel(bpy.context)
+    finally:
+        events.stop(_redraw)  # which the end of the work has begun

@@ -331,8 +331,8 @@ class RIFFLER_OT_pen_reset(PenRuns, bpy.types.Operator):
 
 
 def detach():
-    pen_session.end()
     events.stop(_look)
+    pen_session.end()
 
 
 CLASSES = (RIFFLER_OT_pen_sculpt, RIFFLER_OT_pen_stop, RIFFLER_OT_pen_home, RIFFLER_OT_pen_reset)

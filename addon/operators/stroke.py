@@ -242,10 +242,12 @@ CLASSES = (RIFFLER_OT_stroke,)
 
 def detach():
     """A stroke that is being made is given up: Blender drops its operator without a word."""
-    if _held is not None:
-        _held._give_up(bpy.context)
-    force.end()
-    pace.end()
-    pointer.held = None
-    pointer.kept.clear()
-    force.kept.clear()
+    try:
+        if _held is not None:
+            _held._give_up(bpy.context)
+    finally:
+        force.end()
+        pace.end()
+        pointer.held = None
+        pointer.kept.clear()
+        force.kept.clear()

@@ -76,13 +76,15 @@ _OWNERS = (
     (bpy.types.Object, RifflerObject),
     (bpy.types.WindowManager, RifflerProgress),
 )
+_given = []  # those that have theirs
 
 
 def attach():
     for owner, group in _OWNERS:
         owner.riffler = PointerProperty(type=group)
+        _given.append(owner)
 
 
 def detach():
-    for owner, _ in _OWNERS:
-        del owner.riffler
+    while _given:
+        del _given.pop().riffler

@@ -48,9 +48,9 @@ def attach():
     for key in KEYS:
         keymap = configuration.keymaps.new(key.keymap, space_type=key.space)
         item = keymap.keymap_items.new(key.operator, value="PRESS", **key.event)
+        _made.append((keymap, item))
         for name, value in key.given.items():
             setattr(item.properties, name, value)
-        _made.append((keymap, item))
 
 
 def detach():

@@ -68,13 +68,16 @@ PLACES = (
     ("TOPBAR_MT_file_export", _export),
 )
 CLASSES = (RIFFLER_MT_object,)
+_drawn = []  # those of PLACES that Blender has
 
 
 def attach():
     for name, draw in PLACES:
         getattr(bpy.types, name).append(draw)
+        _drawn.append((name, draw))
 
 
 def detach():
-    for name, draw in PLACES:
+    while _drawn:
+        name, draw = _drawn.pop()
         getattr(bpy.types, name).remove(draw)

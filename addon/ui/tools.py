@@ -1,5 +1,6 @@
 """The tools in the 3D view's toolbar: what each one's buttons and keys do, its cursor and its header."""
 
+import itertools
 from pathlib import Path
 
 import bpy
@@ -81,6 +82,7 @@ TOOLS = (
     _tool("mask", "Mask", "Protect what the cutter sweeps from all other tools. Ctrl: protect it no more"),
 )
 CLASSES = ()
+_registered = []  # of those below and PlanTool, those that Blender has
 
 
 class PlanTool(bpy.types.WorkSpaceTool):
@@ -115,21 +117,23 @@ class PlanTool(bpy.types.WorkSpaceTool):
 def attach():
     """The four of sculpting in one group of the toolbar, that of planning below: after a tool of a group it would be in
     it."""
-    bpy.utils.register_tool(PlanTool, after={"builtin.measure"}, separator=True)
-    before = None
-    for tool in TOOLS:
-        if before is None:
-            bpy.utils.register_tool(tool, after={"builtin.measure"}, separator=True, group=True)
-        else:
-            bpy.utils.register_tool(tool, after={before})
-        before = tool.bl_idname
+    _register(PlanTool, "builtin.measure", separator=True)
+    _register(TOOLS[0], "builtin.measure", separator=True, group=True)
+    for before, tool in itertools.pairwise(TOOLS):
+        _register(tool, before.bl_idname)
+
+
+def _register(tool, after, **more):
+    bpy.utils.register_tool(tool, after={after}, **more)
+    _registered.append(tool)
 
 
 def detach():
-    _put_down()
-    for tool in reversed(TOOLS):
-        bpy.utils.unregister_tool(tool)
-    bpy.utils.unregister_tool(PlanTool)
+    try:
+        _put_down()
+    finally:
+        while _registered:
+            bpy.utils.unregister_tool(_registered.pop())
 
 
 def _put_down():

@@ -1,6 +1,8 @@
 """The list of modules that the add-on registers, held against the files that there are."""
 
 import ast
+import sys
+import types
 from pathlib import Path
 
 import pytest
@@ -39,6 +41,22 @@ def test_no_module_that_has_something_to_register_is_left_out():
     for path in sorted(ADDON.rglob("*.py")):
         if path not in own and "_vendor" not in path.parts:
             assert not top_level(path) & {"CLASSES", "attach", "detach"}, path
+
+
+def test_what_fails_to_be_attached_is_detached(monkeypatch):
+    log = []
+
+    def attach():
+        log.append("half of it")
+        raise ValueError("in the middle")
+
+    module = types.SimpleNamespace(CLASSES=(), attach=attach, detach=lambda: log.append("taken back"))
+    monkeypatch.setitem(sys.modules, "bpy", types.SimpleNamespace())
+    monkeypatch.setattr(registration, "_undo", [])
+    with pytest.raises(ValueError, match="in the middle"):
+        registration._take(module)
+    registration.unregister()
+    assert log == ["half of it", "taken back"]
 
 
 def test_what_was_attached_is_detached_even_where_something_else_fails(monkeypatch):

@@ -107,6 +107,68 @@ def test_whatever_is_left_behind_is_noticed():
         assert any(line.startswith(kind) for line in more), (kind, more)
 
 
+def failing(owner, name, at):
+    """Replaces a function by one that fails when it is called for the `at`-th time; returns what puts it back."""
+    original, calls = getattr(owner, name), []
+
+    def call(*args, **more):
+        calls.append(args)
+        if len(calls) == at:
+            raise KeyError("in the middle")
+        return original(*args, **more)
+
+    setattr(owner, name, call)
+    return lambda: setattr(owner, name, original)
+
+
+def fails_to(call):
+    """What Blender says of an add-on that raises is an error for some versions, and printed by others."""
+    try:
+        call()
+    except RuntimeError as error:
+        assert "in the middle" in str(error), error
+
+
+def test_what_fails_in_the_middle_of_being_registered_leaves_nothing():
+    disable()
+    with leftovers.Watch(support.MODULE) as watch:
+        for name, at in (("register_tool", 3), ("register_class", 50)):
+            put_back = failing(bpy.utils, name, at)
+            try:
+                fails_to(enable)
+            finally:
+                put_back()
+            assert watch.left() == [], (name, watch.left())
+        enable()
+    test_everything_is_registered()
+
+
+def test_what_fails_in_the_middle_of_being_unregistered_leaves_nothing_else():
+    support.stock()
+    live = support.part("bl.live")
+    run = live.begin(bpy.context, bpy.context.object)
+    with leftovers.Watch(support.MODULE) as watch:
+        put_back = failing(live.Live, "end", 1)
+        try:
+            fails_to(disable)
+        finally:
+            put_back()
+        assert watch.left() == [], watch.left()
+        enable()
+        run.end()
+    test_everything_is_registered()
+
+
+def test_what_is_not_there_is_taken_back_without_a_word():
+    """As after an attach() that failed at once."""
+    disable()
+    for module in support.part("registration").modules():
+        if hasattr(module, "detach"):
+            module.detach()
+    enable()
+    test_everything_is_registered()
+
+
 def test_what_is_reloaded_is_other_code():
     """After an update, and for Reload Scripts, Blender reads the add-on's __init__ anew: the rest has to be, too."""
     disable()

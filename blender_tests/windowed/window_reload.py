@@ -98,8 +98,8 @@ def pen_session(screen):
 
 
 def keys_of_others(screen):
-    """The list of keys finds ours beside the key of another add-on, which came first, and says where the user has removed
-    one."""
+    """The list of keys finds ours beside the key of another add-on, which came first, and says where the user has
+    removed one."""
     configurations = bpy.context.window_manager.keyconfigs
     disable()
     keymap = configurations.addon.keymaps.new("Object Mode")
