@@ -24,6 +24,7 @@ HANDLES = (
     (MAP, "Map", "To the cell of the map of free orientations that is pointed at"),
 )
 BUDGET = 2000.0  # µs for the force at a move of the pointer
+_held = None  # the operator that turns the tool in a window
 HELP = "Ctrl: steps of 5°    Shift: slowly    Numbers: degrees    Esc: as it was"
 
 
@@ -99,6 +100,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
 
     # ------------------------------------------------------------------ in a window
     def invoke(self, context, event):
+        global _held
         at = event.mouse_region_x, event.mouse_region_y
         if self.handle == MAP:
             angles = cspace.angles_at(context, at)
@@ -116,7 +118,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
             self._turn = turn.Turn(spot.line, spot.index, self._axis(context, spot), self.handle, view.ray(*at), radius)
         except shared.ERRORS as error:
             return shared.fail(self, error)
-        self._ob, self._path, self._index = ob.name, spot.path, spot.index
+        self._ob, self._path, self._index, self._area = ob.name, spot.path, spot.index, context.area
         tool = spot.plan.tool
         mm = units.mm_per_unit(context.scene)
         self._shown = force.begin(
@@ -128,6 +130,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
             self.cancel(context)
             return shared.fail(self, error)
         context.window_manager.modal_handler_add(self)
+        _held = self
         return {"RUNNING_MODAL"}
 
     def _axis(self, context, spot):
@@ -173,11 +176,15 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         return self.execute(context)
 
     def _end(self, context):
-        turning.held = None
+        global _held
+        _held = turning.held = None
         force.end()
-        if context.area is not None:
-            context.area.header_text_set(None)
-            context.area.tag_redraw()
+        # The context is another one where the add-on is disabled, and the area may be gone.
+        for window in context.window_manager.windows:
+            for area in window.screen.areas:
+                if area == self._area:
+                    area.header_text_set(None)
+                    area.tag_redraw()
 
     def _follow(self, context):
         """Shows the tool as it is turned, what pushes it, and how it stands."""
@@ -293,3 +300,9 @@ class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
 
 
 CLASSES = (RIFFLER_OT_plan_turn, RIFFLER_OT_plan_point, RIFFLER_OT_plan_point_key)
+
+
+def detach():
+    """The tool is as it was: Blender drops the operator that turns it without a word."""
+    if _held is not None:
+        _held.cancel(bpy.context)
