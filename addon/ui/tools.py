@@ -81,6 +81,19 @@ TOOLS = (
     _tool("soften", "Smooth", "Smooth the surface as wide as the cutter"),
     _tool("mask", "Mask", "Protect what the cutter sweeps from all other tools. Ctrl: protect it no more"),
 )
+# Blender's first tool, as it sets it itself; Blender 3.4 crashes where one of these is left out.
+FIRST = {
+    "idname": "builtin.select_box",
+    "keymap": "3D View Tool: Select Box",
+    "cursor": "DEFAULT",
+    "options": set(),
+    "gizmo_group": "",
+    "data_block": "",
+    "operator": "",
+    "index": 0,
+    "idname_fallback": "",
+    "keymap_fallback": "",
+}
 CLASSES = ()
 _registered = []  # of those below and PlanTool, those that Blender has
 
@@ -137,10 +150,30 @@ def detach():
 
 
 def _put_down():
-    """Whoever has one of ours at hand gets Blender's first one: a tool that is gone leaves no way to select."""
-    for window in () if bpy.app.background else bpy.context.window_manager.windows:
-        tool = window.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
+    """Whoever has one of ours at hand, also in a workspace that no window shows, gets Blender's first one: a tool that
+    is gone leaves no way to select."""
+    ours = {tool.bl_idname for tool in (*TOOLS, PlanTool)}
+    windows = () if bpy.app.background else bpy.context.window_manager.windows
+    at_hand = [t for t in map(_chosen, bpy.data.workspaces) if t is not None and t.idname in ours]
+    if not windows or not at_hand:
+        return
+    with bpy.context.temp_override(window=windows[0]):
+        for tool in at_hand:
+            tool.setup(**FIRST)
+    _choose_again(windows)
+
+
+def _chosen(workspace):
+    return workspace.tools.from_space_view3d_mode("OBJECT", create=False)
+
+
+def _choose_again(windows):
+    """What draws the cursor of the tool that was chosen last, in whichever workspace, stays until one is chosen."""
+    for window in windows:
         area = next((a for a in window.screen.areas if a.type == "VIEW_3D"), None)
-        if area is not None and tool is not None and tool.idname in {t.bl_idname for t in (*TOOLS, PlanTool)}:
-            with bpy.context.temp_override(window=window, area=area):
-                bpy.ops.wm.tool_set_by_id(name="builtin.select_box")
+        if area is None:
+            continue
+        with bpy.context.temp_override(window=window, area=area):
+            tool = window.workspace.tools.from_space_view3d_mode(bpy.context.mode, create=False)
+            if tool is not None:
+                bpy.ops.wm.tool_set_by_id(name=tool.idname)

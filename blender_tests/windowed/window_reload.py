@@ -7,6 +7,7 @@ from pathlib import Path
 import bpy
 import harness
 import leftovers
+import plans
 
 import support
 
@@ -97,6 +98,50 @@ def pen_session(screen):
     return before
 
 
+def tool_of_another_workspace(screen):
+    """It is put down where no window shows it, and what draws its cursor in every workspace goes."""
+    from bl_ui.space_toolsystem_common import _activate_by_item as chosen
+
+    strokes.tool(screen, "riffler.carve")
+    before = screen.window.workspace
+    screen.window.workspace = bpy.data.workspaces["Animation"]
+    yield 1.0
+    disable()
+    assert "VIEW_3D" not in chosen._cursor_draw_handle
+    screen.window.workspace = before
+    yield 1.0
+    assert before.tools.from_space_view3d_mode("OBJECT").idname == "builtin.select_box"
+    ob = bpy.data.objects["Stock"]
+    ob.select_set(False)
+    yield from strokes.drag(screen, [(-2, -2, 20), (62, 62, 20)])
+    assert ob.select_get(), "Blender's tool does not select"
+    enable()
+    yield 1.0
+
+
+def tool_turned(screen):
+    """In mid-drag: the tool moves with the animation again."""
+    bpy.context.scene.riffler.plan.part = plans.part_object()
+    plan = plans.on_timeline(chosen=plans.paths()[:1])
+    bpy.context.scene.frame_set(73)
+    yield 1.0
+    region = screen.region()
+    screen.move(region.x + region.width // 2, region.y + region.height // 2)
+    yield 0.3
+    with screen.override():
+        assert bpy.ops.riffler.plan_turn("INVOKE_DEFAULT", handle="FREE") == {"RUNNING_MODAL"}
+    screen.move(region.x + region.width // 2 + 40, region.y + region.height // 2 + 40)
+    yield 0.5
+    tool, _ = support.part("bl.timeline").pair(plan)
+    operator, turning = support.part("operators.plan_turn"), support.part("bl.turning")
+    assert turning.held is not None and {c.influence for c in tool.constraints} == {0}
+    disable()
+    assert {c.influence for c in tool.constraints} == {1}
+    assert turning.held is None and operator._held is None
+    yield 0.5
+    enable()
+
+
 def keys_of_others(screen):
     """The list of keys finds ours beside the key of another add-on, which came first, and says where the user has
     removed one."""
@@ -177,3 +222,5 @@ def steps(screen):
         strokes.tool(screen, "riffler.carve")
         yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)])
         assert strokes.volume().volume < whole_volume
+        yield from tool_of_another_workspace(screen)
+        yield from tool_turned(screen)
