@@ -1,5 +1,6 @@
 """The add-on goes and comes back three times in a window, each time in the midst of something: a stroke whose button is
-still held, a long cut, a pen's session. Nothing of it stays, and what was carved by then is kept."""
+still held, a long cut, a pen's session. Nothing of it stays, and what was carved by then is kept. A tool that is at
+hand in another workspace is put down, and one that is turned is given back to its path."""
 
 import subprocess
 from pathlib import Path
