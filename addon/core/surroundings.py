@@ -65,6 +65,11 @@ class Surroundings:
             return self.collider.clearance(tool, poses)
         return np.array([self.collider.nearest(tool, pose)[0] for pose in poses])
 
+    def near_fixtures(self, tool, poses: np.ndarray, room: float) -> list[tuple[float, str]]:
+        """(mm, name) of the fixtures that the tool, its cutter too, comes nearer than `room` at poses (n, 6)."""
+        found = [(min(c.nearest(tool, pose)[0] for pose in poses), name) for name, c in self._fixtures]
+        return [(gap, name) for gap, name in found if gap < room]
+
     def state(self, tool, pose, tolerance: float = 0.01, room: float = 0.0) -> State:
         """The tool at a pose on its path: the cutter touches the part, to the tolerance."""
         distance, _, piece = self.collider.nearest(tool, pose)

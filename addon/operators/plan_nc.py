@@ -53,13 +53,15 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         self._found = []
         tool = guarded(plan.tool, clearance)  # the cutter touches what it cuts
         sizes = {"tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
-        return AfterJob(taken, lambda near: self._all(plan, tool, near.collider, sizes))
+        return AfterJob(taken, lambda near: self._all(plan, tool, near, sizes))
 
-    def _all(self, plan, tool, collider, sizes):
+    def _all(self, plan, tool, near, sizes):
+        self._near = near
+
         def start(k):
             def go(before):
                 self._found += [before] if before is not None else []
-                return riffler.tasks.cutter_locations(plan.paths[k], tool, collider, **sizes)
+                return riffler.tasks.cutter_locations(plan.paths[k], tool, near.collider, **sizes)
 
             return go
 
@@ -80,8 +82,18 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
         free = [report for _, report in found if report.ok]
+        self._notes += self._too_near(plan, [rows for rows, report in found if report.ok])
         self._say(ob, blocked, locating.left(free, plan.tolerance or 0.01))
         return {"FINISHED"}
+
+    def _too_near(self, plan, free):
+        """Where the cutter itself comes nearer to a fixture than the clearance, which lifts shank and holder only."""
+        room = units.clean(bpy.context.scene.riffler.plan.clearance)
+        if not free or room <= 0:
+            return []
+        near = self._near.near_fixtures(plan.tool, np.concatenate(free), room - (plan.tolerance or 0.01))
+        said = "The tool comes within {} mm of {}, nearer than the clearance"
+        return [said.format(names.trim(gap, 3), name) for gap, name in near]
 
     def _say(self, ob, blocked, left):
         count, played = names.format_count(len(self._paths)), timeline.pair(ob) is not None

@@ -168,6 +168,21 @@ def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
     assert "material stays" in said
 
 
+def test_a_cutter_nearer_to_a_fixture_than_the_clearance_is_said():
+    ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
+    settings = bpy.context.scene.riffler.plan
+    settings.fixtures = bpy.data.collections.new("Fixtures")
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(30, 11, 8))  # its edge at y = 13, z = 9.5, 1 mm from the cutter
+    bpy.context.object.name, bpy.context.object.scale = "Stop", (4, 4, 3)
+    settings.fixtures.objects.link(bpy.context.object)
+    bpy.context.view_layer.update()
+    for clearance, words in ((0.0, False), (0.3, False), (2.0, True)):
+        settings.clearance = clearance
+        said = support.printed(bpy.ops.riffler.plan_resolve)
+        assert programs.content(ob).cl[0] is not None
+        assert ("mm of Stop, nearer than the clearance" in said) == words, said
+
+
 def test_a_key_that_was_refused_is_said_with_the_code():
     """It is on the timeline, and the program has the orientation of before."""
     ob = programs.resolved()
