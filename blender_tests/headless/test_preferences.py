@@ -129,8 +129,13 @@ def left_in(place):
     import sculpting
 
     with preferred(journals=""):
-        sculpting.stroke(sculpting.sculpt(), 1)
-        return next(p for p in place.iterdir() if p.is_dir())
+        name = sculpting.sculpt()
+        sculpting.stroke(name, 1)
+        journal = support.part("bl.live").of(bpy.data.objects[name]).keeping.journal
+        while not journal.settled():  # the stock that it begins with is written meanwhile
+            pass
+        assert journal.folder.parent == place
+        return journal.folder
 
 
 def test_a_folder_that_is_gone_is_named_and_work_goes_on():
