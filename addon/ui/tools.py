@@ -154,7 +154,9 @@ def _put_down():
     is gone leaves no way to select."""
     ours = {tool.bl_idname for tool in (*TOOLS, PlanTool)}
     windows = () if bpy.app.background else bpy.context.window_manager.windows
-    at_hand = [t for t in map(_chosen, bpy.data.workspaces) if t is not None and t.idname in ours]
+    # While an add-on is registered, and when that has failed, Blender shows no data; nobody has a tool of it then.
+    workspaces = getattr(bpy.data, "workspaces", ())
+    at_hand = [t for t in map(_chosen, workspaces) if t is not None and t.idname in ours]
     if not windows or not at_hand:
         return
     with bpy.context.temp_override(window=windows[0]):
