@@ -16,6 +16,7 @@ BLENDERS = {
         "Add-ons",
         "All Transforms",
         "Alignment",
+        "Cavity",
         "Circle",
         "Convert",
         "Cube",
@@ -24,7 +25,7 @@ BLENDERS = {
         "Export",
         "Item",
     ),
-    *("Measure", "Plain Axes", "Rings", "Segments", "Select Box", "UV Sphere"),
+    *("Horizontal", "Measure", "Paragraph", "Plain Axes", "Rings", "Segments", "Select Box", "UV Sphere", "Vertical"),
 }
 OURS = {"Clamp", "Sphere Stock"}
 LONGEST = 60  # of a label; what is longer is a sentence
