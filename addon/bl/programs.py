@@ -14,8 +14,6 @@ from ..core import course, problems
 from ..core import units as names
 from . import live, plan_fit, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
 
-RESOLVED = plan_store.RESOLVED
-
 
 # ------------------------------------------------------------------ of a plan
 def left_out(plan):
@@ -41,7 +39,7 @@ def ready(context, ob, plan):
             "a path that is to be left out"
         )
     clearance = units.clean(context.scene.riffler.plan.clearance)
-    if plan.provenance.get(RESOLVED) != taken.fingerprint(plan.tool, clearance):
+    if plan.provenance.get(plan_store.RESOLVED) != taken.fingerprint(plan.tool, clearance):
         raise ValueError("Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve")
     return taken
 

@@ -13,7 +13,7 @@ COUNT, NBYTES = 2000, 64_000_000  # of paths, and of their locations: more than 
 
 
 class Resolved:
-    """Of one plan. `mark`: what the locations are free of (bl/programs.py); without one they are not kept."""
+    """Of one plan. `mark`: what the locations are free of (bl/plan_store.py); without one they are not kept."""
 
     def __init__(self, count: int = COUNT, nbytes: int = NBYTES):
         self._count, self._most, self._nbytes = count, nbytes, 0

@@ -44,7 +44,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         self._notes = plan_fit.notes(context, plan, taken)
         clearance = units.clean(context.scene.riffler.plan.clearance)
         self._mark = taken.fingerprint(plan.tool, clearance)
-        same = plan.provenance.get(programs.RESOLVED) == self._mark
+        same = plan.provenance.get(plan_store.RESOLVED) == self._mark
         turned = plan_store.wanted(plan)
         if not turned:
             raise ValueError("No path has an orientation: set a key first")
@@ -76,7 +76,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
             cl[k] = rows if report.ok else None  # what collides anywhere is no program
             blocked += not report.ok
             kept += locating.entries(k, plan.paths[k].centres, rows, report)
-        plan = replace(plan, cl=cl, provenance={**plan.provenance, programs.RESOLVED: self._mark})
+        plan = replace(plan, cl=cl, provenance={**plan.provenance, plan_store.RESOLVED: self._mark})
         plan_store.write(ob, plan)
         findings.write(ob.riffler.plan.findings, locating.ordered(kept))
         if timeline.pair(ob) is not None:

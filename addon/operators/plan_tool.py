@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import bpy
 
-from ..bl import plan_fit, plan_store, programs, replan, timeline
+from ..bl import plan_fit, plan_store, replan, timeline
 from ..bl.turning import plan_object
 from . import shared
 from .plan_work import plan_poll, tell
@@ -31,7 +31,7 @@ class RIFFLER_OT_plan_use_tool(bpy.types.Operator):
                     f"{tool.name} has another cutter than {plan.tool.name}, which the paths were found for: "
                     "use Find Again, or another tool with that cutter"
                 )
-            known = {key: text for key, text in plan.provenance.items() if key != programs.RESOLVED}
+            known = {key: text for key, text in plan.provenance.items() if key != plan_store.RESOLVED}
             plan_store.write(ob, replace(plan, tool=tool, cl=[], provenance=known))
             ob.riffler.plan.findings.clear()  # of the tool before
             if timeline.pair(ob) is None:
