@@ -39,6 +39,17 @@ EPOCH = (1980, 1, 1, 0, 0, 0)  # the same mesh gives the same bytes
 def write(path, vertices, triangles, name: str = "part") -> None:
     """`vertices` (n, 3) mm, `triangles` (k, 3). Whole or not at all. ValueError for a mesh without triangles or with
     values that are not finite; coordinates keep nine digits, which give each float32 back."""
+    for _ in pieces(path, vertices, triangles, name):
+        pass
+
+
+def count(vertices, triangles) -> int:
+    """How many `pieces` there are."""
+    return -(-len(vertices) // ROWS) - (-len(triangles) // ROWS)
+
+
+def pieces(path, vertices, triangles, name: str = "part") -> Iterator[None]:
+    """`write`, piece by piece. Where it is closed before its end there is no file."""
     vertices, triangles = np.asarray(vertices, float), np.asarray(triangles)
     if len(triangles) == 0:
         raise ValueError("the mesh has no triangles; a 3MF file holds one at least")
@@ -48,27 +59,32 @@ def write(path, vertices, triangles, name: str = "part") -> None:
     handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-            _part(archive, "[Content_Types].xml", [TYPES])
-            _part(archive, "_rels/.rels", [RELATIONS])
-            _part(archive, "3D/3dmodel.model", _model(vertices, triangles, name))
+            for part, text in (("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONS)):
+                with _open(archive, part) as stream:
+                    stream.write(text.encode())
+            with _open(archive, "3D/3dmodel.model") as stream:
+                for text in _model(vertices, triangles, name):
+                    stream.write(text.encode())
+                    yield
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(draft, 0o666 & ~mask)  # a draft is private; the file is as any new one
         os.replace(draft, path)
     except BaseException:
         Path(draft).unlink(missing_ok=True)
         raise
 
 
-def _part(archive, name, texts) -> None:
+def _open(archive, name):
     info = zipfile.ZipInfo(name, EPOCH)
     info.compress_type, info.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
     info._compresslevel = FAST  # of a ZipInfo there is no other way to say it
-    with archive.open(info, "w", force_zip64=True) as part:
-        for text in texts:
-            part.write(text.encode())
+    return archive.open(info, "w", force_zip64=True)
 
 
 def _model(vertices, triangles, name) -> Iterator[str]:
-    yield MODEL.format(name=quoteattr(name))
-    yield "<vertices>\n"
+    """In `count` texts and a few short ones."""
+    yield MODEL.format(name=quoteattr(name)) + "<vertices>\n"
     yield from _rows('<vertex x="%.9g" y="%.9g" z="%.9g"/>\n', vertices)
     yield "</vertices>\n<triangles>\n"
     yield from _rows('<triangle v1="%d" v2="%d" v3="%d"/>\n', triangles)

@@ -11,10 +11,10 @@ from ..bl import forms, masks, parts, sculpts, units
 from ..core import estimate
 from ..core import units as names
 from ..core.cache import Content
-from ..core.job import TaskJob
+from ..core.job import TaskJob, ThreadTask
 from ..properties import stock
 from ..translations import local
-from .sculpt_work import SculptEdit, SculptWork
+from .sculpt_work import SculptWork
 
 DIRECTIONS = (("KEEP", "As now", "The directions that the sculpt has"), *stock.DIRECTIONS)
 
@@ -82,27 +82,34 @@ def _signed(volume):
     return f"{'+' if volume >= 0 else '−'}{names.format_volume(abs(volume))}"
 
 
-class RIFFLER_OT_crop(SculptEdit, bpy.types.Operator):
+class RIFFLER_OT_crop(SculptWork, bpy.types.Operator):
     """Cut the sculpt off by the plane of another object, or by a point and a normal"""
 
     bl_idname = "riffler.crop"
     bl_label = "Crop by Plane"
+    doing = "Cropping"
+    cancelled = "Not cropped: the sculpt is as it was"
 
     plane: StringProperty(name="Plane", description="An object whose local plane z = 0 cuts; empty: the values below")
     point: FloatVectorProperty(name="Point", subtype="TRANSLATION", description="In the world, Blender units")
     normal: FloatVectorProperty(name="Normal", subtype="DIRECTION", description="Into what is taken away; 0: unused")
     flip: BoolProperty(name="Other Side", description="Take away what lies behind the plane")
 
-    def edited(self, context, ob, content):
+    def begin(self, context):
+        ob, self._before = self.take(context)
         point, normal = self._plane(context, ob)
-        volume = content.volume.copy().clip(point, -normal if self.flip else normal)
+        normal = -normal if self.flip else normal
+        volume = self._before.volume.copy()
+        return TaskJob(ThreadTask(lambda progress: volume.clip(point, normal, progress=progress)))
+
+    def finish(self, context, job):
+        before, volume = self._before, job.result
         if volume.volume <= 0:
             raise ValueError("nothing would be left: choose the other side, or move the plane")
-        return replace(content, volume=volume, shaped=True)
-
-    def tell(self, before, after):
-        taken = before.volume.volume - after.volume.volume
+        self.keep(replace(before, volume=volume, shaped=True))
+        taken = before.volume.volume - volume.volume
         self.report({"INFO"} if taken > 0 else {"WARNING"}, f"Removed {names.format_volume(taken)}")
+        return {"FINISHED"}
 
     def _plane(self, context, ob):
         if not self.plane and any(self.normal):

@@ -14,7 +14,7 @@ from ..bl.curves import deformed
 from ..core import units
 from ..core.job import Cut, CutJob
 from . import paths, shared
-from .long import LongWork
+from .files import FileWork
 from .sculpt_work import SculptWork
 
 
@@ -86,11 +86,12 @@ def _selected_curve(context):
     return next((ob for ob in context.selected_objects if ob.type == "CURVE"), None)
 
 
-class RIFFLER_OT_cut_recording(CutShell, bpy.types.Operator, ImportHelper):
+class RIFFLER_OT_cut_recording(FileWork, CutShell, bpy.types.Operator, ImportHelper):
     """Carve the active sculpt with the strokes of a recording, in the stock's own frame"""
 
     bl_idname = "riffler.cut_recording"
     bl_label = "Cut Recording"
+    helper = ImportHelper
 
     filename_ext = ".rjournal"
     filter_glob: bpy.props.StringProperty(default="*.rjournal", options={"HIDDEN"})
@@ -104,9 +105,8 @@ class RIFFLER_OT_cut_recording(CutShell, bpy.types.Operator, ImportHelper):
     )
 
     def invoke(self, context, event):
-        if self.filepath:
-            return LongWork.invoke(self, context, event)
-        return ImportHelper.invoke(self, context, event)
+        self.ask = self.ask and not self.filepath
+        return FileWork.invoke(self, context, event)
 
     def make_cuts(self, context, ob):
         if not self.filepath:

@@ -4,13 +4,16 @@ import bpy
 import numpy as np
 import riffler
 from bpy_extras.io_utils import ExportHelper
+from riffler import tasks
 
 from .. import properties
 from ..bl import live, programs, sculpts
 from ..core import poses, problems, threemf_out
 from ..core import units as names
+from ..core.job import AfterJob, PiecesJob, TaskJob
 from ..translations import local
 from . import paths, shared
+from .files import FileWork
 
 
 class Export(ExportHelper):
@@ -49,28 +52,55 @@ class Export(ExportHelper):
         return cuts
 
 
-class ExportSurface(Export):
-    """Mixin of the operators that write the surface, by `put`."""
+class ExportSurface(FileWork):
+    """Mixin of the operators that write the surface, by `job`, whole or not at all."""
+
+    bl_options = set()  # what is written is no step of undo
+    helper = ExportHelper
+    doing = "Exporting"
+    cancelled = "Not exported: no file was written"
 
     world: bpy.props.BoolProperty(
         name="As placed", default=True, description="Apply the object's transform; off: as milled, in the stock's frame"
     )
 
-    def write(self, context, ob, path):
+    @classmethod
+    def poll(cls, context):
+        if sculpts.active(context) is None:
+            return shared.deny(cls, "Select a sculpt first")
+        running = context.window_manager.riffler.running
+        return not running or shared.deny(cls, f"{running}: Esc cancels")
+
+    def begin(self, context):
+        ob, path = sculpts.active(context), bpy.path.abspath(self.filepath)
+        problems.check_target(path)
         if live.of(ob) is None:
             shared.tell_edits(self, ob.data, lost=False)
         shared.tell_modifiers(self, ob)
-        surface = live.content(ob).volume.to_mesh()
-        if not len(surface.triangles):
-            raise ValueError("the sculpt has no material left")
-        if self.world:
-            surface = placed(surface, sculpts.to_world_mm(ob, context.scene))
-        self.put(surface, path, ob.name)
-        lower, upper = surface.bounds
-        return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(upper - lower)}"
+        matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
+        name = ob.name
+
+        def write(surface):
+            if not len(surface.triangles):
+                raise ValueError("the sculpt has no material left")
+            surface = placed(surface, matrix)
+            self._done = _said(surface)
+            return self.job(surface, path, name)
+
+        # a copy: who sculpts meanwhile goes on
+        return AfterJob(tasks.to_mesh(live.content(ob).volume.copy()), write, in_background=False)
+
+    def finish(self, context, job):
+        self.report({"INFO"}, f"{bpy.path.basename(self.filepath)}: {self._done}")
+        return {"FINISHED"}
 
 
-class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator):
+def _said(surface):
+    lower, upper = surface.bounds
+    return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(upper - lower)}"
+
+
+class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator, ExportHelper):
     """Write the active sculpt as a binary STL in millimetres, straight from its volume"""
 
     bl_idname = "riffler.export_stl"
@@ -79,11 +109,11 @@ class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator):
     filename_ext = ".stl"
     filter_glob: bpy.props.StringProperty(default="*.stl", options={"HIDDEN"})
 
-    def put(self, surface, path, name):
-        surface.write(path)
+    def job(self, surface, path, name):
+        return TaskJob(tasks.write(surface, path))
 
 
-class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator):
+class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator, ExportHelper):
     """Write the active sculpt as a 3MF file in millimetres, straight from its volume"""
 
     bl_idname = "riffler.export_3mf"
@@ -92,8 +122,9 @@ class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator):
     filename_ext = ".3mf"
     filter_glob: bpy.props.StringProperty(default="*.3mf", options={"HIDDEN"})
 
-    def put(self, surface, path, name):
-        threemf_out.write(path, surface.vertices, surface.triangles, name)
+    def job(self, surface, path, name):
+        mesh = surface.vertices, surface.triangles
+        return PiecesJob(threemf_out.pieces(path, *mesh, name), threemf_out.count(*mesh))
 
 
 def placed(surface, matrix):

@@ -7,9 +7,9 @@ import riffler
 from bpy.props import EnumProperty, StringProperty
 
 from ..bl import forms
-from ..core.job import TaskJob
+from ..core.job import DoneJob, TaskJob, ThreadTask
 from ..properties.clay import HOW
-from .sculpt_work import SculptEdit, SculptWork
+from .sculpt_work import SculptWork
 
 TOLERANCE = 0.25  # pitches: of curves
 
@@ -25,23 +25,31 @@ def said_of(content):
     return f"{100 * share:.0f} % of the material is protected"
 
 
-class Masking(SculptEdit):
-    """Mixin of what changes the mask only, at once."""
+class Masking(SculptWork):
+    """Mixin of what changes the mask only: the job makes it, or None."""
 
-    def edited(self, context, ob, content):
-        return masked(content, self.mask_of(content))
+    doing = "Masking"
+    cancelled = "Not masked: what is protected is as it was"
 
-    def tell(self, before, after):
+    def begin(self, context):
+        _, self._before = self.take(context)
+        return self.job(self._before.volume, self._before.mask)
+
+    def finish(self, context, job):
+        after = masked(self._before, self.mask_of(job.result))
+        self.keep(after)
         self.report({"INFO"}, said_of(after))
+        return {"FINISHED"}
+
+    def mask_of(self, made):
+        return made
 
 
-class RIFFLER_OT_mask_form(SculptWork, bpy.types.Operator):
+class RIFFLER_OT_mask_form(Masking, bpy.types.Operator):
     """Protect what lies in a mesh object, or under the closed splines of a curve, seen along its own z"""
 
     bl_idname = "riffler.mask_form"
     bl_label = "Mask from Object"
-    doing = "Masking"
-    cancelled = "Not masked: what is protected is as it was"
 
     form: StringProperty(name="Form", description="Name of a mesh or a curve; empty: the other selected object")
     how: EnumProperty(name="How", items=HOW, default="REPLACE", description="What becomes of the mask that there is")
@@ -56,13 +64,8 @@ class RIFFLER_OT_mask_form(SculptWork, bpy.types.Operator):
             surface = forms.of_object(context, source, ob)
         return TaskJob(forms.task_of(surface, volume))
 
-    def finish(self, context, job):
-        after = masked(self._before, self._combined(self._before.mask, job.result))
-        self.keep(after)
-        self.report({"INFO"}, said_of(after))
-        return {"FINISHED"}
-
-    def _combined(self, before, form):
+    def mask_of(self, form):
+        before = self._before.mask
         if self.how == "REPLACE" or before is None:
             return None if self.how == "SUBTRACT" else form
         return before.copy().add(form) if self.how == "ADD" else before.copy().subtract(form)
@@ -74,20 +77,23 @@ class RIFFLER_OT_mask_invert(Masking, bpy.types.Operator):
     bl_idname = "riffler.mask_invert"
     bl_label = "Invert Mask"
 
-    def mask_of(self, content):
-        v = content.volume
-        mask = riffler.Volume.block(v.lower, v.upper, v.pitch, v.directions)
-        return mask if content.mask is None else mask.subtract(content.mask)
+    def job(self, volume, mask):
+        return TaskJob(ThreadTask(lambda progress: _inverse(volume, mask, progress)))
+
+
+def _inverse(volume, mask, progress):
+    whole = riffler.Volume.block(volume.lower, volume.upper, volume.pitch, volume.directions)
+    return whole if mask is None else whole.subtract(mask, progress=progress)
 
 
 class RIFFLER_OT_mask_clear(Masking, bpy.types.Operator):
-    """Protect nothing"""
+    """Free all that is protected"""
 
     bl_idname = "riffler.mask_clear"
     bl_label = "Clear Mask"
 
-    def mask_of(self, content):
-        return None
+    def job(self, volume, mask):
+        return DoneJob(None)
 
 
 CLASSES = (RIFFLER_OT_mask_form, RIFFLER_OT_mask_invert, RIFFLER_OT_mask_clear)

@@ -136,7 +136,7 @@ class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_tool(bpy.types.Operator):
-    """Plan with this tool"""
+    """Plan with this tool: cutter, shank and holder"""
 
     bl_idname = "riffler.plan_tool"
     bl_label = "Take Tool"

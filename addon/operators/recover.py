@@ -172,7 +172,7 @@ class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):
 
 
 class RIFFLER_OT_dismiss(bpy.types.Operator):
-    """Read it"""
+    """Take this notice away: it was read"""
 
     bl_idname = "riffler.dismiss"
     bl_label = "Dismiss"

@@ -8,7 +8,7 @@ from . import shared
 
 
 class RIFFLER_OT_tool_preset(bpy.types.Operator):
-    """Take this tool"""
+    """Take the cutter of this name for strokes and cuts"""
 
     bl_idname = "riffler.tool_preset"
     bl_label = "Tool Preset"

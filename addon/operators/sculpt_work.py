@@ -39,27 +39,3 @@ class SculptWork(LongWork):
 
     def keep(self, content):
         sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh))
-
-
-class SculptEdit:
-    """Mixin of what is done in one go. A subclass has `edited(context, ob, content)`, the Content that the sculpt is to
-    have, or one of shared.ERRORS where it cannot be; and `tell(before, after)`, which reports what was done."""
-
-    bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context):
-        return shared.sculpt_poll(cls, context)
-
-    def execute(self, context):
-        ob = sculpts.active(context)
-        try:
-            live.end_all()
-            before = store.content(ob.data)
-            after = self.edited(context, ob, before)
-            shared.tell_edits(self, ob.data)
-            sculpts.commit(ob.data, after, sculpts.shown_mm_per_unit(ob.data))
-        except shared.ERRORS as error:
-            return shared.fail(self, error)
-        self.tell(before, after)
-        return {"FINISHED"}

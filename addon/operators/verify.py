@@ -243,7 +243,7 @@ class RIFFLER_OT_verify_clear(bpy.types.Operator):
     """Take away the list, and the colours of the part"""
 
     bl_idname = "riffler.verify_clear"
-    bl_label = "Clear"
+    bl_label = "Clear Findings"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

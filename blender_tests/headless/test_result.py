@@ -1,5 +1,7 @@
 """From sculpts to meshes and files, and how far they are from what they should be."""
 
+import os
+
 import bpy
 import numpy as np
 import riffler
@@ -57,6 +59,8 @@ def test_3mf_and_stl_hold_the_same_surface():
     for name in ("stl", "3mf"):
         path = support.out(f"result.{name}")
         assert getattr(bpy.ops.riffler, f"export_{name}")(filepath=path) == {"FINISHED"}
+    modes = {os.stat(support.out(f"result.{name}")).st_mode & 0o777 for name in ("stl", "3mf")}
+    assert len(modes) == 1 and modes.pop() & 0o400  # as any new file
     stl = riffler.Mesh.read(support.out("result.stl"))
     assert abs(stl.bounds[0][0] - 7) < 1e-4
     import zipfile

@@ -103,14 +103,17 @@ MeshPtr read(const std::filesystem::path& path) {
   return std::make_shared<Mesh>(read_mesh(path));
 }
 
-void write(const py::object& self, const std::filesystem::path& path) {
-  if (is_3mf(path)) {
-    py::module_::import("riffler.threemf").attr("write")(path, self.attr("vertices"), self.attr("triangles"));
-    return;
-  }
-  const auto& mesh = self.cast<const Mesh&>();
-  const NoGil no_gil;
-  write_mesh(mesh, path);
+auto write(const MeshPtr& mesh, const std::filesystem::path& path, const py::object& progress) {
+  const auto work = [=](const Progress& listener) {
+    write_mesh(*mesh, path, listener);
+    return path;
+  };
+  const auto nothing = [](const std::filesystem::path&) { return py::none(); };
+  if (!is_3mf(path)) return long_call(progress, work, nothing);
+  if (!progress.is_none()) throw py::value_error("a .3mf file is written by lib3mf, which tells no progress");
+  const py::object self = py::cast(mesh);
+  py::module_::import("riffler.threemf").attr("write")(path, self.attr("vertices"), self.attr("triangles"));
+  return decltype(long_call(progress, work, nothing))(py::none());
 }
 
 py::dict audit_dict(const Mesh& mesh, const py::object& progress) {
@@ -181,9 +184,9 @@ range. Vertices are not welded; files are, when they are read.)");
 all that it says to build, placed, in mm whatever its unit; it needs the package lib3mf. FormatError naming the byte or
 line for a bad file (for .3mf what was expected), among them those with no triangle; ValueError for another extension.)");
   mesh.def(
-      "write", &write, "path"_a,
+      "write", &write, "path"_a, "progress"_a = py::none(),
       R"(Writes .stl (binary, coordinates rounded to float32), .obj, .ply (binary) or .3mf (mm, float32 to its last step; needs the package
-lib3mf), whole or not at all.)");
+lib3mf, which tells no progress), whole or not at all.)");
   mesh.def_property_readonly(
       "vertices", [](const py::object& self) { return view<double>(self.cast<const Mesh&>().vertices, self); },
       "(n, 3) float64, read-only, no copy.");

@@ -37,6 +37,8 @@ namespace {
   throw std::runtime_error(path.filename().string() + ": " + what + ": " + std::strerror(errno));
 }
 
+constexpr std::size_t kPiece = 4 << 20;  // bytes from one report of progress to the next: some milliseconds
+
 /// A new file beside `path` that removes itself unless it was renamed over it.
 class Beside {
  public:
@@ -80,9 +82,13 @@ class Beside {
 
 }  // namespace
 
-void write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+void write_file(const fs::path& path, std::span<const std::uint8_t> bytes, const Progress& progress) {
   Beside file(path);
-  file.write(bytes);
+  for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
+    report(progress, static_cast<double>(at) / static_cast<double>(bytes.size()));
+    file.write(bytes.subspan(at, std::min(kPiece, bytes.size() - at)));
+  }
+  report(progress, 1);
   file.commit();
 }
 

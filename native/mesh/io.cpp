@@ -37,9 +37,11 @@ Mesh read_mesh(const std::filesystem::path& path) {
   return format.from(read_file(path), path.filename().string());
 }
 
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
   const Format& format = format_of(path);
-  write_file(path, format.to(mesh));
+  report(progress, 0);
+  const std::vector<std::uint8_t> bytes = format.to(mesh);
+  write_file(path, bytes, part(progress, 0.5, 1));
 }
 
 }  // namespace riffler

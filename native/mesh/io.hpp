@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {
@@ -12,6 +13,6 @@ Mesh read_mesh(const std::filesystem::path& path);
 
 /// Writes .stl (binary, float32), .obj (text) or .ply (binary little-endian), whole or not at all.
 /// std::invalid_argument for another extension or where `validate` throws, std::runtime_error where the system refuses.
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path);
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace riffler

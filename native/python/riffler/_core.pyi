@@ -93,10 +93,10 @@ class Mesh:
         (mm) in all. Edges whose sides turn by more than `feature_angle` (rad) stay sharp, and corners stay where they are, as
         do vertices on borders.
         """
-    def write(self, path: os.PathLike | str | bytes) -> None:
+    def write(self, path: os.PathLike | str | bytes, progress: typing.Any = None) -> None:
         """
         Writes .stl (binary, coordinates rounded to float32), .obj, .ply (binary) or .3mf (mm, float32 to its last step; needs the package
-        lib3mf), whole or not at all.
+        lib3mf, which tells no progress), whole or not at all.
         """
     @property
     def area(self) -> float:

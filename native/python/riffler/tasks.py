@@ -29,6 +29,7 @@ __all__ = [
     "to_bytes",
     "to_mesh",
     "verify",
+    "write",
 ]
 
 
@@ -60,3 +61,4 @@ replay = _task_of(Journal.replay, "Journal.replay")
 decimate = _task_of(Mesh.decimate, "Mesh.decimate")
 smooth = _task_of(Mesh.smooth, "Mesh.smooth")
 deviation = _task_of(Mesh.deviation, "Mesh.deviation")
+write = _task_of(Mesh.write, "Mesh.write")

@@ -1,6 +1,7 @@
 // STL, OBJ and PLY: round trips and what each format allows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -327,6 +328,34 @@ TEST(MeshFiles, AreToldApartByTheirNames) {
     EXPECT_FALSE(std::filesystem::exists(folder / name));
   }
   EXPECT_THROW(read_mesh(folder / "none.stl"), FormatError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(MeshFiles, CancelledAreAsTheyWere) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("riffler_cancelled_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const Mesh torus = torus_mesh(40, 15, 300, 300);  // 9 MB: three pieces
+  write_mesh(box_mesh({0, 0, 0}, {1, 2, 3}), folder / "part.stl");
+  std::vector<double> shares;
+  for (std::size_t until = 0;; ++until) {
+    shares.clear();
+    const auto listen = [&](double share) {
+      shares.push_back(share);
+      return shares.size() <= until;
+    };
+    try {
+      write_mesh(torus, folder / "part.stl", listen);
+      break;
+    } catch (const Cancelled&) {
+      EXPECT_DOUBLE_EQ(volume(read_mesh(folder / "part.stl")), 6) << until;
+      EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << until;
+    }
+  }
+  EXPECT_EQ(shares.size(), 5u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_DOUBLE_EQ(shares.back(), 1);
+  EXPECT_EQ(read_mesh(folder / "part.stl").triangles.size(), torus.triangles.size());
   std::filesystem::remove_all(folder);
 }
 

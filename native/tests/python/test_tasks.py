@@ -78,6 +78,7 @@ def strokes():
 
 
 TEMPORARY = os.path.join(tempfile.mkdtemp(), "saved.rvol")
+WRITTEN = os.path.join(tempfile.mkdtemp(), "written.stl")
 # name: the plain call, its arguments and keywords
 CALLS = {
     "pencil": (plan.pencil, (STEP, BALL, 0.01, 3), {"scallop": 0.1}),
@@ -97,6 +98,7 @@ CALLS = {
     "decimate": (riffler.Mesh.decimate, (SURFACE, 2000), {"tolerance": 0.05}),
     "smooth": (riffler.Mesh.smooth, (SURFACE, 5), {"feature_angle": 0.7}),
     "deviation": (riffler.Mesh.deviation, (SURFACE, STEP), {"signed": True}),
+    "write": (riffler.Mesh.write, (SURFACE, WRITTEN), {}),
 }
 
 
@@ -179,6 +181,7 @@ def test_both_ways_say_the_same_of_bad_arguments():
         "decimate": [(STEP,), (STEP, -1), (None, 5)],
         "smooth": [(STEP, -1)],
         "deviation": [(STEP, nothing), (STEP, None)],
+        "write": [(STEP, "part.step"), (STEP, "/nowhere/at/all.stl"), (STEP, None)],
     }
     for name, several in bad.items():
         for args in several:
