@@ -62,12 +62,12 @@ class TaskJob:
         return self._task.share
 
     def step(self, budget: float = 0.0) -> bool:
-        end = self._clock() + budget
+        begin = self._clock()
         while not self._task.done:
-            left = end - self._clock()
-            if left <= 0:
+            spent = self._clock() - begin
+            if spent >= budget:
                 return False
-            self._sleep(min(left, 0.005))
+            self._sleep(min(budget - spent, max(2e-4, 0.05 * spent), 0.005))  # short tasks are not made long ones
         self.result = self._task.result()  # raises what the task's call raised
         return True
 
