@@ -96,6 +96,20 @@ def removing(name, content):
     return cuts
 
 
+def not_in_cuts(content):
+    """What of a sculpt its `removing` cuts do not make, as sentences."""
+    added = sum(cut.mode != "remove" for cut in content.cuts)
+    masked = sum(cut.mode == "remove" and cut.masked for cut in content.cuts)
+    said = []
+    if added:
+        said.append(f"No machine can put material on: left out {added} stroke{'s' * (added > 1)} that did")
+    if masked:
+        said.append(f"Cuts made beside a mask: {masked}. They cut what it protected, too")
+    if content.shaped:
+        said.append("Only cuts are in it: no crop, smoothing or relief, and no edits of the mesh")
+    return said
+
+
 def of_cuts(name, cuts, volume, feed, spindle):
     """The program of these cuts of a sculpt, in its own frame."""
     return riffler.Program.from_cl(
@@ -125,6 +139,7 @@ class Setup:
     machine: str = ""  # that it is for, where its axes are those of the stock's frame
     options: dict | None = None
     plan: str = ""
+    notes: tuple = ()  # what is not in it, as sentences
 
     @property
     def runs(self):
@@ -180,7 +195,7 @@ def _cuts(context, ob):
     program = of_cuts(ob.name, cuts, v, units.clean(settings.feed), units.clean(settings.spindle))
     out = _new(f"{ob.name}'s cuts", program, _timed(context.scene, program))
     out.stock = riffler.Volume.block(v.lower, v.upper, v.pitch, v.directions)
-    out.sculpt, out.to_world = ob.name, _rigid(ob, context.scene)
+    out.sculpt, out.to_world, out.notes = ob.name, _rigid(ob, context.scene), tuple(not_in_cuts(content))
     return out
 
 
@@ -195,7 +210,8 @@ def _plan(context):
         where = course.of_paths(program.poses, _played_paths(context, ob, plan))
     chosen = options(settings.options)
     program, text = _with_lines(program, plan, settings.post, chosen)
-    return _new(ob.name, program, where, text=text, machine=settings.post, options=chosen, plan=ob.name)
+    more = {"machine": settings.post, "options": chosen, "plan": ob.name}
+    return _new(ob.name, program, where, text=text, notes=tuple(filter(None, [left_out(plan)])), **more)
 
 
 def _played_paths(context, ob, plan):

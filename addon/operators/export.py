@@ -38,17 +38,8 @@ class Export(ExportHelper):
     def removing(self, ob, content):
         """programs.removing, and a word on what is left out."""
         cuts = programs.removing(ob.name, content)
-        added, masked = len(content.cuts) - len(cuts), sum(cut.masked for cut in cuts)
-        if added:
-            count = f"{added} stroke{'s' * (added > 1)}"
-            self.report({"WARNING"}, f"No machine can put material on: left out {count} that did")
-        if masked:
-            self.report({"WARNING"}, f"Cuts made beside a mask: {masked}. What is written cuts what it protected, too")
-        if content.shaped:
-            self.report(
-                {"WARNING"},
-                local("Crop, smoothing, reliefs and edits of the mesh are not in what is written: it has cuts only"),
-            )
+        for said in programs.not_in_cuts(content):
+            self.report({"WARNING"}, local(said))
         return cuts
 
 

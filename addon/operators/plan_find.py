@@ -9,7 +9,6 @@ from ..core import units as names
 from ..core.job import TaskJob
 from . import shared
 from .long import LongWork
-from .plan_work import tell_all
 
 
 class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator):
@@ -98,7 +97,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
             problems = plan_states.state(ob).problems
-        tell_all(self, f"{found}. {left}" if left else found, problems)
+        shared.tell_all(self, f"{found}. {left}" if left else found, problems)
         return {"FINISHED"}
 
     def draw(self, context):

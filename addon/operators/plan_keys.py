@@ -11,7 +11,7 @@ from ..bl.turning import plan_object
 from ..core import keys, quaternions
 from ..core.job import AfterJob
 from . import shared
-from .plan_work import TimelineWork, plan_poll, tell, tell_all, timeline_poll
+from .plan_work import TimelineWork, plan_poll, tell, timeline_poll
 
 
 class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
@@ -250,7 +250,7 @@ class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
         done = f"No collision at {job.computed} poses"
         if found:
             done = f"The tool collides at {sum(b - a + 1 for a, b in found)} frames, marked below"
-        tell_all(self, done, self._notes, bool(found))
+        shared.tell_all(self, done, self._notes, bool(found))
         return {"FINISHED"}
 
 

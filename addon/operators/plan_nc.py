@@ -16,7 +16,7 @@ from ..core.job import AfterJob, ChainJob
 from ..core.surroundings import guarded
 from ..properties.plan import MACHINES
 from . import shared
-from .plan_work import PlanWork, part_poll, plan_poll, tell_all
+from .plan_work import PlanWork, part_poll, plan_poll
 
 EXTENSIONS = {"heidenhain": ".h", "apt": ".apt"}
 
@@ -104,7 +104,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
             done = f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free"
             done += f", but {left}" if left else ""
             done += f". {plan_states.state(ob).difference}" if played else ""
-        tell_all(self, done, notes, blocked > 0 or left != "")
+        shared.tell_all(self, done, notes, blocked > 0 or left != "")
 
 
 class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
@@ -180,7 +180,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
         if len(written["rewinds"]):
             rows = ", ".join(str(int(r)) for r in np.atleast_1d(written["rewinds"])[:4])
             notes.append(f"The tool leaves the material to turn an axis back, at rows {rows}")
-        tell_all(self, done, notes)
+        shared.tell_all(self, done, notes)
 
     def draw(self, context):
         shared.draw_fields(self, ("post", "feed", "spindle", "options"))

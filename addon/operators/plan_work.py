@@ -47,11 +47,6 @@ def tell(operator, ob):
     return {"FINISHED"}
 
 
-def tell_all(operator, done, notes, wrong=False):
-    """What was done; a warning where that is `wrong`, or there is more to be said of it."""
-    operator.report({"WARNING" if wrong or notes else "INFO"}, ". ".join([done, *notes]))
-
-
 class PlanWork(LongWork):
     """Mixin; a subclass makes the job from what `take` gives."""
 

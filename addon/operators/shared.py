@@ -95,6 +95,11 @@ def tell_modifiers(operator, ob):
         )
 
 
+def tell_all(operator, done, notes, wrong=False):
+    """What was done; a warning where that is `wrong`, or there is more to be said of it."""
+    operator.report({"WARNING" if wrong or notes else "INFO"}, ". ".join([done, *map(local, notes)]))
+
+
 def deny(cls, message):
     cls.poll_message_set(message)
     return False

@@ -42,7 +42,8 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
         first, last = now.course.first, now.course.last
         timeline.show_range(context.scene, first, last)
         count = names.format_count(len(setup.program.poses))
-        self.report({"INFO"}, f"{setup.name}: {count} rows at frames {first} to {last}. Esc in the view ends it")
+        done = f"{setup.name}: {count} rows at frames {first} to {last}. Esc in the view ends it"
+        shared.tell_all(self, done, setup.notes)
         return {"FINISHED"}
 
     def invoke(self, context, event):

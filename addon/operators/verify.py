@@ -15,6 +15,7 @@ from ..core import poses
 from ..core import units as names
 from ..core.job import ChainJob, ThreadTask
 from ..core.surroundings import check_fixture
+from ..translations import local
 from . import shared, simulate
 from .long import LongWork
 
@@ -75,7 +76,9 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
             settings.said = f"{setup.name}: {names.format_count(len(found))} finding{'s' * (len(found) > 1)}"
         else:
             settings.said = f"{setup.name}: nothing was found" + ("" if report.passed else ", not all was checked")
-        self.report({"INFO"} if report.passed else {"WARNING"}, f"{settings.said}. {more}".strip())
+        notes = " ".join(f"{local(said)}." for said in setup.notes)
+        level = {"INFO"} if report.passed and not notes else {"WARNING"}
+        self.report(level, " ".join(filter(None, (f"{settings.said}.", notes, more))))
         return {"FINISHED"}
 
     def _colour(self, context, report):

@@ -211,6 +211,9 @@ def test_code_of_cuts_beside_a_mask_says_that_it_cuts_what_was_protected():
     support.select(ob)
     bpy.ops.riffler.cut_curve(curve=c.name, tool=support.BALL)
     assert "beside a mask: 1." in written()
+    for look in (bpy.ops.riffler.verify, bpy.ops.riffler.simulate):  # who looks at the program is told, too
+        assert "beside a mask: 1." in support.printed(lambda look=look: look(source="CUTS"))
+    bpy.ops.riffler.simulate_stop()
     sculpting.stroke(ob.name, 2)
     assert "beside a mask: 2." in written()
     sculpting.live().end_all()

@@ -209,6 +209,11 @@ def test_paths_without_keys_are_not_cut_and_that_is_said():
     support.part("bl.replan").flush()
     said = support.printed(call)
     assert "Warning" in said and "Paths 2, 3 have no keys and are not cut" in said, said
+    programs.stock()
+    for look in (bpy.ops.riffler.verify, bpy.ops.riffler.simulate):
+        said = support.printed(lambda look=look: look(source="PLAN"))
+        assert "Warning" in said and "Paths 2, 3 have no keys and are not cut" in said, said
+    bpy.ops.riffler.simulate_stop()
     read = riffler.Program.read(support.out("some.ngc"), machine="tcp")
     (rows, *others) = programs.content(ob).cl
     assert not any(o is not None and len(o) for o in others)

@@ -120,6 +120,24 @@ def tool_of_another_workspace(screen):
     yield 1.0
 
 
+def scripts_reloaded(screen):
+    """Reload Scripts, while a sculpt is worked at: its strokes are in it, and the add-on goes on."""
+    strokes.tool(screen, "riffler.carve")
+    yield from strokes.drag(screen, [(15, 20, 20), (45, 20, 20)])
+    assert strokes.run() is not None
+    volume, before = strokes.volume().volume, support.part("bl.live")
+    with screen.override():
+        bpy.ops.script.reload()
+    yield lambda: support.part("bl.live") is not before
+    yield 2.0
+    carved = cut.state()
+    assert carved[0] == volume
+    whole(carved)
+    strokes.tool(screen, "riffler.carve")
+    yield from strokes.drag(screen, [(15, 10, 20), (45, 10, 20)])
+    assert strokes.volume().volume < volume
+
+
 def tool_turned(screen):
     """In mid-drag: the tool moves with the animation again."""
     bpy.context.scene.riffler.plan.part = plans.part_object()
@@ -224,4 +242,5 @@ def steps(screen):
         yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)])
         assert strokes.volume().volume < whole_volume
         yield from tool_of_another_workspace(screen)
+        yield from scripts_reloaded(screen)
         yield from tool_turned(screen)
