@@ -37,58 +37,41 @@ namespace {
   throw std::runtime_error(path.filename().string() + ": " + what + ": " + std::strerror(errno));
 }
 
-constexpr std::size_t kPiece = 4 << 20;  // bytes from one report of progress to the next: some milliseconds
-
-/// A new file beside `path` that removes itself unless it was renamed over it.
-class Beside {
- public:
-  explicit Beside(const fs::path& path) : path_(path), name_(path.string() + ".XXXXXX") {
-    fd_ = mkstemp(name_.data());
-    if (fd_ < 0) fail(path_, "cannot be written");
-  }
-  Beside(const Beside&) = delete;
-  Beside& operator=(const Beside&) = delete;
-  ~Beside() {
-    if (fd_ >= 0) close(fd_);
-    if (!done_) unlink(name_.c_str());
-  }
-
-  void write(std::span<const std::uint8_t> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) fail(path_, "cannot be written");
-      bytes = bytes.subspan(static_cast<std::size_t>(n));
-    }
-  }
-
-  void commit() {
-    const mode_t mask = umask(0);
-    umask(mask);
-    // mkstemp makes a private file; the result has the mode that an ordinary new file would have.
-    if (fchmod(fd_, 0666 & ~mask) != 0 || fsync(fd_) != 0) fail(path_, "cannot be written");
-    const int fd = std::exchange(fd_, -1);
-    if (close(fd) != 0) fail(path_, "cannot be written");
-    if (std::rename(name_.c_str(), path_.c_str()) != 0) fail(path_, "cannot be replaced");
-    done_ = true;
-  }
-
- private:
-  fs::path path_;
-  std::string name_;
-  int fd_ = -1;
-  bool done_ = false;
-};
-
 }  // namespace
 
-void write_file(const fs::path& path, std::span<const std::uint8_t> bytes, const Progress& progress) {
-  Beside file(path);
-  for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
-    report(progress, static_cast<double>(at) / static_cast<double>(bytes.size()));
-    file.write(bytes.subspan(at, std::min(kPiece, bytes.size() - at)));
+NewFile::NewFile(const fs::path& path) : path_(path), name_(path.string() + ".XXXXXX") {
+  fd_ = mkstemp(name_.data());
+  if (fd_ < 0) fail(path_, "cannot be written");
+}
+
+NewFile::~NewFile() {
+  if (fd_ >= 0) close(fd_);
+  if (!done_) unlink(name_.c_str());
+}
+
+void NewFile::write(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(path_, "cannot be written");
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
   }
-  report(progress, 1);
+}
+
+void NewFile::commit() {
+  const mode_t mask = umask(0);
+  umask(mask);
+  // mkstemp makes a private file; the result has the mode that an ordinary new file would have.
+  if (fchmod(fd_, 0666 & ~mask) != 0 || fsync(fd_) != 0) fail(path_, "cannot be written");
+  const int fd = std::exchange(fd_, -1);
+  if (close(fd) != 0) fail(path_, "cannot be written");
+  if (std::rename(name_.c_str(), path_.c_str()) != 0) fail(path_, "cannot be replaced");
+  done_ = true;
+}
+
+void write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  NewFile file(path);
+  file.write(bytes);
   file.commit();
 }
 

@@ -16,10 +16,18 @@ namespace {
 struct Format {
   const char* extension;
   Mesh (*from)(std::span<const std::uint8_t>, const std::string&);
-  std::vector<std::uint8_t> (*to)(const Mesh&);
+  void (*put)(const Mesh&, const PutBytes&);
 };
 
-constexpr Format kFormats[] = {{".stl", from_stl, to_stl}, {".obj", from_obj, to_obj}, {".ply", from_ply, to_ply}};
+void put_obj(const Mesh& mesh, const PutBytes& put) {
+  put(to_obj(mesh), 1);
+}
+
+void put_ply(const Mesh& mesh, const PutBytes& put) {
+  put(to_ply(mesh), 1);
+}
+
+constexpr Format kFormats[] = {{".stl", from_stl, put_stl}, {".obj", from_obj, put_obj}, {".ply", from_ply, put_ply}};
 
 const Format& format_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
@@ -40,8 +48,12 @@ Mesh read_mesh(const std::filesystem::path& path) {
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
   const Format& format = format_of(path);
   report(progress, 0);
-  const std::vector<std::uint8_t> bytes = format.to(mesh);
-  write_file(path, bytes, part(progress, 0.5, 1));
+  NewFile file(path);
+  format.put(mesh, [&](std::span<const std::uint8_t> bytes, double share) {
+    file.write(bytes);
+    report(progress, share);
+  });
+  file.commit();
 }
 
 }  // namespace riffler

@@ -1,5 +1,6 @@
 #include "mesh/stl.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -20,6 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "binary STL is little-endian");
 
 constexpr std::size_t kHeader = 80, kStart = 84, kRecord = 50;
+constexpr std::size_t kPiece = 1 << 15;  // triangles that are written at once: 1.6 MB
 // Must not begin with "solid", which many readers take for ASCII.
 constexpr std::string_view kTitle = "Binary STL by Riffler; lengths in mm";
 
@@ -143,20 +145,33 @@ Mesh from_stl(std::span<const std::uint8_t> bytes, const std::string& name) {
                         std::to_string(bytes.size()));
 }
 
-std::vector<std::uint8_t> to_stl(const Mesh& mesh) {
+void put_stl(const Mesh& mesh, const PutBytes& put) {
   validate(mesh);
   const std::size_t count = mesh.triangles.size();
   if (count > 0xffffffff) throw std::invalid_argument("triangles: more than a binary STL can count");
-  std::vector<std::uint8_t> bytes(kStart + kRecord * count, 0);
-  std::memcpy(bytes.data(), kTitle.data(), kTitle.size());
+  std::array<std::uint8_t, kStart> head{};
+  std::memcpy(head.data(), kTitle.data(), kTitle.size());
   const auto count32 = static_cast<std::uint32_t>(count);
-  std::memcpy(&bytes[kHeader], &count32, 4);
-  parallel_for(count, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const std::array<float, 12> values = record(mesh, mesh.triangles[t]);
-      std::memcpy(&bytes[kStart + t * kRecord], values.data(), 48);
-    }
-  });
+  std::memcpy(&head[kHeader], &count32, 4);
+  put(head, count == 0 ? 1 : 0);
+  std::vector<std::uint8_t> bytes(kRecord * std::min(count, kPiece), 0);  // attributes stay 0
+  for (std::size_t at = 0; at < count; at += kPiece) {
+    const std::size_t some = std::min(kPiece, count - at);
+    parallel_for(some, 1 << 13, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const std::array<float, 12> values = record(mesh, mesh.triangles[at + t]);
+        std::memcpy(&bytes[t * kRecord], values.data(), 48);
+      }
+    });
+    put(std::span(bytes).first(some * kRecord), static_cast<double>(at + some) / static_cast<double>(count));
+  }
+}
+
+std::vector<std::uint8_t> to_stl(const Mesh& mesh) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(kStart + kRecord * mesh.triangles.size());
+  put_stl(mesh,
+          [&](std::span<const std::uint8_t> piece, double) { bytes.insert(bytes.end(), piece.begin(), piece.end()); });
   return bytes;
 }
 

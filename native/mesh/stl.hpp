@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,5 +21,11 @@ Mesh from_stl(std::span<const std::uint8_t> bytes, const std::string& name);
 /// Binary STL. Coordinates are rounded to float32; normals are those of the rounded triangles, 0 where they have no
 /// area. An empty mesh gives the 84 bytes of an STL with no triangles. std::invalid_argument where `validate` throws.
 std::vector<std::uint8_t> to_stl(const Mesh& mesh);
+
+/// Takes a piece of a file, and the share of it that there is then.
+using PutBytes = std::function<void(std::span<const std::uint8_t> bytes, double share)>;
+
+/// The same bytes, piece after piece: a large file is written from a few MB that stay in the cache.
+void put_stl(const Mesh& mesh, const PutBytes& put);
 
 }  // namespace riffler
