@@ -56,6 +56,9 @@ void NewFile::write(std::span<const std::uint8_t> bytes) {
     if (n < 0) fail(path_, "cannot be written");
     bytes = bytes.subspan(static_cast<std::size_t>(n));
   }
+#ifdef __linux__
+  sync_file_range(fd_, 0, 0, SYNC_FILE_RANGE_WRITE);  // begin now what `commit` waits for; a hint, which may be refused
+#endif
 }
 
 void NewFile::commit() {
