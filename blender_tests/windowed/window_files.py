@@ -93,7 +93,7 @@ def recording(screen):
         bpy.ops.ed.undo_push(message="Before")
     before = cut.state()
     yield from choose(screen, bpy.ops.riffler.cut_recording, path)
-    yield lambda: running() == "Cutting"
+    yield lambda: running() == "Cutting" or cut.state()[0] < before[0]
     yield lambda: not running()
     assert cut.state()[0] == made[0] < before[0]
     yield from cut.undo(screen, before)
