@@ -35,6 +35,7 @@ class FileWork(LongWork):
         call = getattr(bpy.ops.riffler, type(self).bl_idname.partition(".")[2])  # an instance has Blender's name for it
         try:
             call("INVOKE_DEFAULT", **{**self.as_keywords(), "ask": False})
-        except RuntimeError as error:  # what the other call has reported
-            return shared.fail(self, error)
+        except RuntimeError as error:  # what the other call has reported, as Blender hands it on
+            said = " ".join(line.removeprefix("Error: ") for line in str(error).splitlines())
+            return shared.fail(self, RuntimeError(said))
         return {"CANCELLED"}  # of this call there is nothing to be undone

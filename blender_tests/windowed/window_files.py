@@ -45,7 +45,7 @@ def steps(screen):
         bpy.ops.riffler.new_stock(**STOCK)
     yield from written(screen)
     yield from cancelled(screen)
-    yield from nowhere(screen)
+    yield from no_recording(screen)
     yield from recording(screen)
 
 
@@ -72,11 +72,19 @@ def cancelled(screen):
     assert path.read_bytes() == before and set(path.parent.iterdir()) == beside
 
 
-def nowhere(screen):
-    """A folder that is not there is said, and nothing runs."""
-    yield from choose(screen, bpy.ops.riffler.export_stl, "/nowhere/at/all.stl")
-    yield 0.5
+def no_recording(screen):
+    """A file that is none is said in the words of whoever finds it, and nothing runs."""
+    shared, said = support.part("operators.shared"), []
+    fail = shared.fail
+    shared.fail = lambda operator, error: said.append(str(error)) or fail(operator, error)
+    try:
+        yield from choose(screen, bpy.ops.riffler.cut_recording, support.out("chosen.stl"))
+        yield lambda: said
+        yield 0.5
+    finally:
+        shared.fail = fail
     assert not running()
+    assert len(said) == 2 and said[0] == said[1] and said[0].startswith("chosen.stl"), said
 
 
 def recording(screen):
