@@ -36,20 +36,15 @@ FAST = 1  # of zlib: a third more bytes than the usual level in a quarter of its
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the same mesh gives the same bytes
 
 
-def write(path, vertices, triangles, name: str = "part") -> None:
-    """`vertices` (n, 3) mm, `triangles` (k, 3). Whole or not at all. ValueError for a mesh without triangles or with
-    values that are not finite; coordinates keep nine digits, which give each float32 back."""
-    for _ in pieces(path, vertices, triangles, name):
-        pass
-
-
 def count(vertices, triangles) -> int:
     """How many `pieces` there are."""
     return -(-len(vertices) // ROWS) - (-len(triangles) // ROWS)
 
 
 def pieces(path, vertices, triangles, name: str = "part") -> Iterator[None]:
-    """`write`, piece by piece. Where it is closed before its end there is no file."""
+    """Writes the file, piece by piece; where it is closed before its end there is none. `vertices` (n, 3) mm,
+    `triangles` (k, 3). ValueError for a mesh without triangles or with values that are not finite; coordinates keep
+    nine digits, which give each float32 back."""
     vertices, triangles = np.asarray(vertices, float), np.asarray(triangles)
     if len(triangles) == 0:
         raise ValueError("the mesh has no triangles; a 3MF file holds one at least")

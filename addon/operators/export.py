@@ -44,7 +44,7 @@ class Export(ExportHelper):
 
 
 class ExportSurface(FileWork):
-    """Mixin of the operators that write the surface, by `job`, whole or not at all."""
+    """Mixin of the operators that write the surface, by `job`, whole or not at all. `in_background`: as that job's."""
 
     bl_options = set()  # what is written is no step of undo
     helper = ExportHelper
@@ -79,7 +79,7 @@ class ExportSurface(FileWork):
             return self.job(surface, path, name)
 
         # a copy: who sculpts meanwhile goes on
-        return AfterJob(tasks.to_mesh(live.content(ob).volume.copy()), write, in_background=False)
+        return AfterJob(tasks.to_mesh(live.content(ob).volume.copy()), write, self.in_background)
 
     def finish(self, context, job):
         self.report({"INFO"}, f"{bpy.path.basename(self.filepath)}: {self._done}")
@@ -99,6 +99,7 @@ class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator, ExportHelper):
 
     filename_ext = ".stl"
     filter_glob: bpy.props.StringProperty(default="*.stl", options={"HIDDEN"})
+    in_background = True
 
     def job(self, surface, path, name):
         return TaskJob(tasks.write(surface, path))
@@ -112,6 +113,7 @@ class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator, ExportHelper):
 
     filename_ext = ".3mf"
     filter_glob: bpy.props.StringProperty(default="*.3mf", options={"HIDDEN"})
+    in_background = False
 
     def job(self, surface, path, name):
         mesh = surface.vertices, surface.triangles

@@ -11,6 +11,11 @@ from addon.core import colours, threemf_out
 from addon.core.job import ChainJob, run_through
 
 
+def write(*mesh):
+    for _ in threemf_out.pieces(*mesh):
+        pass
+
+
 def part():
     volume = riffler.Volume.block((0, 0, 0), (20, 15, 10), 0.5, "xyz")
     volume.carve(riffler.Tool.ball(6, 30), [(5, 5, 8, 0, 0, 1), (15, 10, 8, 0, 0, 1)])
@@ -21,7 +26,7 @@ def test_what_is_written_comes_back_to_the_bit(tmp_path):
     pytest.importorskip("lib3mf", reason="lib3mf is not installed here")
     mesh = part()
     path = tmp_path / "größe & more.3mf"
-    threemf_out.write(path, mesh.vertices, mesh.triangles, 'a <"part"> & more')
+    write(path, mesh.vertices, mesh.triangles, 'a <"part"> & more')
     again = riffler.Mesh.read(path)
     assert np.array_equal(np.asarray(again.vertices, np.float32), np.asarray(mesh.vertices, np.float32))
     assert np.array_equal(again.triangles, mesh.triangles)
@@ -29,7 +34,7 @@ def test_what_is_written_comes_back_to_the_bit(tmp_path):
 
 def test_the_zip_is_made_at_the_quick_level(tmp_path):
     mesh, path = part(), tmp_path / "a.3mf"
-    threemf_out.write(path, mesh.vertices, mesh.triangles)
+    write(path, mesh.vertices, mesh.triangles)
     with zipfile.ZipFile(path) as archive:
         model, size = archive.read("3D/3dmodel.model"), archive.getinfo("3D/3dmodel.model").compress_size
     sizes = {level: len(zlib.compress(model, level, -zlib.MAX_WBITS)) for level in (1, 6)}
@@ -41,7 +46,7 @@ def test_the_file_is_what_the_specification_asks(tmp_path):
 
     mesh = part()
     path = tmp_path / "a.3mf"
-    threemf_out.write(path, mesh.vertices, mesh.triangles, "a < b & c")
+    write(path, mesh.vertices, mesh.triangles, "a < b & c")
     with zipfile.ZipFile(path) as archive:
         assert archive.testzip() is None
         assert archive.namelist() == ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"]
@@ -55,7 +60,7 @@ def test_the_file_is_what_the_specification_asks(tmp_path):
     assert np.array_equal(vertices, np.asarray(mesh.vertices, np.float32))
     assert np.array_equal(triangles, mesh.triangles)
     first = path.read_bytes()
-    threemf_out.write(path, mesh.vertices, mesh.triangles, "a < b & c")
+    write(path, mesh.vertices, mesh.triangles, "a < b & c")
     assert path.read_bytes() == first
 
 
@@ -64,12 +69,12 @@ def test_what_cannot_be_written_leaves_the_file_that_was_there(tmp_path):
     path.write_text("before")
     mesh = part()
     with pytest.raises(ValueError, match="no triangles"):
-        threemf_out.write(path, mesh.vertices, mesh.triangles[:0])
+        write(path, mesh.vertices, mesh.triangles[:0])
     with pytest.raises(ValueError, match="not finite"):
-        threemf_out.write(path, np.asarray(mesh.vertices) * np.nan, mesh.triangles)
+        write(path, np.asarray(mesh.vertices) * np.nan, mesh.triangles)
     assert path.read_text() == "before" and len(list(tmp_path.iterdir())) == 1
     with pytest.raises(OSError):
-        threemf_out.write(tmp_path / "none" / "a.3mf", mesh.vertices, mesh.triangles)
+        write(tmp_path / "none" / "a.3mf", mesh.vertices, mesh.triangles)
 
 
 def test_colours_tell_too_much_from_too_little_and_from_nothing():
