@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-blender test-blenders soak stress scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-tools test-blender test-blenders soak stress scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -24,15 +24,15 @@ demo:  ## Carve the demo figure, write STL and NC code, render it: out/demo
 	@$(ready) demo
 	$(python) demo/run.py --out out/demo --blender-python .envs/bpy-4.5/bin/python
 
-test:  ## Run every test: C++, Python, documents, Blender
+test:  ## Run every test: C++, Python, tools, documents, Blender (SUITES="… lint sanitize" for others)
 	@$(ready) test
-	@$(python) tools/test.py
+	@$(python) tools/test.py $(SUITES)
 
 test-cpp:  ## Run the C++ tests only
 	@$(ready) cpp-tests
 	@$(python) tools/test.py cpp
 
-test-python test-docs:  ## Run the Python tests or the documents' examples only
+test-python test-docs test-tools:  ## Run the Python tests, the documents' examples or the tests of tools/ only
 	@$(ready)
 	@$(python) tools/test.py $(@:test-%=%)
 
@@ -51,10 +51,11 @@ soak:  ## Make STROKES strokes and UNDOS steps of undo, call operators at random
 
 stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, hold tools at POSES, from SEED, and check each
 	@$(ready) cpp-tests
-	$(python) tools/preset.py release riffler_stress riffler_mesh_stress riffler_contact_stress
+	$(python) tools/preset.py release riffler_stress riffler_mesh_stress riffler_contact_stress riffler_tests
 	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_mesh_stress --volumes $(or $(VOLUMES),100000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)
+	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Sculpting.*'
 
 scenes:  ## Write the hashes of the replayed journals anew: native/tests/scenes/hashes.txt
 	@$(ready) cpp-tests
@@ -78,11 +79,7 @@ bench-docs:  ## Put figures and plots of the last `make bench` into the document
 
 lint:  ## Check style, layers, and that every header stands alone
 	@$(ready) cpp-tests
-	$(python) -m ruff check .
-	$(python) -m ruff format --check .
-	find native device -name '*.[ch]pp' -o -name '*.[ch]' | xargs .venv/bin/clang-format --dry-run -Werror
-	$(python) tools/check_layers.py
-	$(python) tools/preset.py release all_verify_interface_header_sets
+	@$(python) tools/test.py lint
 
 format:  ## Bring all sources into style
 	@$(ready)
@@ -92,7 +89,7 @@ format:  ## Bring all sources into style
 
 sanitize:  ## Run the C++ tests under the address and undefined-behaviour sanitizers
 	@$(ready) cpp-tests
-	$(python) tools/preset.py asan --test
+	@$(python) tools/test.py sanitize
 
 docs:  ## Check links and examples, make the site of the documents and the API reference: out/site
 	@$(ready)

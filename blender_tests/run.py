@@ -4,10 +4,11 @@
     python blender_tests/run.py --only test_cut       tests whose name contains the text
     python blender_tests/run.py --blender 4.5 --mode source --no-window
 
-Each (Blender, way of installing), and each script of a window, is one process with a time limit; two run at a time.
+Each (Blender, way of installing), and each script of a window, is one process with a time limit; three run at a time.
 Ways of installing: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
-source folder, which is tested in one Blender, or in those that --blender or --mode names. Ends with the number of tests
-that passed, failed and were skipped, with reasons; exit code 1 if one failed.
+source folder, of which one Blender tests what goes by the way of installing, and everything where --blender or --mode
+names it. Ends with the slowest tests and the number of those that passed, failed and were skipped, with reasons; exit
+code 1 if one failed.
 """
 
 from __future__ import annotations
@@ -35,9 +36,13 @@ MARK = "RIFFLER_TEST "
 sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
-AT_ONCE = 2  # processes; each has a core or two to itself, and a gigabyte
+AT_ONCE = 3  # processes, of a gigabyte each; windows and pens wait for themselves for a third of their time
 FIRST_DISPLAY = 90  # each window looks for a free one from a number of its own on: two at once would take the same
 FROM_SOURCE = (4, 5)  # the Blender that has the source folder, too
+# What may depend on where the add-on lies and what its module is called; the rest is the same code as in the extension,
+# which the same Blender tests whole.
+OF_THE_PLACE = ("lifecycle", "preferences", "recovery", "operators", "tools", "messages")
+SLOWEST = 20
 END = 8  # lines of a message that are said again at the end, where they are read first
 
 
@@ -48,12 +53,14 @@ def indented(message: str, last: int = 0) -> str:
 @dataclass
 class Tally:
     passed: int = 0
+    times: list[tuple[float, str]] = field(default_factory=list)
     failed: list[tuple[str, str]] = field(default_factory=list)  # name and message
     skipped: list[str] = field(default_factory=list)
 
     def add(self, where: str, result: dict) -> None:
         name, outcome = f"{where}: {result['name']}", result["outcome"]
         note = ""
+        self.times.append((result["seconds"], name))
         if outcome == "passed":
             self.passed += 1
         elif outcome == "skipped":
@@ -270,7 +277,10 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
             if mode != "source" and mode not in bench.zips:
                 bench.tally.skip(f"{environment.name}, {mode}", "no wheel in build/wheel or dist to make the zip from")
                 continue
-            runs.append(partial(bench.run, environment, mode, files))
+            chosen = files
+            if mode == "source" and not (arguments.mode or arguments.blender):
+                chosen = [file for file in files if file.stem.removeprefix("test_") in OF_THE_PLACE]
+            runs.append(partial(bench.run, environment, mode, chosen))
         if arguments.mode in (None, "source"):
             runs.append(partial(bench.run, environment, "none", [HERE / "broken" / "test_fallback.py"]))
             if arguments.figures:
@@ -353,6 +363,9 @@ def validate(bench: Bench) -> None:
 
 
 def close(tally: Tally) -> int:
+    print(f"\nthe slowest of {len(tally.times)} tests, which took {sum(t for t, _ in tally.times):.0f} s together")
+    for seconds, name in sorted(tally.times, reverse=True)[:SLOWEST]:
+        print(f"  {seconds:7.2f} s  {name}")
     print(f"\n{tally.passed} passed, {len(tally.failed)} failed, {len(tally.skipped)} skipped")
     for line in tally.skipped:
         print(f"  skipped  {line}")

@@ -92,7 +92,7 @@ def device_problems() -> list[str]:
 
 
 def header_problems() -> list[str]:
-    """Only headers without a source are compiled by themselves (cmake/headers.cmake)."""
+    """Where sources are compiled one by one, that shows that their headers stand alone (cmake/headers.cmake)."""
     problems = []
     for topic in [*topics(), "reference"]:
         for source in sorted((ROOT / "native" / topic).glob("*.cpp")):

@@ -69,7 +69,7 @@ def make_environment(path: Path, requirements: Path, fallback: list[str] | None 
     path.mkdir(parents=True)
     unfinished.touch()
     bare_environment(path, pip_requirements)
-    install = [*pip(path), "install", *network_options(), "-r", requirements]
+    install = [*pip(path), "install", "--quiet", *network_options(), "-r", requirements]
     try:
         run(*install)
     except StepError:

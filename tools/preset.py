@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import os
 import sys
+from xml.etree import ElementTree
 
-from shell import StepError, main, run
+from shell import ROOT, StepError, main, run, say
+
+SLOWEST = 20
 
 
 def build_preset(preset: str, *targets: str) -> None:
@@ -21,7 +24,22 @@ def build_preset(preset: str, *targets: str) -> None:
 def test_preset(preset: str) -> None:
     """Every C++ test in a process of its own, as many at once as there are cores."""
     build_preset(preset, "riffler_tests")
-    run("ctest", "--preset", preset, "--parallel", str(len(os.sched_getaffinity(0))))
+    report = ROOT / "build" / preset / "tests.xml"
+    report.unlink(missing_ok=True)
+    try:
+        run("ctest", "--preset", preset, "--parallel", str(len(os.sched_getaffinity(0))), "--output-junit", report)
+    finally:
+        if report.is_file():
+            print_slowest(
+                preset, [(float(c.get("time")), c.get("name")) for c in ElementTree.parse(report).iter("testcase")]
+            )
+
+
+def print_slowest(what: str, times: list[tuple[float, str]]) -> None:
+    """The tests to look at first where the whole is too slow: seconds and name of each."""
+    say(f"{what}: the slowest of {len(times)} tests, which took {sum(t for t, _ in times):.0f} s together")
+    for seconds, name in sorted(times, reverse=True)[:SLOWEST]:
+        print(f"  {seconds:7.2f} s  {name}")
 
 
 def entry() -> None:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import fcntl
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import system
 from environments import (
@@ -41,10 +42,21 @@ def setup(purpose: str) -> None:
         raise StepError(f"Python 3.11 or later is needed, this is {sys.version.split()[0]}")
     system.require(system.BUILD + EXTRA_NEEDS[purpose])
     make_environment(VENV, ROOT / "requirements" / "dev.txt")
-    wheel, key = build_wheel()
-    install_wheel(VENV, wheel, key)
-    for version in {"demo": [DEMO_BLENDER], "test": blender_versions()}.get(purpose, []):
+    versions = {"demo": [DEMO_BLENDER], "test": blender_versions()}.get(purpose, [])
+    with ThreadPoolExecutor(1) as background:
+        # Packages are unpacked while the compiler is busy.
+        others = background.submit(other_environments, purpose, versions)
+        wheel, key = build_wheel()
+        install_wheel(VENV, wheel, key)
+        others.result()
+    for version in versions:
         install_wheel(blender_environment(version), wheel, key)
+
+
+def other_environments(purpose: str, versions: list[str]) -> None:
+    """What is in .envs, as far as it does not depend on our own wheel."""
+    for version in versions:
+        blender_environment(version)
     if purpose == "test":
         docs_environment()
     if purpose in ("test", "demo"):

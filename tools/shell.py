@@ -5,11 +5,12 @@ from __future__ import annotations
 import hashlib
 import os
 import shlex
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+
+import compiler_cache
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
@@ -29,16 +30,7 @@ def tool_environment(**extra: str) -> dict[str, str]:
     """The caller's environment with .venv's programs first, and without what would leak other packages in."""
     env = {k: v for k, v in os.environ.items() if k not in {"PYTHONPATH", "PYTHONHOME", "MAKEFLAGS", "MFLAGS"}}
     env["PATH"] = f"{VENV / 'bin'}{os.pathsep}{env.get('PATH', os.defpath)}"
-    return compiling_once() | env | {"PYTHONNOUSERSITE": "1"} | extra
-
-
-def compiling_once() -> dict[str, str]:
-    """Where there is ccache, what the wheel, the tests and the benchmarks have in common is compiled once. It takes one
-    compiler under two names for two: CMake looks for c++, scikit-build-core for the name that Python was built with."""
-    if not (shutil.which("ccache") and shutil.which("c++") and shutil.which("cc")):
-        return {}
-    launchers = {f"CMAKE_{language}_COMPILER_LAUNCHER": "ccache" for language in ("C", "CXX")}
-    return {"CC": "cc", "CXX": "c++", "CCACHE_DIR": str(ROOT / "build" / "ccache")} | launchers
+    return compiler_cache.environment() | env | {"PYTHONNOUSERSITE": "1"} | extra
 
 
 def run(*command: str | Path, env: dict[str, str] | None = None, cwd: Path = ROOT) -> None:

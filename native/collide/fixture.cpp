@@ -40,9 +40,10 @@ Mesh divided(const Mesh& mesh, double most) {
 }
 
 /// Sums the force over boxes of material: k times their volume in the tool, towards the middle of what they are in.
-class Sum {
+class FixtureSum {
  public:
-  Sum(const Assembly& assembly, const ToolFrame& frame, const MaterialBoxes& boxes, double stiffness, Contact& contact)
+  FixtureSum(const Assembly& assembly, const ToolFrame& frame, const MaterialBoxes& boxes, double stiffness,
+             Contact& contact)
       : assembly_(assembly),
         frame_(frame),
         boxes_(boxes),
@@ -221,7 +222,7 @@ bool Fixture::near(const Assembly& assembly, const ToolFrame& frame, double dist
 
 void Fixture::add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, Deadline& deadline,
                         Contact& contact, Counts& counts) const {
-  if (boxes_.size() > 0) Sum(assembly, frame, boxes_, stiffness, contact).run(deadline, counts);
+  if (boxes_.size() > 0) FixtureSum(assembly, frame, boxes_, stiffness, contact).run(deadline, counts);
 }
 
 }  // namespace riffler

@@ -9,10 +9,10 @@ namespace riffler {
 
 namespace {
 
-class Sum {
+class ForceSum {
  public:
-  Sum(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
-      double coarse, Contact& contact)
+  ForceSum(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
+           double coarse, Contact& contact)
       : assembly_(assembly),
         frame_(frame),
         points_(points),
@@ -102,7 +102,7 @@ class Sum {
 
 void add_force(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
                double coarse, Deadline& deadline, Contact& contact, Counts& counts) {
-  if (points.size() > 0) Sum(assembly, frame, points, stiffness, coarse, contact).run(deadline, counts);
+  if (points.size() > 0) ForceSum(assembly, frame, points, stiffness, coarse, contact).run(deadline, counts);
 }
 
 }  // namespace riffler

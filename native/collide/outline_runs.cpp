@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double area(const Vec2& a, const Vec2& b) {
   return a.x * b.y - a.y * b.x;

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kShortest = 1e-12;  // of the motion: no stretch is halved further
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double farthest(const Corners& t, const Vec3& p) {
   const auto square = [&](const Vec3& q) { return glm::dot(q - p, q - p); };

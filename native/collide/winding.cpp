@@ -2,11 +2,12 @@
 
 #include <cmath>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
 
-constexpr double kPi = 3.141592653589793;
 constexpr double kFar = 4;  // radii from a sphere's centre at which what is in it is a dipole
 
 /// Half the solid angle, as the argument of a complex number (van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2)

@@ -6,12 +6,12 @@
 #include <numeric>
 
 #include "dexel/field.hpp"
+#include "geom/math.hpp"
 
 namespace riffler {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Length of an edge in its distances up to which two points of Gauss are enough.
 constexpr double kShort = 1.0 / 4;
 /// Radii of pieces in distances up to which the ball about them says where they are.

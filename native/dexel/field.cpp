@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
+namespace {}  // namespace
 
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a, r = p - a;

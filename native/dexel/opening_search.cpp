@@ -2,11 +2,12 @@
 
 #include <span>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kFew = 128;                    // pieces near by that are looked at one by one
 constexpr double kShortest = 1.0 / (1 << 20);        // cells: a piece of a column at an edge is not halved further
 constexpr double kRoot = 1e-9;                       // cells: where the search along a column ends

@@ -9,13 +9,13 @@
 
 #include "dexel/boundary_field.hpp"
 #include "dexel/opening_search.hpp"
+#include "geom/math.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kTasks = 512;  // blocks into which the grid is cut before each is searched alone
 
 /// How far above and below the part |w| may still reach ½, cells: |w| is at most area / (4 π d²), and at most

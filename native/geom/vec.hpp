@@ -33,6 +33,16 @@ inline bool finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+inline double squared_length(const Vec3& v) {
+  return glm::dot(v, v);
+}
+
+/// `v`, shortened to `max` where it is longer.
+inline Vec3 clamp_length(const Vec3& v, double max) {
+  const double length = glm::length(v);
+  return length > max ? max / length * v : v;
+}
+
 /// The three ray directions. A grid of direction D works in the *cyclic frame* of D: local (u, v, w) with w along the
 /// ray: "x" → (y, z, x), "y" → (z, x, y), "z" → (x, y, z). The change of frame is a rotation, so it keeps handedness.
 enum class Axis : unsigned char { X = 0, Y = 1, Z = 2 };

@@ -5,13 +5,12 @@
 #include <limits>
 #include <numbers>
 
+#include "geom/math.hpp"
 #include "haptics/settings.hpp"
 
 namespace riffler {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// A unit vector square to `a`, from the coordinate axis that is farthest from it.
 Vec3 any_square_to(const Vec3& a) {

@@ -14,13 +14,13 @@ namespace riffler {
 namespace {
 
 using Count = std::atomic<std::size_t>;
-constexpr std::size_t kGrain = 1 << 14;
+constexpr std::size_t kAuditGrain = 1 << 14;
 
 /// Sums over chunks of [0, n), in parallel; counts are integers, so their order does not matter.
 template <class Test>
 std::size_t count_if(std::size_t n, const Test& test) {
   Count total{0};
-  parallel_for(n, kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(n, kAuditGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) count += test(static_cast<int>(i)) ? 1 : 0;
     total += count;

@@ -16,18 +16,14 @@ namespace {
 
 constexpr std::size_t kLeaf = 4;
 
-double square(const Vec3& v) {
-  return glm::dot(v, v);
-}
-
 double square_to_box(const Vec3& p, const Box3& box) {
-  return square(glm::max(Vec3(0), glm::max(box.lower - p, p - box.upper)));
+  return squared_length(glm::max(Vec3(0), glm::max(box.lower - p, p - box.upper)));
 }
 
 /// Nearest point of a segment: 0 inside, 1 at a, 2 at b.
 std::pair<Vec3, int> closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
-  const double along = glm::dot(p - a, ab), length2 = square(ab);
+  const double along = glm::dot(p - a, ab), length2 = squared_length(ab);
   if (!(along > 0)) return {a, 1};
   if (along >= length2) return {b, 2};
   return {a + (along / length2) * ab, 0};
@@ -37,7 +33,7 @@ std::pair<Vec3, int> closest_on_segment(const Vec3& p, const Vec3& a, const Vec3
 
 OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = glm::cross(b - a, c - a);
-  const double length2 = square(normal);
+  const double length2 = squared_length(normal);
   const std::array<Vec3, 4> corner{a, b, c, a};
   bool within[3], all = length2 > 0;
   for (int k = 0; k < 3; ++k) {
@@ -55,7 +51,7 @@ OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   for (int k = 0; k < 3; ++k) {
     if (within[k]) continue;
     const auto [q, where] = closest_on_segment(p, corner[k], corner[k + 1]);
-    if (const double d2 = square(p - q); d2 < best2) best2 = d2, best = {q, kParts[k][where]};
+    if (const double d2 = squared_length(p - q); d2 < best2) best2 = d2, best = {q, kParts[k][where]};
   }
   return best;
 }
@@ -157,7 +153,7 @@ Closest::Hit Closest::nearest(const Vec3& p, double limit, const Keep& keep) con
   descend(p, bound, [&](std::size_t i) {
     if (!keep(corners_[i])) return false;
     const OnTriangle on = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
-    const double d2 = square(p - on.point);
+    const double d2 = squared_length(p - on.point);
     if (d2 < bound || (d2 == bound && (hit.triangle < 0 || id_[i] < hit.triangle))) {
       bound = d2;
       hit = {on.point, 0, id_[i], on.part};
@@ -207,7 +203,8 @@ void Closest::gather(const Vec3& p, double limit, std::vector<Hit>& hits) const 
     // Most triangles of a leaf at the rim are out by their own box, which costs a tenth of the nearest point.
     if (square_to_box(p, {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}) > bound) return false;
     const OnTriangle on = closest_on_triangle(p, a, b, c);
-    if (const double d2 = square(p - on.point); d2 <= bound) hits.push_back({on.point, std::sqrt(d2), id_[i], on.part});
+    if (const double d2 = squared_length(p - on.point); d2 <= bound)
+      hits.push_back({on.point, std::sqrt(d2), id_[i], on.part});
     return false;
   });
 }
@@ -217,7 +214,7 @@ bool Closest::within(const Vec3& p, double limit) const {
   bool found = false;
   descend(p, bound, [&](std::size_t i) {
     const OnTriangle on = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
-    return found = square(p - on.point) <= bound;
+    return found = squared_length(p - on.point) <= bound;
   });
   return found;
 }

@@ -18,13 +18,9 @@ constexpr double kTurn = 0.2;
 // Twice the area over the square of the longest edge.
 constexpr double kThin = 1e-4;
 
-double square(const Vec3& v) {
-  return glm::dot(v, v);
-}
-
 bool turned(const Vec3& was, const Vec3& is) {
   const double dot = glm::dot(was, is);
-  return was != Vec3(0) && (dot < 0 || dot * dot < kTurn * kTurn * square(was) * square(is));
+  return was != Vec3(0) && (dot < 0 || dot * dot < kTurn * kTurn * squared_length(was) * squared_length(is));
 }
 
 }  // namespace
@@ -97,7 +93,7 @@ void Collapse::add_spoke(HalfedgeHandle spoke) {
 /// The face to the left of `spoke`, which is (apex, a, b).
 void Collapse::add_face(HalfedgeHandle spoke, const Vec3& apex, const Vec3& a, const Vec3& b) {
   const Vec3 cross = glm::cross(a - apex, b - apex);
-  const double longest = std::max({square(a - apex), square(b - a), square(apex - b)});
+  const double longest = std::max({squared_length(a - apex), squared_length(b - a), squared_length(apex - b)});
   faces_.push_back({mesh_.face_handle(spoke), mesh_.next_halfedge_handle(spoke), cross, Vec3(0), longest});
 }
 
@@ -147,7 +143,8 @@ bool Collapse::keeps_shape() {
     const Vec3 a = ring(i) - new_, b = ring(i + 1) - new_;
     face.new_cross = glm::cross(a, b);
     if (turned(face.old_cross, face.new_cross)) return false;
-    const double longest = std::max({square(a), square(b), square(b - a)}), area = square(face.new_cross);
+    const double longest = std::max({squared_length(a), squared_length(b), squared_length(b - a)}),
+                 area = squared_length(face.new_cross);
     if (area > kThin * kThin * longest * longest) continue;
     // A mesh with slivers may keep them, but not get worse ones.
     double worst = 1;

@@ -11,17 +11,17 @@ namespace riffler {
 namespace {
 
 constexpr double kLargest = 1e30;  // beyond it, cubes of coordinates leave double's range
-constexpr std::size_t kGrain = 1 << 15;
+constexpr std::size_t kSumGrain = 1 << 15;
 
 /// Sum of term(t) over all triangles, grouped by fixed chunks, so that it does not depend on the number of threads.
 template <class Term>
 double sum_over_triangles(const Mesh& mesh, const Term& term) {
   const std::size_t n = mesh.triangles.size();
-  std::vector<double> parts((n + kGrain - 1) / kGrain, 0.0);
-  parallel_for(n, kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> parts((n + kSumGrain - 1) / kSumGrain, 0.0);
+  parallel_for(n, kSumGrain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t) sum += term(mesh.triangles[t]);
-    parts[begin / kGrain] = sum;
+    parts[begin / kSumGrain] = sum;
   });
   double sum = 0;
   for (const double part : parts) sum += part;
@@ -72,12 +72,12 @@ double area(const Mesh& mesh) {
 
 Box3 bounds(const Mesh& mesh) {
   const std::size_t n = mesh.triangles.size();
-  std::vector<Box3> parts((n + kGrain - 1) / kGrain);
-  parallel_for(n, kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<Box3> parts((n + kSumGrain - 1) / kSumGrain);
+  parallel_for(n, kSumGrain, [&](std::size_t begin, std::size_t end) {
     Box3 box;
     for (std::size_t t = begin; t < end; ++t)
       for (int k = 0; k < 3; ++k) box.add(mesh.vertices[mesh.triangles[t][k]]);
-    parts[begin / kGrain] = box;
+    parts[begin / kSumGrain] = box;
   });
   Box3 box;
   for (const Box3& part : parts) box.add(part);

@@ -24,9 +24,9 @@ double stepped(double x, int steps) {
 }
 
 /// The triangles at each vertex.
-class Fans {
+class VertexFans {
  public:
-  explicit Fans(const Mesh& mesh) : begin_(mesh.vertices.size() + 1, 0), triangles_(3 * mesh.triangles.size()) {
+  explicit VertexFans(const Mesh& mesh) : begin_(mesh.vertices.size() + 1, 0), triangles_(3 * mesh.triangles.size()) {
     for (const Vec3i& t : mesh.triangles)
       for (int k = 0; k < 3; ++k) ++begin_[t[k]];
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
@@ -68,7 +68,7 @@ void separate(Mesh& mesh, const std::vector<char>& movable) {
   };
   for (std::size_t v = 0; v < movable.size(); ++v)
     if (!movable[v]) is_free(mesh.vertices[v]);
-  std::optional<Fans> fans;  // hardly ever needed
+  std::optional<VertexFans> fans;  // hardly ever needed
   for (std::size_t v = 0; v < movable.size(); ++v) {
     if (!movable[v] || is_free(mesh.vertices[v])) continue;
     if (!fans) fans.emplace(mesh);

@@ -16,7 +16,7 @@ namespace riffler {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 13;
+constexpr std::size_t kVertexGrain = 1 << 13;
 constexpr double kShrink = 0.5, kInflate = -0.51;
 
 // Two edges of a feature that meet at a sharper angle than this make a corner: its cosine.
@@ -81,7 +81,7 @@ class Neighbours {
     };
     const double least = std::cos(angle);
     std::vector<char> sharp(3 * mesh.triangles.size(), 0);
-    parallel_for(sharp.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(sharp.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t half = begin; half < end; ++half) {
         const int twin = adjacency.twin(static_cast<int>(half));
         if (twin < 0) continue;
@@ -107,7 +107,7 @@ Vec3 limited(const Vec3& p, const Vec3& home, double limit) {
 /// One step of every vertex towards (factor > 0) or away from the mean of its neighbours.
 void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours& neighbours, double factor,
           double limit) {
-  parallel_for(from.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(from.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const std::span<const int> others = neighbours.of(v);
       to[v] = from[v];
@@ -184,7 +184,7 @@ class Repair {
 
   void mark_triangles() {
     std::vector<Vec3> now(mesh_.triangles.size());
-    parallel_for(now.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(now.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) now[t] = cross_in_float(vertices_, mesh_.triangles[t]);
     });
     for (int t = 0; t < static_cast<int>(now.size()); ++t) {

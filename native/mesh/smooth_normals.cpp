@@ -9,14 +9,14 @@ namespace riffler {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 14;
+constexpr std::size_t kNormalGrain = 1 << 14;
 
 /// The triangles at each vertex, in ascending order, as one list.
-struct Fans {
+struct CornerFans {
   std::vector<std::size_t> begin;
   std::vector<int> corner;  // 3 t + k
 
-  explicit Fans(const Mesh& mesh) : begin(mesh.vertices.size() + 1), corner(3 * mesh.triangles.size()) {
+  explicit CornerFans(const Mesh& mesh) : begin(mesh.vertices.size() + 1), corner(3 * mesh.triangles.size()) {
     for (const Vec3i& t : mesh.triangles)
       for (int k = 0; k < 3; ++k) ++begin[t[k] + 1];
     for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
@@ -34,9 +34,9 @@ double angle_at(const std::array<Vec3, 3>& p, int k) {
 }  // namespace
 
 SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.triangles.size()) {
-  const Fans fans(mesh);
+  const CornerFans fans(mesh);
   std::vector<Vec3> faces(corners_.size());
-  parallel_for(corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       auto& p = corners_[t].points;
       for (int k = 0; k < 3; ++k) p[k] = mesh.vertices[mesh.triangles[t][k]];
@@ -44,7 +44,7 @@ SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.tr
     }
   });
   const double least = std::cos(crease);
-  parallel_for(corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (int k = 0; k < 3; ++k) {
         const bool flat = faces[t] == Vec3(0);  // has no normal of its own: takes part in all of the fan

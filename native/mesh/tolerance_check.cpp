@@ -19,10 +19,10 @@ constexpr double kFlatShare = 0.02;
 /// The share of an old edge times a change of slope.
 constexpr double kBend = 0.25;
 
-struct Segment {
+struct EdgeSegment {
   Vec3 a, ab;
   double scale;
-  Segment(const Vec3& from, const Vec3& to) : a(from), ab(to - from) {
+  EdgeSegment(const Vec3& from, const Vec3& to) : a(from), ab(to - from) {
     const double length2 = glm::dot(ab, ab);
     scale = length2 > 0 ? 1 / length2 : 0;
   }
@@ -211,7 +211,7 @@ HalfedgeHandle ToleranceCheck::other_border(const Collapse& c) {
 
 bool ToleranceCheck::near_new_border(const Collapse& c, int vertex) const {
   const Vec3& end = c.ring(c.target() == 0 ? c.ring_size() - 1 : 0);
-  return Segment(c.new_point(), end).square_to(traces_.old[vertex].point) <= limit_ * limit_;
+  return EdgeSegment(c.new_point(), end).square_to(traces_.old[vertex].point) <= limit_ * limit_;
 }
 
 bool ToleranceCheck::border_near(const Collapse& c) {
@@ -290,7 +290,7 @@ bool ToleranceCheck::follow(int half, const Traces::Anchor& target, const Vec3& 
   const int target_face = target.vertex ? -1 : triangle_of(target.half);
   Vec3 right = old_point(half), left = old_point(next_half(half));
   double right_height = glm::dot(right - anchor_.point, side), left_height = glm::dot(left - anchor_.point, side);
-  const Segment edge(from, to);
+  const EdgeSegment edge(from, to);
   const int start = half;
   do {
     const Vec3 crossing = right + (right_height / (right_height - left_height)) * (left - right);

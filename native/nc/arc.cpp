@@ -6,11 +6,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 [[noreturn]] void fail_miss(double miss) {
   char text[96];
@@ -26,9 +26,9 @@ Arc between(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise
   double sweep = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
   if (clockwise) sweep = -sweep;
   if (glm::length(to - from) < kFullCircle)
-    sweep = kTurn;
+    sweep = kTwoPi;
   else if (sweep <= 0)
-    sweep += kTurn;
+    sweep += kTwoPi;
   return {centre, glm::length(a), glm::length(b), start, clockwise ? -sweep : sweep};
 }
 
@@ -36,7 +36,7 @@ Arc between(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise
 
 Arc Arc::with_turns(int turns) const {
   Arc out = *this;
-  out.sweep += std::copysign(kTurn * (turns - 1), sweep);
+  out.sweep += std::copysign(kTwoPi * (turns - 1), sweep);
   return out;
 }
 

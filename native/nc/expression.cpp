@@ -7,11 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kEqual = 1e-4;  // LinuxCNC's
 /// Brackets within brackets: a bound on the stack.
 constexpr int kDeepest = 100;

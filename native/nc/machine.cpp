@@ -7,13 +7,13 @@
 #include <stdexcept>
 
 #include "geom/directions.hpp"
+#include "geom/math.hpp"
 #include "nc/number_text.hpp"
 
 namespace riffler {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 const Vec3 kSpindle(0, 0, 1);
 /// What an axis keeps that went through single precision.
 constexpr double kSingle = 1e-6;

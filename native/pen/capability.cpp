@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "geom/math.hpp"
 #include "pen/motors.hpp"
 #include "pen/wrench_split.hpp"
 
@@ -13,7 +14,6 @@ namespace riffler {
 namespace {
 
 constexpr const char* kLetters = "xyzabc";
-constexpr double kTurn = 2 * std::numbers::pi;
 
 std::string letters_of(const DeviceCapability& device, bool (*has)(const CoordinateCapability&)) {
   std::string out;
@@ -23,7 +23,7 @@ std::string letters_of(const DeviceCapability& device, bool (*has)(const Coordin
 }
 
 /// What A and B turn about: square to the grip, the first the one most like x, or like y where the grip lies along x.
-std::pair<Vec3, Vec3> square_to(const Vec3& axis) {
+std::pair<Vec3, Vec3> turning_axes(const Vec3& axis) {
   const Vec3 x(1, 0, 0), y(0, 1, 0), like = std::abs(axis.x) < 0.9 ? x : y;
   const Vec3 a = glm::normalize(like - glm::dot(like, axis) * axis);
   return {a, glm::cross(axis, a)};
@@ -78,7 +78,7 @@ Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept {
   Capability out;
   for (std::size_t k = 0; k < kCoordinates; ++k) out.push[k] = device.coordinates[k].pushes;
   if (device.turns == TurnAxes::Device) return out;
-  const auto [a, b] = square_to(axis);
+  const auto [a, b] = turning_axes(axis);
   out.axes = Mat3(a, b, axis);
   out.push[0] = out.push[1] = out.push[2] = out.push[0] && out.push[1] && out.push[2];
   out.push[3] = out.push[4] = out.push[3] && out.push[4];
@@ -89,7 +89,7 @@ DeviceCapability pen_capability(const PenGeometry& pen) {
   const PenKinematics kinematics(pen);
   const PenPosture home = kinematics.posture(kinematics.home_angles());
   const Vec3 axis = kinematics.to_base(home.pose.axis);
-  const auto [a, b] = square_to(axis);
+  const auto [a, b] = turning_axes(axis);
   DeviceCapability out;
   out.name = pen.name;
   out.turns = TurnAxes::Grip;
@@ -109,13 +109,13 @@ DeviceCapability pen_capability(const PenGeometry& pen) {
     c.peak = most.peak, c.continuous = most.continuous;
     for (const PenChannel& channel : pen.channels) {
       JointAngles one{};
-      one[index(channel.arm)][channel.joint] = kTurn / channel.steps;
+      one[index(channel.arm)][channel.joint] = kTwoPi / channel.steps;
       const PenSpeed step = kinematics.speed(home, one);
       const Vec3 change = kinematics.to_base(k < 3 ? step.twist.linear : step.twist.angular);
       c.resolution = std::max(c.resolution, std::abs(glm::dot(change, direction)));
     }
   }
-  out[Coordinate::C].resolution = kTurn / pen.probe_steps;
+  out[Coordinate::C].resolution = kTwoPi / pen.probe_steps;
   return out;
 }
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// What was counted from `from` to `to` by a counter of 32 bits that may have wrapped between.
 std::int32_t counted(std::int32_t from, std::int32_t to) {
@@ -16,7 +16,7 @@ std::int32_t counted(std::int32_t from, std::int32_t to) {
 
 /// The counter's reading for `angle`, the inverse of (2.9).
 std::int32_t reading(double angle, double steps, int sign, std::int32_t home, std::int32_t at_home) {
-  const double count = std::nearbyint(sign * angle * steps / kTurn) - home;
+  const double count = std::nearbyint(sign * angle * steps / kTwoPi) - home;
   const double wrapped = std::isfinite(count) ? std::remainder(count, 0x1p32) : 0;
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(at_home) +
                                    static_cast<std::uint32_t>(static_cast<std::int64_t>(wrapped)));
@@ -25,8 +25,8 @@ std::int32_t reading(double angle, double steps, int sign, std::int32_t home, st
 }  // namespace
 
 double within_a_turn(double angle) noexcept {
-  const double least = std::remainder(angle, kTurn);
-  return least <= -std::numbers::pi ? least + kTurn : least;
+  const double least = std::remainder(angle, kTwoPi);
+  return least <= -std::numbers::pi ? least + kTwoPi : least;
 }
 
 PenKinematics::PenKinematics(const PenGeometry& geometry)
@@ -51,7 +51,7 @@ JointAngles PenKinematics::angles(const EncoderCounts& raw) const noexcept {
   for (std::size_t k = 0; k < kPenChannels; ++k) {
     const PenChannel& c = geometry_.channels[k];
     const double count = static_cast<double>(c.home) + counted(at_home_[k], raw[k]);
-    out[index(c.arm)][c.joint] = c.sign * count / c.steps * kTurn;
+    out[index(c.arm)][c.joint] = c.sign * count / c.steps * kTwoPi;
   }
   return out;
 }
@@ -71,7 +71,7 @@ JointAngles PenKinematics::home_angles() const noexcept {
 
 double PenKinematics::probe_angle(std::int32_t raw) const noexcept {
   const double count = static_cast<double>(geometry_.probe_home) + counted(probe_at_home_, raw);
-  return geometry_.probe_sign * count / geometry_.probe_steps * kTurn;
+  return geometry_.probe_sign * count / geometry_.probe_steps * kTwoPi;
 }
 
 std::int32_t PenKinematics::probe_count(double angle) const noexcept {

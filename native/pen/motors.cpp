@@ -9,7 +9,7 @@ namespace riffler {
 
 namespace {
 
-bool finite(const MotorTorques& torques) {
+bool all_finite(const MotorTorques& torques) {
   return std::all_of(torques.begin(), torques.end(), [](double t) { return std::isfinite(t); });
 }
 
@@ -64,7 +64,7 @@ Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noe
 
 MotorCommands motor_currents(const PenGeometry& pen, const MotorTorques& torques, const MotorTorques& first) noexcept {
   MotorCommands out;
-  if (!finite(torques) || !finite(first)) return out;
+  if (!all_finite(torques) || !all_finite(first)) return out;
   out.scale = scale_to_peaks(pen, torques, first);
   for (std::size_t k = 0; k < kPenChannels; ++k) {
     const PenChannel& c = pen.channels[k];

@@ -48,7 +48,7 @@ constexpr PolhemGeometry kGeometries[] = {
      {0, 0, -5000, 0, 0, 0}},
 };
 
-std::int16_t int16_at(std::span<const std::uint8_t> bytes, std::size_t field) {
+std::int16_t int16_field(std::span<const std::uint8_t> bytes, std::size_t field) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[2 * field] | (bytes[2 * field + 1] << 8)));
 }
 
@@ -166,7 +166,7 @@ Taken PolhemModel::take(std::span<const std::uint8_t> bytes, double now) noexcep
 
 void PolhemModel::place(std::span<const std::uint8_t> report, double now) noexcept {
   std::array<std::int16_t, 6> raw{};
-  for (std::size_t k = 0; k < raw.size(); ++k) raw[k] = int16_at(report, k);
+  for (std::size_t k = 0; k < raw.size(); ++k) raw[k] = int16_field(report, k);
   for (std::size_t k = 0; k < counts_.size(); ++k) {
     const auto step = static_cast<std::int16_t>(static_cast<std::uint16_t>(raw[k] - raw_[k]));
     counts_[k] = heard_ ? counts_[k] + step : raw[k];

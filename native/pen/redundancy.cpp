@@ -5,12 +5,12 @@
 #include <limits>
 #include <numbers>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kApart = 0.02;         // rad: by which a joint differs between postures that are kept
 constexpr std::size_t kFewest = 12;     // postures
 constexpr double kExplained = 1.0 / 3;  // of the tolerance, of what an explanation may leave
@@ -32,8 +32,8 @@ double way_to_cosine(double from, double way, double c) {
   if (!(std::abs(c) <= 1)) return kInfinity;
   double least = kInfinity;
   for (const double at : {std::acos(c), -std::acos(c)}) {
-    const double turn = std::fmod(way * (at - from), kTurn);
-    least = std::min(least, turn < 0 ? turn + kTurn : turn);
+    const double turn = std::fmod(way * (at - from), kTwoPi);
+    least = std::min(least, turn < 0 ? turn + kTwoPi : turn);
   }
   return least;
 }
@@ -63,7 +63,7 @@ std::array<NoticedCounts, kPenChannels> noticed_counts(const PenKinematics& pen,
     const auto counts = [&](double way) {
       const double angle = std::min(way_to_cosine(-phase, way, (sum - longest * longest) / (2 * m)),
                                     way_to_cosine(-phase, way, (sum - shortest * shortest) / (2 * m)));
-      return angle * c.steps / kTurn;
+      return angle * c.steps / kTwoPi;
     };
     out[k] = {counts(-c.sign), counts(c.sign)};
   }
@@ -89,7 +89,7 @@ GripDiagnosis::Fit GripDiagnosis::fit_from(std::size_t channel, double counts) c
   const PenGeometry& g = pen_->geometry();
   const PenChannel& c = g.channels[channel];
   // What one count of this channel more turns its joint by, and what is taken from the joint with `counts`.
-  const double turn = c.sign / c.steps * kTurn;
+  const double turn = c.sign / c.steps * kTwoPi;
   for (int step = 0;; ++step) {
     double squares = 0, slopes = 0, both = 0;
     for (std::size_t k = 0; k < postures(); ++k) {

@@ -39,11 +39,6 @@ double beyond(double angle, double low, double high) {
   return std::min(angle - low, 0.0) + std::max(angle - high, 0.0);
 }
 
-Vec3 at_most(const Vec3& v, double most) {
-  const double length = glm::length(v);
-  return length > most ? most / length * v : v;
-}
-
 }  // namespace
 
 Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept {
@@ -217,8 +212,8 @@ Wrench PenDynamics::hand(const PenLoad& load) const {
   const Pose& is = posture_.pose;
   const Vec3 force = load.stiffness.linear * (load.aim.tip - is.tip);
   const Vec3 torque = load.stiffness.angular * turn_between(is.axis, load.aim.axis);
-  return load.wrench + Wrench{at_most(force, load.strength.linear) + load.damping.linear * load.drift.linear,
-                              at_most(torque, load.strength.angular) + load.damping.angular * load.drift.angular};
+  return load.wrench + Wrench{clamp_length(force, load.strength.linear) + load.damping.linear * load.drift.linear,
+                              clamp_length(torque, load.strength.angular) + load.damping.angular * load.drift.angular};
 }
 
 JointVector PenDynamics::pushed(const Reach& reach, const Wrench& wrench) const {

@@ -5,16 +5,11 @@
 #include <numbers>
 #include <utility>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
-
-Vec3 at_most(const Vec3& v, double most) {
-  const double length = glm::length(v);
-  return length > most ? most / length * v : v;
-}
 
 /// A unit vector turned by a rotation vector square to it.
 Vec3 turned(const Vec3& axis, const Vec3& by) {
@@ -53,7 +48,7 @@ HandPath hand_on_a_curve(const Pose& home) {
     constexpr double kRest = 1, kRound = 4, kWay = 20, kLean = 0.2;
     HandWish wish{.pose = home};
     if (seconds <= kRest) return wish;
-    const double turn = kTurn * (seconds - kRest) / kRound;
+    const double turn = kTwoPi * (seconds - kRest) / kRound;
     // From home, smoothly: each term begins at zero.
     wish.pose.tip += kWay * (std::sin(turn) * sides.first + 0.5 * (1 - std::cos(turn)) * sides.second +
                              0.3 * std::sin(2 * turn) * home.axis);
@@ -80,16 +75,16 @@ Vec3 SimulatedHand::tremor(double seconds) const {
   Vec3 out(0);
   for (int k = 0; k < 3; ++k) {
     const double turns = settings_.tremor_frequency * seconds;
-    out[k] = std::sin(kTurn * (0.83 * turns + 0.31 * k)) + std::sin(kTurn * (turns + 0.17 * k)) +
-             std::sin(kTurn * (1.19 * turns + 0.53 * k));
+    out[k] = std::sin(kTwoPi * (0.83 * turns + 0.31 * k)) + std::sin(kTwoPi * (turns + 0.17 * k)) +
+             std::sin(kTwoPi * (1.19 * turns + 0.53 * k));
   }
   return settings_.tremor / 3 * out;
 }
 
 /// The aim goes towards the wish at the hand's haste; its twist on the way.
 Twist SimulatedHand::aim(double dt) {
-  const Vec3 way = at_most(wish_.pose.tip - aim_.tip, settings_.haste.linear * dt);
-  const Vec3 turn = at_most(turn_between(aim_.axis, wish_.pose.axis), settings_.haste.angular * dt);
+  const Vec3 way = clamp_length(wish_.pose.tip - aim_.tip, settings_.haste.linear * dt);
+  const Vec3 turn = clamp_length(turn_between(aim_.axis, wish_.pose.axis), settings_.haste.angular * dt);
   aim_.tip += way;
   aim_.axis = turned(aim_.axis, turn);
   return dt > 0 ? Twist{way / dt, turn / dt} : Twist{};

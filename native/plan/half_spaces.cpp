@@ -7,11 +7,11 @@ namespace riffler {
 
 namespace {
 
-constexpr double kParallel = 1e-9;  // sine of an angle below which a line runs along a plane
+constexpr double kAlongPlane = 1e-9;  // sine of an angle below which a line runs along a plane
 
 /// Where the box's lowest point is along one axis; the middle where that axis does not count.
 double lowest_in_box(double up, double reach) {
-  return std::abs(up) < kParallel ? 0 : up > 0 ? -reach : reach;
+  return std::abs(up) < kAlongPlane ? 0 : up > 0 ? -reach : reach;
 }
 
 /// The lowest point on the edge line of spaces[i], within the spaces before it.
@@ -24,7 +24,7 @@ std::optional<Lowest2> lowest_on_edge(std::span<const HalfSpace<Vec2>> spaces, s
   int at_low = -1, at_high = -1;
   const auto clip = [&](const Vec2& along, double least, int id) {
     const double rate = glm::dot(along, way), need = least - glm::dot(along, foot);
-    if (std::abs(rate) < kParallel) return need <= slack;
+    if (std::abs(rate) < kAlongPlane) return need <= slack;
     if (const double t = need / rate; rate > 0) {
       if (t > low) low = t, at_low = id;
     } else if (t < high) {
@@ -38,7 +38,7 @@ std::optional<Lowest2> lowest_on_edge(std::span<const HalfSpace<Vec2>> spaces, s
     if (!clip(spaces[k].along, spaces[k].least, static_cast<int>(k))) return {};
   if (low > high + slack) return {};
   const double slope = glm::dot(up, way);
-  if (std::abs(slope) < kParallel) {
+  if (std::abs(slope) < kAlongPlane) {
     const double t = std::clamp(0.0, std::min(low, high), std::max(low, high));
     return Lowest2{foot + t * way, {static_cast<int>(i), t == low ? at_low : t == high ? at_high : -1}};
   }
@@ -51,7 +51,7 @@ std::optional<Lowest2> lowest_in_order(std::span<const HalfSpace<Vec2>> spaces, 
   Lowest2 best{{lowest_in_box(up.x, reach), lowest_in_box(up.y, reach)}, {-1, -1}};
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     if (glm::dot(spaces[i].along, best.point) >= spaces[i].least - slack) continue;
-    if (glm::dot(spaces[i].along, spaces[i].along) < kParallel * kParallel) return {};
+    if (glm::dot(spaces[i].along, spaces[i].along) < kAlongPlane * kAlongPlane) return {};
     const std::optional<Lowest2> next = lowest_on_edge(spaces, i, up, reach, slack);
     if (!next) return {};
     best = *next;

@@ -20,7 +20,7 @@ struct Layer {
 };
 
 /// Costs of the best way to every node of a layer, and from which node of the one before it comes.
-struct Step {
+struct LayerCosts {
   std::vector<double> cost;
   std::vector<std::size_t> from;
 
@@ -37,22 +37,22 @@ class Chain {
 
   const Layer& layer(std::size_t k) const { return layers_[k % layers_.size()]; }
 
-  Step first(std::size_t k) const {
-    Step out{{}, std::vector<std::size_t>(layer(k).axes.size(), 0)};
+  LayerCosts first(std::size_t k) const {
+    LayerCosts out{{}, std::vector<std::size_t>(layer(k).axes.size(), 0)};
     for (const double a : layer(k).angles) out.cost.push_back(a * a);
     return out;
   }
   /// Only node `i` of layer `k`.
-  Step only(std::size_t k, std::size_t i) const {
-    Step out = first(k);
+  LayerCosts only(std::size_t k, std::size_t i) const {
+    LayerCosts out = first(k);
     for (std::size_t j = 0; j < out.cost.size(); ++j)
       if (j != i) out.cost[j] = kNever;
     return out;
   }
-  Step next(const Step& before, std::size_t k) const {
+  LayerCosts next(const LayerCosts& before, std::size_t k) const {
     const Layer &a = layer(k - 1), &b = layer(k);
     const double least = std::cos(std::min(rule_.max_change, 3.2)) - 1e-12;
-    Step out{std::vector<double>(b.axes.size(), kNever), std::vector<std::size_t>(b.axes.size(), 0)};
+    LayerCosts out{std::vector<double>(b.axes.size(), kNever), std::vector<std::size_t>(b.axes.size(), 0)};
     for (std::size_t j = 0; j < b.axes.size(); ++j) {
       for (std::size_t i = 0; i < a.axes.size(); ++i) {
         if (!(before.cost[i] < out.cost[j]) || glm::dot(a.axes[i], b.axes[j]) < least) continue;
@@ -66,19 +66,19 @@ class Chain {
   }
 
   /// Steps over layers 0 … count − 1, starting from `start`; fewer where one is not reached.
-  std::vector<Step> run(Step start, std::size_t count) const {
-    std::vector<Step> out{std::move(start)};
+  std::vector<LayerCosts> run(LayerCosts start, std::size_t count) const {
+    std::vector<LayerCosts> out{std::move(start)};
     while (out.size() < count && out.back().reached()) {
       report(progress_, kMapped);
       out.push_back(next(out.back(), out.size()));
     }
     return out;
   }
-  static std::size_t best(const Step& step) {
+  static std::size_t best(const LayerCosts& step) {
     return static_cast<std::size_t>(std::min_element(step.cost.begin(), step.cost.end()) - step.cost.begin());
   }
   /// The nodes that lead to `node` of the last step.
-  static std::vector<std::size_t> trace(const std::vector<Step>& steps, std::size_t node) {
+  static std::vector<std::size_t> trace(const std::vector<LayerCosts>& steps, std::size_t node) {
     std::vector<std::size_t> out(steps.size(), node);
     for (std::size_t k = steps.size() - 1; k > 0; --k) out[k - 1] = steps[k].from[out[k]];
     return out;
@@ -94,14 +94,14 @@ class Chain {
 std::vector<std::size_t> best_round(const Chain& chain, std::size_t n) {
   std::vector<std::size_t> starts(chain.layer(0).axes.size());
   std::iota(starts.begin(), starts.end(), std::size_t{0});
-  const std::vector<Step> laps = chain.run(chain.first(0), 2 * n);
+  const std::vector<LayerCosts> laps = chain.run(chain.first(0), 2 * n);
   if (laps.size() < 2 * n) return {};
   std::stable_sort(starts.begin(), starts.end(),
                    [&](std::size_t a, std::size_t b) { return laps[n].cost[a] < laps[n].cost[b]; });
   const std::size_t middle = Chain::trace(laps, Chain::best(laps.back()))[n];
   std::rotate(starts.begin(), std::find(starts.begin(), starts.end(), middle), starts.end());
   for (const std::size_t start : starts) {
-    const std::vector<Step> round = chain.run(chain.only(0, start), n + 1);
+    const std::vector<LayerCosts> round = chain.run(chain.only(0, start), n + 1);
     if (round.size() == n + 1 && round.back().cost[start] < kNever) return Chain::trace(round, start);
   }
   return {};
@@ -144,7 +144,7 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
           k, "no orientation is free: " + orientation_maps(path, {k}, assembly, collider, rule.map).front().why_none());
   }
   const Chain chain(std::move(layers), rule, progress);
-  const std::vector<Step> steps = chain.run(chain.first(0), n);
+  const std::vector<LayerCosts> steps = chain.run(chain.first(0), n);
   if (!steps.back().reached())
     return none(steps.size() - 1, "none of its free orientations is within max_change of those before it");
   std::vector<std::size_t> nodes = Chain::trace(steps, Chain::best(steps.back()));

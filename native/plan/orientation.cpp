@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/math.hpp"
 #include "geom/pose.hpp"
 #include "plan/cc_frame.hpp"
 #include "plan/smooth_axes.hpp"
@@ -12,8 +13,7 @@ namespace riffler {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr const char* kNames[] = {"linear", "slerp", "smooth"};
+constexpr const char* kInterpolationNames[] = {"linear", "slerp", "smooth"};
 
 [[noreturn]] void refuse(std::size_t point, const std::string& what) {
   throw std::invalid_argument("keys, point " + std::to_string(point) + ": " + what);
@@ -116,7 +116,7 @@ Interpolation interpolation_named(std::string_view name) {
 }
 
 const char* name_of(Interpolation rule) {
-  return kNames[static_cast<int>(rule)];
+  return kInterpolationNames[static_cast<int>(rule)];
 }
 
 Vec3 project(const AxisLimit& limit, const Vec3& axis) {

@@ -5,13 +5,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "geom/math.hpp"
 #include "geom/parallel.hpp"
 
 namespace riffler {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 void check_angles(const std::vector<double>& angles, const char* name, double most) {
   if (angles.empty()) throw std::invalid_argument(std::string(name) + ": at least one is needed");

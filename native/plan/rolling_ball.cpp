@@ -64,12 +64,12 @@ namespace {
 /// distance is a convex function of the centre, which lies above its tangent: a centre in all these half-spaces enters
 /// nothing, however long the step is.
 template <class Vector>
-struct Step {
+struct BallStep {
   Vec3 move{0};
   std::array<int, 3> active{-1, -1, -1};  // hits
 
-  static std::optional<Step> solve(const std::vector<Closest::Hit>& hits, const Vec3& centre, const Frame& frame,
-                                   double radius, double trust, double slack) {
+  static std::optional<BallStep> solve(const std::vector<Closest::Hit>& hits, const Vec3& centre, const Frame& frame,
+                                       double radius, double trust, double slack) {
     thread_local std::vector<HalfSpace<Vector>> spaces;
     thread_local std::vector<int> order;
     order.clear(), spaces.clear();
@@ -85,7 +85,7 @@ struct Step {
     const double reach = trust / std::sqrt(static_cast<double>(Vector::length()));
     const auto found = lowest(std::span<const HalfSpace<Vector>>(spaces), up, reach, slack);
     if (!found) return {};
-    Step step;
+    BallStep step;
     for (int k = 0; k < Vector::length(); ++k) {
       step.move += found->point[k] * frame.e[k];
       step.active[k] = found->active[k] < 0 ? -1 : order[found->active[k]];
@@ -119,7 +119,7 @@ RollingBall::Stop press_in(const RollingBall& ball, const Vec3& start, const Rol
     } else {
       for (Closest::Hit& hit : hits) hit = ball.part().on(hit.triangle, centre);
     }
-    const auto step = Step<Vector>::solve(hits, centre, frame, how.radius, trust, 0.1 * ball.rounding());
+    const auto step = BallStep<Vector>::solve(hits, centre, frame, how.radius, trust, 0.1 * ball.rounding());
     if (!step) {
       if (trust >= how.roam) return Stop::Blocked;
       trust = std::min(4 * trust, how.roam);

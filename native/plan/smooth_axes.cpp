@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/math.hpp"
 #include "geom/pose.hpp"
 
 namespace riffler {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Between the rates `in` and `out` of two great circles through one point.
 Vec3 velocity_at_key(const Vec3& in, const Vec3& out) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/math.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/closest.hpp"
 #include "plan/cc_frame.hpp"
@@ -15,7 +16,6 @@ namespace riffler {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kHeights = 9;        // at which the flank is held against the wall
 constexpr double kWidest = 1.05;   // rad: rulings leaning further along the feed are not looked for
 constexpr int kDirections = 15;    // tried over that range before the best is refined

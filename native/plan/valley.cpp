@@ -12,7 +12,7 @@ constexpr double kEventStep = 1e-3;   // of the tolerance: to within this, ends 
 constexpr double kOpposite = 1e-3;    // sine of the angle between the sides below which no direction along is left
 constexpr std::size_t kMaxStations = 100000;
 
-double angle_between(const Vec3& a, const Vec3& b) {
+double chord_angle(const Vec3& a, const Vec3& b) {
   return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
 
@@ -46,12 +46,12 @@ ValleyTracer::Event ValleyTracer::accept(const RollingBall::Seat& seat, const St
   std::array<Foot, 2> feet{seat.feet[0], seat.feet[1]};
   if (like) {
     const auto turn = [&](int i, int j) {
-      return std::max(angle_between(feet[i].away, like->feet[0].away), angle_between(feet[j].away, like->feet[1].away));
+      return std::max(chord_angle(feet[i].away, like->feet[0].away), chord_angle(feet[j].away, like->feet[1].away));
     };
     if (turn(1, 0) < turn(0, 1)) std::swap(feet[0], feet[1]);
     if (turn(0, 1) > rules_.jump) return Event::Jump;
   }
-  const double angle = angle_between(feet[0].away, feet[1].away);
+  const double angle = chord_angle(feet[0].away, feet[1].away);
   if (glm::length(glm::cross(feet[0].away, feet[1].away)) < kOpposite) return Event::Faded;
   if (angle < rules_.least_angle) return Event::Faded;
   to.centre = seat.centre, to.feet = feet;
@@ -137,7 +137,7 @@ std::vector<Station> ValleyTracer::branches(const Vec3& corner) const {
   for (std::size_t i = 0; i < feet.size(); ++i)
     for (std::size_t j = i + 1; j < feet.size(); ++j) {
       const Vec3 cross = glm::cross(feet[i].away, feet[j].away);
-      if (glm::length(cross) < kOpposite || angle_between(feet[i].away, feet[j].away) < rules_.least_angle) continue;
+      if (glm::length(cross) < kOpposite || chord_angle(feet[i].away, feet[j].away) < rules_.least_angle) continue;
       for (const double sign : {1.0, -1.0}) {
         const Vec3 way = sign * glm::normalize(cross);
         if (std::any_of(feet.begin(), feet.end(), [&](const Foot& f) { return glm::dot(f.away, way) < -1e-6; }))
@@ -156,7 +156,7 @@ std::optional<Station> ValleyTracer::corner_near(const Station& last, double sig
   const Vec3& v = last.feet[1].away;
   for (const Foot& third : ball_.feet(last.centre, ball_.radius() + reach)) {
     if (glm::dot(third.away, way) > -1e-6) continue;
-    if (std::min(angle_between(third.away, u), angle_between(third.away, v)) < 0.5 * rules_.jump) continue;
+    if (std::min(chord_angle(third.away, u), chord_angle(third.away, v)) < 0.5 * rules_.jump) continue;
     RollingBall::Seat seat;
     const double roam = 1e-3 * ball_.radius();
     if (ball_.press(last.centre, {u + v + third.away, Vec3(0), ball_.radius(), reach, roam}, seat) !=
@@ -168,7 +168,7 @@ std::optional<Station> ValleyTracer::corner_near(const Station& last, double sig
     for (int side = 0; side < 2; ++side) {
       double least = rules_.jump;
       for (const Foot& foot : seat.feet)
-        if (const double turn = angle_between(foot.away, last.feet[side].away); turn < least)
+        if (const double turn = chord_angle(foot.away, last.feet[side].away); turn < least)
           least = turn, corner.feet[side] = foot;
       if (const auto normal = ball_.faced(corner.feet[side])) corner.normals[side] = *normal;
     }
@@ -184,8 +184,8 @@ bool ValleyTracer::is_home(const Station& seed, double sign, const Station& last
   const Vec3 way = along(seed, sign);
   has_left = has_left || home > 3 * rules_.tolerance || glm::dot(along(next, sign), way) < 0;
   if (!has_left || home > rules_.tolerance || glm::dot(next.centre - last.centre, way) <= 0) return false;
-  return angle_between(next.feet[0].away, seed.feet[0].away) < 2 * rules_.jump &&
-         angle_between(next.feet[1].away, seed.feet[1].away) < 2 * rules_.jump;
+  return chord_angle(next.feet[0].away, seed.feet[0].away) < 2 * rules_.jump &&
+         chord_angle(next.feet[1].away, seed.feet[1].away) < 2 * rules_.jump;
 }
 
 /// Follows the valley from `seed` to its end. Steps are as long as the polyline's bend allows; where one meets an
@@ -269,7 +269,7 @@ Valley laid_into(const Valley& valley, const RollingBall& ball) {
         RollingBall::Stop::Seated)
       continue;
     Station station{seat.centre, {seat.feet[0], seat.feet[1]}, {}};
-    if (angle_between(seat.feet[0].away, wide.feet[0].away) > angle_between(seat.feet[0].away, wide.feet[1].away))
+    if (chord_angle(seat.feet[0].away, wide.feet[0].away) > chord_angle(seat.feet[0].away, wide.feet[1].away))
       std::swap(station.feet[0], station.feet[1]);
     const auto first = ball.faced(station.feet[0]), second = ball.faced(station.feet[1]);
     if (!first || !second) continue;

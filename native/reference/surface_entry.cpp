@@ -9,10 +9,10 @@ namespace riffler::reference {
 
 namespace {
 
-struct Cell {
+struct DepthCell {
   double bound;  // of its depth
   Corners corners;
-  bool operator<(const Cell& o) const { return bound < o.bound; }  // the deepest is looked at first
+  bool operator<(const DepthCell& o) const { return bound < o.bound; }  // the deepest is looked at first
 };
 
 /// A point of the triangle from which all of it is near, and how near.
@@ -58,7 +58,7 @@ class Search {
   const Pose& pose_;
   double gap_;
   Entry out_;
-  std::priority_queue<Cell> cells_;
+  std::priority_queue<DepthCell> cells_;
   std::size_t looked_ = 0;
 };
 

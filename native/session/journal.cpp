@@ -40,16 +40,12 @@ void Journal::bring_back(std::size_t n) {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) {
-  throw std::invalid_argument(what);
-}
-
 /// mm/min with which the tip comes to each row; the first row takes the first feed there is. Hands rest and jerk, and
 /// clocks tick: what is beyond any machine is held within bounds.
 std::vector<double> feeds(const JournalStroke& stroke, std::size_t index) {
   constexpr double kSlowest = 1, kFastest = 1e5;
   const std::string name = "stroke " + std::to_string(index);
-  if (stroke.times.empty()) fail(name + " has no times: give a feed");
+  if (stroke.times.empty()) throw std::invalid_argument(name + " has no times: give a feed");
   std::vector<double> feed(stroke.poses.size(), 0);
   for (std::size_t row = 1; row < feed.size(); ++row) {
     const double way = glm::length(stroke.poses[row].tip - stroke.poses[row - 1].tip);
@@ -60,7 +56,7 @@ std::vector<double> feeds(const JournalStroke& stroke, std::size_t index) {
       feed[row] = feed[row - 1];
   }
   const auto first = std::find_if(feed.begin(), feed.end(), [](double f) { return f > 0; });
-  if (first == feed.end()) fail(name + " never moves: give a feed");
+  if (first == feed.end()) throw std::invalid_argument(name + " never moves: give a feed");
   std::fill(feed.begin(), first, *first);
   return feed;
 }

@@ -12,14 +12,14 @@ namespace riffler::stress {
 
 namespace {
 
-constexpr std::size_t kFailuresKept = 100;
-constexpr std::uint64_t kStream = 0x636F6E74;
+constexpr std::size_t kPosesKept = 100;
+constexpr std::uint64_t kContactStream = 0x636F6E74;
 constexpr double kBracket = 1e-3;  // mm, of the reference
 constexpr double kLeftOut = 1e-3;  // mm, without a budget: see Contact::missed_depth_bound
 constexpr double kPoints = 4000;   // of the force: as many as by default take far longer to prepare than to use
 
 /// What one session holds against what.
-struct Session {
+struct ContactSession {
   Random random;
   ContactScene scene;
   Mesh part;
@@ -44,8 +44,8 @@ struct Session {
     return std::sqrt(area / kPoints);
   }
 
-  Session(std::uint64_t seed, std::uint64_t number)
-      : random(seed, kStream, number),
+  ContactSession(std::uint64_t seed, std::uint64_t number)
+      : random(seed, kContactStream, number),
         scene(static_cast<ContactScene>(number % static_cast<std::uint64_t>(ContactScene::kCount))),
         part(draw_part(random, scene)),
         tool(draw_tool(random)),
@@ -60,7 +60,7 @@ struct Session {
 /// What is wrong with the answers at one pose: nothing is the empty text.
 class PoseCheck {
  public:
-  PoseCheck(Session& session, const Pose& pose, ContactTally& tally) : s_(session), pose_(pose), tally_(tally) {
+  PoseCheck(ContactSession& session, const Pose& pose, ContactTally& tally) : s_(session), pose_(pose), tally_(tally) {
     const Vec3 tip = glm::abs(pose.tip);
     // Rounding of coordinates, through a handful of operations.
     rounding_ = 1e-9 + 1e-14 * std::max({tip.x, tip.y, tip.z, 1e3});
@@ -125,7 +125,7 @@ class PoseCheck {
       say() << "clearance " << clearance << " is outside of " << at.lower << " … " << at.upper;
   }
 
-  Session& s_;
+  ContactSession& s_;
   const Pose& pose_;
   ContactTally& tally_;
   double rounding_, left_out_ = 0;
@@ -145,7 +145,7 @@ ContactTally ContactResults::total() const {
 }
 
 void run_contact_session(const ContactOptions& options, std::uint64_t number, ContactResults& out) {
-  Session session(options.seed, number);
+  ContactSession session(options.seed, number);
   ContactTally& tally = out.scenes[static_cast<std::size_t>(session.scene)];
   for (long k = 0; k < kPosesOfSession; ++k) {
     const Pose pose = draw_pose(session.random, session.part, session.tool);
@@ -159,7 +159,7 @@ void run_contact_session(const ContactOptions& options, std::uint64_t number, Co
     }
     if (problem.empty()) continue;
     ++tally.failures;
-    if (out.failures.size() < kFailuresKept) out.failures.push_back({options.seed, number, session.scene, k, problem});
+    if (out.failures.size() < kPosesKept) out.failures.push_back({options.seed, number, session.scene, k, problem});
   }
 }
 

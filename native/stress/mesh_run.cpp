@@ -6,8 +6,8 @@ namespace riffler::stress {
 
 namespace {
 
-constexpr std::size_t kFailuresKept = 100;
-constexpr std::uint64_t kStream = 0x6D657368;
+constexpr std::size_t kVolumesKept = 100;
+constexpr std::uint64_t kMeshStream = 0x6D657368;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ MeshScene mesh_scene(std::uint64_t number) {
 }
 
 Volume mesh_volume(std::uint64_t seed, std::uint64_t number) {
-  Random random(seed, kStream, number);
+  Random random(seed, kMeshStream, number);
   return draw_volume(random, mesh_scene(number));
 }
 
@@ -45,7 +45,7 @@ void run_volume(const MeshOptions& options, std::uint64_t number, MeshResults& o
   }
   if (problem.empty()) return;
   ++tally.failures;
-  if (out.failures.size() < kFailuresKept) out.failures.push_back({options.seed, number, scene, problem});
+  if (out.failures.size() < kVolumesKept) out.failures.push_back({options.seed, number, scene, problem});
 }
 
 MeshResults run_meshes(const MeshOptions& options, std::uint64_t volumes,

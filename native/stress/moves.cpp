@@ -3,11 +3,11 @@
 
 #include "stress/scenario.hpp"
 
+#include "geom/math.hpp"
+
 namespace riffler::stress {
 
 namespace {
-
-const double kPi = std::acos(-1.0);
 
 /// Draws the moves of one stage.
 class Drawer {

@@ -10,7 +10,7 @@ namespace riffler::stress {
 
 namespace {
 
-constexpr std::size_t kFailuresKept = 20;
+constexpr std::size_t kSessionsKept = 20;
 constexpr int kRepeatEvery = 4;  // moves, until one is carved again at once
 constexpr std::uint64_t kJudge = 0x6A75646765;
 
@@ -56,9 +56,9 @@ std::string to_json(const Tool& tool) {
   return out.str();
 }
 
-class Session {
+class CarvingSession {
  public:
-  Session(const Options& options, const std::string& cutter, std::uint64_t number, std::uint64_t stream)
+  CarvingSession(const Options& options, const std::string& cutter, std::uint64_t number, std::uint64_t stream)
       : options_(options),
         judge_(options.seed ^ kJudge, stream, number),
         random_(options.seed, stream, number),
@@ -181,7 +181,7 @@ Tally Results::total() const {
 }
 
 void run_session(const Options& options, const std::string& cutter, std::uint64_t session, Results& out) {
-  Session s(options, cutter, session, stream_of(cutter));
+  CarvingSession s(options, cutter, session, stream_of(cutter));
   const auto guarded = [](const auto& check) -> Problem {
     try {
       return check();
@@ -202,13 +202,13 @@ void run_session(const Options& options, const std::string& cutter, std::uint64_
     problem = guarded([&] { return s.check_threads(); });
     if (!problem.empty()) ++out.kinds[static_cast<std::size_t>(s.last().kind)].failures;
   }
-  if (!problem.empty() && out.failures.size() < kFailuresKept)
+  if (!problem.empty() && out.failures.size() < kSessionsKept)
     out.failures.push_back(
         {cutter, options.seed, session, s.moves() - 1, s.last().kind, problem + "\n" + describe(s.stage(), s.last())});
 }
 
 Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session) {
-  Session s(options, cutter, session, stream_of(cutter));
+  CarvingSession s(options, cutter, session, stream_of(cutter));
   Tally tally;
   while (s.moves() < kMovesInSession && s.step(tally).empty()) {
   }

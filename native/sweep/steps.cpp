@@ -14,7 +14,7 @@ constexpr double kLongestPart = 1.5;
 /// Parts that a move is cut into for the tip's way alone.
 constexpr double kMostParts = 32;
 /// Radii: how far above the highest contact a piece is cut off.
-constexpr double kMargin = 0.01;
+constexpr double kStepMargin = 0.01;
 
 /// Greatest height on the axis at which the piece can meet the box between two poses less than a quarter turn apart.
 /// Where the axis leans out of a face of the box, o · m > 0, that component is a concave function of the time, and the
@@ -42,7 +42,7 @@ ConvexGroup reachable(std::span<const Piece> pieces, double thinnest, const Pose
   for (const Piece& piece : pieces)
     if (const double h = highest_contact(piece, from, to, box); h > bottom(piece)) height = std::max(height, h);
   // A little more, so that no cut ends at the face itself.
-  height += kMargin * (pieces.empty() ? 0 : max_radius(pieces.back()));
+  height += kStepMargin * (pieces.empty() ? 0 : max_radius(pieces.back()));
   ConvexGroup out;
   out.thinnest = thinnest;
   for (const Piece& piece : pieces) {

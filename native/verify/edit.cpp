@@ -6,14 +6,14 @@ namespace riffler {
 
 namespace {
 
-bool same(const Pose& a, const Pose& b) {
+bool same_pose(const Pose& a, const Pose& b) {
   return a.tip == b.tip && a.axis == b.axis;
 }
 
 /// Whether move `i` of the one is move `k` of the other. Row 0 is a place, not a move.
 bool same_move(const RunRows& a, std::size_t i, const RunRows& b, std::size_t k) {
-  return a.tool[i] == b.tool[k] && a.rapid[i] == b.rapid[k] && same(a.poses[i - 1], b.poses[k - 1]) &&
-         same(a.poses[i], b.poses[k]);
+  return a.tool[i] == b.tool[k] && a.rapid[i] == b.rapid[k] && same_pose(a.poses[i - 1], b.poses[k - 1]) &&
+         same_pose(a.poses[i], b.poses[k]);
 }
 
 }  // namespace

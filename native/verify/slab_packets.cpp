@@ -146,7 +146,7 @@ namespace {
 /// Of a pose column by column: a path of constant axis has three columns of nothing.
 constexpr double Vec3::* kComponents[] = {&Vec3::x, &Vec3::y, &Vec3::z};
 
-bool same(const Pose& a, const Pose& b) {
+bool identical(const Pose& a, const Pose& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;  // −0 and 0 are two poses here
 }
 
@@ -157,7 +157,7 @@ std::vector<std::uint8_t> to_packet(const Moves& moves, std::span<const std::uin
   std::vector<std::uint32_t> keys;  // tool, whether it is a rapid, whether it begins where the one before ended
   std::vector<Pose> poses;
   for (const std::uint32_t i : chosen) {
-    const bool joined = !poses.empty() && same(poses.back(), moves.from(i));
+    const bool joined = !poses.empty() && identical(poses.back(), moves.from(i));
     rows.push_back(static_cast<std::uint64_t>(moves.row(i)));
     keys.push_back(moves.tool(i) << 2 | static_cast<unsigned>(moves.rapid(i)) << 1 | static_cast<unsigned>(joined));
     if (!joined) poses.push_back(moves.from(i));

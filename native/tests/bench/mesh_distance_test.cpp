@@ -9,7 +9,7 @@
 #include "mesh/shapes.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::mesh_distance_test {
 namespace {
 
 double by_every_triangle(const Vec3& p, const Mesh& mesh) {
@@ -51,4 +51,4 @@ TEST(MeshDistance, OfATriangleIsThatOfItsPlaneItsSidesAndItsCorners) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::mesh_distance_test

@@ -9,7 +9,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::sweep_error_test {
 namespace {
 
 const std::vector<Pose> kTurning{{{8, 10, 6}, glm::normalize(Vec3(-0.3, 0.1, 1))},
@@ -62,4 +62,4 @@ TEST(CapsuleLoop, RemovesWhatABallEndMillDoes) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::sweep_error_test

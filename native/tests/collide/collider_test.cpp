@@ -10,7 +10,7 @@
 #include "support/box_mesh.hpp"
 #include "sweep/kernels.hpp"
 
-namespace riffler {
+namespace riffler::collider_test {
 namespace {
 
 constexpr auto box = test::box_mesh;
@@ -454,4 +454,4 @@ TEST(Collider, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::collider_test

@@ -10,7 +10,7 @@
 #include "stress/random.hpp"
 #include "sweep/kernels.hpp"
 
-namespace riffler {
+namespace riffler::fixture_test {
 namespace {
 
 using stress::Random;
@@ -191,4 +191,4 @@ TEST(Fixture, IsTheSameForAllInstructionSetsAndFiniteForNeedlesFarAway) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::fixture_test

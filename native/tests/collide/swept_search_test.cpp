@@ -9,7 +9,7 @@
 #include "reference/surface_entry.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::swept_search_test {
 namespace {
 
 using Answer = Swept::Answer;
@@ -184,4 +184,4 @@ TEST(SweptSearch, BoundsOfTrianglesInAStretchAreNeverAboveAnyOfItsPoses) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::swept_search_test

@@ -9,7 +9,7 @@
 #include "mesh/closest.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::triangle_search_test {
 namespace {
 
 using stress::Random;
@@ -300,4 +300,4 @@ TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::triangle_search_test

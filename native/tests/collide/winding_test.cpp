@@ -7,7 +7,7 @@
 #include "mesh/shapes.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::winding_test {
 namespace {
 
 /// What of a mesh is below a height.
@@ -66,4 +66,4 @@ TEST(Winding, IsFiniteOnVerticesAndForTrianglesWithoutArea) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::winding_test

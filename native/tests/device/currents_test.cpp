@@ -5,7 +5,7 @@
 
 #include "device/pens.hpp"
 
-namespace riffler::device {
+namespace riffler::device::currents_test {
 namespace {
 
 using Limits = std::array<std::uint16_t, RIFFLER_PEN_JOINTS>;
@@ -175,4 +175,4 @@ TEST(PenCurrents, AWindingCoolsWhileThePenIsDisabled) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::currents_test

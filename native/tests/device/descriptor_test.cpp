@@ -6,7 +6,7 @@
 
 #include "device/fields.hpp"
 
-namespace riffler::device {
+namespace riffler::device::descriptor_test {
 namespace {
 
 struct Item {
@@ -133,4 +133,4 @@ TEST(PenDescriptor, TheParserSeesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::descriptor_test

@@ -9,14 +9,15 @@
 
 #include "device/fields.hpp"
 #include "device/pens.hpp"
+#include "support/checkout.hpp"
 
-namespace riffler::device {
+namespace riffler::device::document_test {
 namespace {
 
 using Row = std::vector<std::string>;
 
 std::string text_of(const std::string& name) {
-  std::ifstream file(std::filesystem::path(RIFFLER_ROOT) / name);
+  std::ifstream file(test::checkout() / name);
   if (!file) throw std::runtime_error("cannot open " + name);
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -148,7 +149,7 @@ std::string hex4(int number) {
 
 TEST(PenUdevRule, IsForThePenAndLetsInWhoeverSitsThere) {
   std::filesystem::path rule;
-  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(RIFFLER_ROOT) / "device/udev")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::checkout() / "device/udev")) {
     EXPECT_TRUE(rule.empty()) << "one file";
     rule = entry.path();
   }
@@ -179,4 +180,4 @@ TEST(PenUdevRule, IsForThePenAndLetsInWhoeverSitsThere) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::document_test

@@ -9,7 +9,7 @@
 
 #include "device/pens.hpp"
 
-namespace riffler::device {
+namespace riffler::device::faults_test {
 namespace {
 
 const Currents kCommand = {300, -200, 100, 0, 50, -400};
@@ -455,4 +455,4 @@ TEST(PenFaults, NoSensorMattersBeforeThePenIsReady) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::faults_test

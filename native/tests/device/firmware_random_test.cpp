@@ -6,7 +6,7 @@
 
 #include "device/pens.hpp"
 
-namespace riffler::device {
+namespace riffler::device::firmware_random_test {
 namespace {
 
 /// Hosts have moods: a calm one streams well-formed reports, others lose, repeat, reorder and spoil them.
@@ -185,4 +185,4 @@ TEST(PenFirmwareRandom, TheSameInputsGiveTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::firmware_random_test

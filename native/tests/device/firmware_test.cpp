@@ -5,7 +5,7 @@
 
 #include "device/pens.hpp"
 
-namespace riffler::device {
+namespace riffler::device::firmware_test {
 namespace {
 
 const Currents kCommand = {300, -600, 900, 0, 15, -1200};
@@ -276,4 +276,4 @@ TEST(PenFirmware, AConfigurationThatMakesNoSenseNeverPushes) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::firmware_test

@@ -6,7 +6,7 @@
 #include "device/firmware/pen_board.h"
 #include "device/pens.hpp"
 
-namespace riffler::device {
+namespace riffler::device::loop_test {
 namespace {
 
 struct FakeBoard {
@@ -125,4 +125,4 @@ TEST(PenLoop, AfterALateTurnReportsDoNotComeInABurst) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::loop_test

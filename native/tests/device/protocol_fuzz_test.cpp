@@ -5,7 +5,7 @@
 
 #include "device/pens.hpp"
 
-namespace riffler::device {
+namespace riffler::device::protocol_fuzz_test {
 namespace {
 
 /// One of the ways in which reports arrive broken.
@@ -135,4 +135,4 @@ TEST(PenProtocolFuzz, RefusedReportsDoNotFeedTheWatchdog) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::protocol_fuzz_test

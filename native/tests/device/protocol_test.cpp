@@ -9,7 +9,7 @@
 #include "device/fields.hpp"
 #include "device/pens.hpp"
 
-namespace riffler::device {
+namespace riffler::device::protocol_test {
 namespace {
 
 template <class T>
@@ -353,4 +353,4 @@ TEST(PenProtocol, EveryNumberHasWords) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::protocol_test

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace riffler::device {
+namespace riffler::device::states_test {
 namespace {
 
 constexpr unsigned kAllEvents = 1U << RIFFLER_PEN_EVENTS;
@@ -49,4 +49,4 @@ TEST(PenStates, AStateThatDoesNotExistIsAFault) {
 }
 
 }  // namespace
-}  // namespace riffler::device
+}  // namespace riffler::device::states_test

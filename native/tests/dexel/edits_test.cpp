@@ -15,7 +15,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::edits_test {
 namespace {
 
 std::vector<Span> clipped(std::span<const Span> ray, const Vec3& foot, const Vec3& along, const Vec3& p,
@@ -238,4 +238,4 @@ TEST(Parts, RefusesDustByItsCount) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::edits_test

@@ -11,7 +11,7 @@
 
 #include "sweep/kernels.hpp"
 
-namespace riffler {
+namespace riffler::field_points_test {
 namespace {
 
 struct Sums {
@@ -61,4 +61,4 @@ TEST(FieldPoints, AreTheSameBitsForAllInstructionSets) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::field_points_test

@@ -9,7 +9,7 @@
 
 #include "sweep/kernels.hpp"
 
-namespace riffler {
+namespace riffler::field_sum_test {
 namespace {
 
 TEST(FieldSums, AreTheSameBitsForAllInstructionSets) {
@@ -38,4 +38,4 @@ TEST(FieldSums, AreTheSameBitsForAllInstructionSets) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::field_sum_test

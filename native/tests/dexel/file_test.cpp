@@ -15,7 +15,7 @@
 #include "geom/error.hpp"
 #include "geom/io.hpp"
 
-namespace riffler {
+namespace riffler::file_test {
 namespace {
 
 using namespace test;
@@ -284,4 +284,4 @@ TEST(File, IsWholeOrNotThere) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::file_test

@@ -14,7 +14,7 @@
 #include "dexel/openings.hpp"
 #include "dexel/shapes.hpp"
 
-namespace riffler {
+namespace riffler::from_mesh_open_test {
 namespace {
 
 using namespace shapes;
@@ -339,4 +339,4 @@ TEST(FromOpenMesh, PassagesAndCrossingsSumToZero) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::from_mesh_open_test

@@ -8,7 +8,7 @@
 #include "dexel/from_mesh.hpp"
 #include "dexel/shapes.hpp"
 
-namespace riffler {
+namespace riffler::from_mesh_report_test {
 namespace {
 
 using namespace shapes;
@@ -281,4 +281,4 @@ TEST(FromOpenMesh, ReportsSmoothlyAndCancelsEverywhere) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::from_mesh_report_test

@@ -8,7 +8,7 @@
 #include "dexel/shapes.hpp"
 #include "sweep/kernels.hpp"
 
-namespace riffler {
+namespace riffler::from_mesh_test {
 namespace {
 
 using namespace shapes;
@@ -290,4 +290,4 @@ TEST(FromMesh, CancelsAndReports) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::from_mesh_test

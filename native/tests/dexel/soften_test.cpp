@@ -16,7 +16,7 @@
 #include "mesh/audit.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::soften_test {
 namespace {
 
 using test::HalfSpace;
@@ -392,4 +392,4 @@ TEST(Soften, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::soften_test

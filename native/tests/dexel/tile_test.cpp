@@ -6,7 +6,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::tile_test {
 namespace {
 
 /// The first `full` rays hold `spans` each.
@@ -53,4 +53,4 @@ TEST(Tile, RaysThatAreCutButStaySingleTakeSixteenBytes) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::tile_test

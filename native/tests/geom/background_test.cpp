@@ -10,7 +10,7 @@
 
 #include "geom/parallel.hpp"
 
-namespace riffler {
+namespace riffler::background_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -131,4 +131,4 @@ TEST(Background, AThousandStartedAndDroppedOrCancelledAtAnyTime) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::background_test

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace riffler {
+namespace riffler::parallel_test {
 namespace {
 
 TEST(Parallel, ACallWithinACallStaysOnItsThread) {
@@ -61,4 +61,4 @@ TEST(Parallel, TheLastShareToldIsOneEvenWhereHelpersFinishTheWork) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::parallel_test

@@ -7,7 +7,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::coupling_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -169,4 +169,4 @@ TEST(Coupling, SettingsNameTheFieldThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::coupling_test

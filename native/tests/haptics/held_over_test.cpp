@@ -7,7 +7,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::held_over_test {
 namespace {
 
 TEST(HeldOver, PassesOnWhatComesInTime) {
@@ -83,4 +83,4 @@ TEST(Interpolated, IsAPeriodLate) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::held_over_test

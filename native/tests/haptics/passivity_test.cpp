@@ -7,7 +7,7 @@
 #include "stress/stability.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::passivity_test {
 namespace {
 
 using stress::Column;
@@ -277,4 +277,4 @@ TEST(PassiveBound, IsTheLesserOfSamplingAndQuantisation) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::passivity_test

@@ -8,7 +8,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::safety_test {
 namespace {
 
 const Wrench kPush{{1, 2, 2}, {10, 0, 0}};
@@ -389,4 +389,4 @@ TEST(Safety, SettingsNameTheFieldThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::safety_test

@@ -12,7 +12,7 @@
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::sculpt_step_test {
 namespace {
 
 constexpr auto box = test::box_mesh;
@@ -491,4 +491,4 @@ TEST(SculptStep, GivesNoEnergyToAnyHandOnceTheControllerStandsBehindIt) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::sculpt_step_test

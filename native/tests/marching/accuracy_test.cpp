@@ -9,7 +9,7 @@
 #include "stress/random.hpp"
 #include "stress/solids.hpp"
 
-namespace riffler {
+namespace riffler::accuracy_test {
 namespace {
 
 using namespace stress;
@@ -82,4 +82,4 @@ TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::accuracy_test

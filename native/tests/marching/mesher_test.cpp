@@ -11,7 +11,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::mesher_test {
 namespace {
 
 using namespace stress;
@@ -183,4 +183,4 @@ TEST(Mesher, FollowsIntoEmptinessAndBack) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::mesher_test

@@ -10,7 +10,7 @@
 #include "mesh/closest.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::pick_test {
 namespace {
 
 using namespace stress;
@@ -348,4 +348,4 @@ TEST(FrozenSurface, StaysWhatTheMesherWas) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::pick_test

@@ -4,7 +4,7 @@
 
 #include "stress/random.hpp"
 
-namespace riffler::marching {
+namespace riffler::marching::sight_test {
 namespace {
 
 TEST(Sight, KnowsTheSideOfAnEdgeWhereRoundingHidesIt) {
@@ -66,4 +66,4 @@ TEST(Sight, IsInABoxThatItTouches) {
 }
 
 }  // namespace
-}  // namespace riffler::marching
+}  // namespace riffler::marching::sight_test

@@ -12,7 +12,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::to_mesh_test {
 namespace {
 
 using namespace stress;
@@ -175,4 +175,4 @@ TEST(ToMesh, ReportsProgressAndStopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::to_mesh_test

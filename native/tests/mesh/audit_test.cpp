@@ -7,7 +7,7 @@
 
 #include "mesh/shapes.hpp"
 
-namespace riffler {
+namespace riffler::audit_test {
 namespace {
 
 const Mesh kBox = box_mesh({0, 0, 0}, {1, 2, 3});
@@ -222,4 +222,4 @@ TEST(Audit, RefusesAnInvalidMesh) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::audit_test

@@ -14,7 +14,7 @@
 #include "mesh/shapes.hpp"
 #include "mesh/stl.hpp"
 
-namespace riffler {
+namespace riffler::decimate_test {
 namespace {
 
 /// Largest distance of points of `from`, dense on each of its triangles, from `to`, by a search that shares no code
@@ -314,4 +314,4 @@ TEST(Decimate, ProgressNeverGoesBack) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::decimate_test

@@ -11,7 +11,7 @@
 #include "mesh/shapes.hpp"
 #include "mesh/stl.hpp"
 
-namespace riffler {
+namespace riffler::files_fuzz_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -125,4 +125,4 @@ TEST(DamagedFiles, AsciiPly) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::files_fuzz_test

@@ -17,7 +17,7 @@
 #include "mesh/shapes.hpp"
 #include "mesh/stl.hpp"
 
-namespace riffler {
+namespace riffler::files_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -379,4 +379,4 @@ TEST(Weld, NumbersManyPointsInTheOrderOfTheirFirstAppearance) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::files_test

@@ -6,7 +6,7 @@
 
 #include "mesh/shapes.hpp"
 
-namespace riffler {
+namespace riffler::mesh_test {
 namespace {
 
 std::string message_of(const Mesh& mesh) {
@@ -69,4 +69,4 @@ TEST(Mesh, ValidateNamesTheRow) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::mesh_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace riffler {
+namespace riffler::smooth_normals_test {
 namespace {
 
 /// A cylinder of radius 10 about z between 0 and 20, open, its n × 1 cells cut along either diagonal.
@@ -65,4 +65,4 @@ TEST(SmoothNormals, ATriangleWithoutAreaTakesThoseOfItsNeighbours) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::smooth_normals_test

@@ -9,7 +9,7 @@
 #include "support/nc_reading.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::apt_reader_test {
 namespace {
 
 Program read(const std::string& text, Options options = {}) {
@@ -106,4 +106,4 @@ TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::apt_reader_test

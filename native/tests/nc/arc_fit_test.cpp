@@ -15,7 +15,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::arc_fit_test {
 namespace {
 
 using test::error_of;
@@ -438,4 +438,4 @@ TEST(ArcFit, TimeGrowsHardlyFasterThanTheRun) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::arc_fit_test

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::arc_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -74,4 +74,4 @@ TEST(Arc, ChordsKeepToTheToleranceAndAreNotManyMore) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::arc_test

@@ -10,7 +10,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler {
+namespace riffler::control_flow_test {
 namespace {
 
 using test::nc_error;
@@ -129,4 +129,4 @@ TEST(NcControlFlow, RestoresModesThatASubroutineChanged) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::control_flow_test

@@ -8,7 +8,7 @@
 
 #include "geom/error.hpp"
 
-namespace riffler {
+namespace riffler::cursor_test {
 namespace {
 
 double number(const std::string& text) {
@@ -62,4 +62,4 @@ TEST(NcPlace, SaysFileLineAndTheBeginOfTheBlock) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::cursor_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::cutter_path_test {
 namespace {
 
 const Box3 kStock{{0, 0, 0}, {100, 60, 30}};
@@ -89,4 +89,4 @@ TEST(CutterPath, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::cutter_path_test

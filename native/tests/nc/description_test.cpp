@@ -15,7 +15,7 @@
 #include "nc/post.hpp"
 #include "support/damaged.hpp"
 
-namespace riffler {
+namespace riffler::description_test {
 namespace {
 
 constexpr const char* kMill = R"(description = "my mill"
@@ -206,4 +206,4 @@ TEST(Machines, OfTheUsersOwnAreFoundByNameAndByPath) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::description_test

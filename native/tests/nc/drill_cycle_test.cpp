@@ -8,7 +8,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler {
+namespace riffler::drill_cycle_test {
 namespace {
 
 using test::nc_error;
@@ -69,4 +69,4 @@ TEST(DrillCycle, IsRefusedWithoutItsWords) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::drill_cycle_test

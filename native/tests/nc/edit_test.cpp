@@ -9,7 +9,7 @@
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::edit_test {
 namespace {
 
 using test::error_of;
@@ -84,4 +84,4 @@ TEST(Edit, RetooledRenamesRowsAndTools) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::edit_test

@@ -9,7 +9,7 @@
 #include "nc/writer.hpp"
 #include "support/nc_blocks.hpp"
 
-namespace riffler {
+namespace riffler::joint_words_test {
 namespace {
 
 constexpr double kDegree = 3.141592653589793 / 180;
@@ -257,4 +257,4 @@ TEST(JointWords, TheWayOfANewToolIsNotTimed) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::joint_words_test

@@ -15,7 +15,7 @@
 #include "support/tilted.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::limits_test {
 namespace {
 
 using test::tilted;
@@ -397,4 +397,4 @@ TEST(PolePassages, AreReportedWithWhatTheyCost) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::limits_test

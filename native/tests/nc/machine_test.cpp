@@ -8,7 +8,7 @@
 #include "stress/random.hpp"
 #include "support/tilted.hpp"
 
-namespace riffler {
+namespace riffler::machine_test {
 namespace {
 
 using test::tilted;
@@ -189,4 +189,4 @@ TEST(Machine, OfOneRotaryAxisHoldsWhatLiesInItsPlane) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::machine_test

@@ -12,7 +12,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler {
+namespace riffler::offsets_test {
 namespace {
 
 using test::nc_error;
@@ -103,4 +103,4 @@ TEST(NcOffsets, AreRefusedWhereTheyMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::offsets_test

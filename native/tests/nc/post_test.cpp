@@ -14,7 +14,7 @@
 #include "support/nc_blocks.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::post_test {
 namespace {
 
 Program two_tools() {
@@ -194,4 +194,4 @@ TEST(AptPost, SaysEveryRowAsItIs) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::post_test

@@ -16,7 +16,7 @@
 #include "stress/thread_count.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::program_file_test {
 namespace {
 
 using File = std::vector<std::uint8_t>;
@@ -237,4 +237,4 @@ TEST(ProgramFile, IsWholeOrNotThere) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::program_file_test

@@ -10,7 +10,7 @@
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
 
-namespace riffler {
+namespace riffler::reader_fuzz_test {
 namespace {
 
 const std::string kSeeds[] = {
@@ -127,4 +127,4 @@ TEST(ReaderFuzz, SurvivesWhatIsDeep) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::reader_fuzz_test

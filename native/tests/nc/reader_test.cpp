@@ -14,7 +14,7 @@
 #include "nc/writer.hpp"
 #include "support/nc_blocks.hpp"
 
-namespace riffler {
+namespace riffler::reader_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -413,4 +413,4 @@ TEST(Reader, ReadsHundredThousandBlocksInLessThanASecond) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::reader_test

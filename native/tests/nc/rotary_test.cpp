@@ -13,7 +13,7 @@
 #include "support/nc_blocks.hpp"
 #include "support/tilted.hpp"
 
-namespace riffler {
+namespace riffler::rotary_test {
 namespace {
 
 using test::tilted;
@@ -329,4 +329,4 @@ TEST(Subdivider, RefusesWhatTheAxesCannotFollowInsteadOfJumping) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::rotary_test

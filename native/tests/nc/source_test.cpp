@@ -9,7 +9,7 @@
 
 #include "geom/error.hpp"
 
-namespace riffler {
+namespace riffler::source_test {
 namespace {
 
 class NcSourceFile : public testing::Test {
@@ -65,4 +65,4 @@ TEST(NcSource, RefusesWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::source_test

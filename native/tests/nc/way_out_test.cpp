@@ -8,7 +8,7 @@
 #include "support/tilted.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::way_out_test {
 namespace {
 
 using test::tilted;
@@ -60,4 +60,4 @@ TEST(WayOut, SaysHowFarATiltedToolHangsBelowItsTip) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::way_out_test

@@ -14,7 +14,7 @@
 #include "nc/reader.hpp"
 #include "support/nc_blocks.hpp"
 
-namespace riffler {
+namespace riffler::writer_test {
 namespace {
 
 using test::angle;
@@ -236,4 +236,4 @@ TEST(Writer, MutationsOfItsTextDoNotPass) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::writer_test

@@ -9,7 +9,7 @@
 
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::arm_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -155,4 +155,4 @@ TEST(PenArm, SingularPosturesAreFinite) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::arm_test

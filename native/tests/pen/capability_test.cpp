@@ -7,7 +7,7 @@
 #include "pen/wrench_split.hpp"
 #include "support/pens.hpp"
 
-namespace riffler {
+namespace riffler::capability_test {
 namespace {
 
 DeviceCapability three_motors() {
@@ -78,4 +78,4 @@ TEST(Capability, PensLimitsAndResolutionsAreItsOwn) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::capability_test

@@ -12,7 +12,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::compensation_test {
 namespace {
 
 using test::SimulatedBench;
@@ -164,4 +164,4 @@ TEST(Compensation, WhatWasAppliedIsTheWrenchAlone) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::compensation_test

@@ -11,7 +11,7 @@
 #include "pen/hid_pen.hpp"
 #include "pen/published.hpp"
 
-namespace riffler {
+namespace riffler::driver_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -353,4 +353,4 @@ TEST(Published, ReadersNeverSeeAMixture) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::driver_test

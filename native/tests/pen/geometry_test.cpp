@@ -15,7 +15,7 @@
 #include "pen/shipped_pens.hpp"
 #include "support/damaged.hpp"
 
-namespace riffler {
+namespace riffler::geometry_test {
 namespace {
 
 std::string shipped() {
@@ -234,4 +234,4 @@ TEST(Pens, AreFoundByNameAndByPath) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::geometry_test

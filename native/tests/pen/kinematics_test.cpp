@@ -13,7 +13,7 @@
 #include "pen/pens.hpp"
 #include "support/pens.hpp"
 
-namespace riffler {
+namespace riffler::kinematics_test {
 namespace {
 
 using test::random_pose;
@@ -171,4 +171,4 @@ TEST(PenKinematics, WhatAHapticStepCallsThrowsNothingAndKeepsNoMemory) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::kinematics_test

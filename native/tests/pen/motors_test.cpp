@@ -9,7 +9,7 @@
 #include "pen/wrench_split.hpp"
 #include "support/pens.hpp"
 
-namespace riffler {
+namespace riffler::motors_test {
 namespace {
 
 TEST(PenMotors, GearsTakeTorqueAsTheyGiveTurns) {
@@ -134,4 +134,4 @@ TEST(PenMotors, FrictionIsMadeUpForAlongTheMotionAndNotAtRest) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::motors_test

@@ -12,7 +12,7 @@
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 
-namespace riffler {
+namespace riffler::passivity_settings_test {
 namespace {
 
 /// Angles that limits of joints and elbows allow, each end on its own: the bounds ask for no grip.
@@ -114,4 +114,4 @@ TEST(PassivitySettings, FrictionOfTheShippedPenIsThatAboutTheUprightAxisOfTheStr
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::passivity_settings_test

@@ -10,7 +10,7 @@
 
 #include "pen/simulated_bench.hpp"
 
-namespace riffler {
+namespace riffler::patient_clock_test {
 namespace {
 
 using test::GatedStep;
@@ -99,4 +99,4 @@ TEST(PatientClock, NoForceIsLostOnAMachineThatIsLate) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::patient_clock_test

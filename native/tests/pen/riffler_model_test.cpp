@@ -13,7 +13,7 @@
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 
-namespace riffler {
+namespace riffler::riffler_model_test {
 namespace {
 
 using test::ConstantPush;
@@ -264,4 +264,4 @@ TEST(RifflerModel, CommandsAreTakenAfterAnotherHostsNumbers) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::riffler_model_test

@@ -13,7 +13,7 @@
 #include "pen/registry.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::simulated_device_test {
 namespace {
 
 /// Up to 20 s, for machines that are busy.
@@ -108,4 +108,4 @@ TEST(SimulatedDevice, WishesThatCannotBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::simulated_device_test

@@ -8,7 +8,7 @@
 
 #include "pen/simulated_trial.hpp"
 
-namespace riffler {
+namespace riffler::simulated_faults_test {
 namespace {
 
 using test::hand_to_and_fro;
@@ -182,4 +182,4 @@ TEST(SimulatedFault, AGripOfAnotherLengthIsFoundWhenThePenMoves) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::simulated_faults_test

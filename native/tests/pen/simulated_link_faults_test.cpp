@@ -8,7 +8,7 @@
 
 #include "pen/simulated_trial.hpp"
 
-namespace riffler {
+namespace riffler::simulated_link_faults_test {
 namespace {
 
 using test::home_pose;
@@ -216,4 +216,4 @@ TEST(SimulatedFault, StoppingTheDriverSwitchesTheMotorsOff) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::simulated_link_faults_test

@@ -12,7 +12,7 @@
 #include "stress/matrix.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler {
+namespace riffler::simulated_pen_test {
 namespace {
 
 using test::SimulatedBench;
@@ -257,4 +257,4 @@ TEST(SimulatedPen, RunsFasterThanRealTime) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::simulated_pen_test

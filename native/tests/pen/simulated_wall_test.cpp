@@ -13,7 +13,7 @@
 #include "pen/pens.hpp"
 #include "pen/simulated_bench.hpp"
 
-namespace riffler {
+namespace riffler::simulated_wall_test {
 namespace {
 
 using test::SimulatedBench;
@@ -127,4 +127,4 @@ TEST(SimulatedPenWall, AnAccountOfWhatWasAskedForIsDeceivedByTheCable) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::simulated_wall_test

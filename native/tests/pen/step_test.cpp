@@ -8,7 +8,7 @@
 #include "support/allocations.hpp"
 #include "support/pens.hpp"
 
-namespace riffler {
+namespace riffler::step_test {
 namespace {
 
 TEST(PenStep, AsksForNoMemory) {
@@ -48,4 +48,4 @@ TEST(PenStep, AsksForNoMemory) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::step_test

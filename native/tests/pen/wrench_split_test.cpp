@@ -7,7 +7,7 @@
 
 #include "support/pens.hpp"
 
-namespace riffler {
+namespace riffler::wrench_split_test {
 namespace {
 
 constexpr double kEps = 0x1p-52;
@@ -128,4 +128,4 @@ TEST(WrenchSplit, WhatTheHandFeelsOfTheEffortIsWhatWasAskedForLessWhatIsMissing)
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::wrench_split_test

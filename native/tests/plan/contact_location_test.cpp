@@ -7,7 +7,7 @@
 #include "reference/cutter_distance.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::contact_location_test {
 namespace {
 
 double distance(const reference::CutterDistance& cutter, const Pose& pose, const Vec3& p) {
@@ -177,4 +177,4 @@ TEST(ContactLocation, OfABallByBothPlanesIsThatOfItsCentre) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::contact_location_test

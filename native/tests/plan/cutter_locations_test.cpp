@@ -9,7 +9,7 @@
 #include "plan/orientation.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::cutter_locations_test {
 namespace {
 
 const Vec3 kUp(0, 0, 1);
@@ -196,4 +196,4 @@ TEST(LeastTilt, NamesTheFirstPointWithoutAWay) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::cutter_locations_test

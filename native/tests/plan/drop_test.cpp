@@ -7,7 +7,7 @@
 #include "reference/cutter_distance.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::drop_test {
 namespace {
 
 Mesh triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -112,4 +112,4 @@ TEST(Drop, LooksOnlyAtWhatIsNearAndIsTheSameInBulk) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::drop_test

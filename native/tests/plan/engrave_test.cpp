@@ -8,7 +8,7 @@
 
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::engrave_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -122,4 +122,4 @@ TEST(Engrave, BadInputNamesTheCurveAndItsPoint) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::engrave_test

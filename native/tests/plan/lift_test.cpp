@@ -9,7 +9,7 @@
 #include "reference/cutter_distance.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::lift_test {
 namespace {
 
 const Vec3 kUp(0, 0, 1);
@@ -211,4 +211,4 @@ TEST(Lift, RefusesSettingsWithoutMeaning) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::lift_test

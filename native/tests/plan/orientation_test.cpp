@@ -10,7 +10,7 @@
 #include "plan/smooth_axes.hpp"
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::orientation_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -195,4 +195,4 @@ TEST(SmoothAxes, TurnsAtMostAsFastAsItsHeaderSays) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::orientation_test

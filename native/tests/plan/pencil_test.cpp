@@ -8,7 +8,7 @@
 #include "mesh/closest.hpp"
 #include "plan/parts.hpp"
 
-namespace riffler {
+namespace riffler::pencil_test {
 namespace {
 
 const std::vector<Placement> kPlacements{
@@ -321,4 +321,4 @@ TEST(Pencil, BallsOfAnySizeComeToAnEnd) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::pencil_test

@@ -9,7 +9,7 @@
 #include "mesh/closest.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::swarf_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -165,4 +165,4 @@ TEST(Swarf, BadInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::swarf_test

@@ -9,7 +9,7 @@
 #include "stress/random.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::reference {
+namespace riffler::reference::assembly_distance_test {
 namespace {
 
 /// Ball R3, shank, a taper, a gap, a holder that starts with a chamfer.
@@ -107,4 +107,4 @@ TEST(SurfaceDistance, GoesToTheBottomOfADepth) {
 }
 
 }  // namespace
-}  // namespace riffler::reference
+}  // namespace riffler::reference::assembly_distance_test

@@ -8,7 +8,7 @@
 #include "stress/random.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::reference {
+namespace riffler::reference::surface_entry_test {
 namespace {
 
 Tool assembly() {
@@ -88,4 +88,4 @@ TEST(SurfaceEntry, NoPointOfATriangleIsDeeperThanTheTangentBound) {
 }
 
 }  // namespace
-}  // namespace riffler::reference
+}  // namespace riffler::reference::surface_entry_test

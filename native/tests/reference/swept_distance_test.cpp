@@ -8,7 +8,7 @@
 
 #include "tool/cutters.hpp"
 
-namespace riffler::reference {
+namespace riffler::reference::swept_distance_test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -271,4 +271,4 @@ TEST(CutterDistance, FreeBallsStayOutOfTheCutter) {
 }
 
 }  // namespace
-}  // namespace riffler::reference
+}  // namespace riffler::reference::swept_distance_test

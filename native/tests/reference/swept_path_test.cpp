@@ -7,7 +7,7 @@
 
 #include "bench/scenes.hpp"
 
-namespace riffler::reference {
+namespace riffler::reference::swept_path_test {
 namespace {
 
 const std::vector<Pose> kTurning{{{8, 10, 6}, glm::normalize(Vec3(-0.3, 0.1, 1))},
@@ -97,4 +97,4 @@ TEST(SweptPath, LeavesOutOnlyWhatIsFar) {
 }
 
 }  // namespace
-}  // namespace riffler::reference
+}  // namespace riffler::reference::swept_path_test

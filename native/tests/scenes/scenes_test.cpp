@@ -7,11 +7,12 @@
 #include <set>
 
 #include "scenes/scene.hpp"
+#include "support/checkout.hpp"
 
-namespace riffler::scenes {
+namespace riffler::scenes::scenes_test {
 namespace {
 
-const std::filesystem::path kFolder = RIFFLER_SCENES;
+const std::filesystem::path kFolder = test::checkout() / "native/tests/scenes";
 
 std::vector<std::string> lines() {
   std::ifstream file(kFolder / "hashes.txt");
@@ -47,4 +48,4 @@ TEST(Scenes, HashesTellOneBit) {
 }
 
 }  // namespace
-}  // namespace riffler::scenes
+}  // namespace riffler::scenes::scenes_test

@@ -19,7 +19,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::cuttable_test {
 namespace {
 
 const Box3 kBox{{0, 0, 0}, {40, 30, 12}};
@@ -247,4 +247,4 @@ TEST(Cuttable, AMaskOnAnotherGridIsRefused) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::cuttable_test

@@ -11,7 +11,7 @@
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler {
+namespace riffler::journal_disk_test {
 namespace {
 
 using test::FileLimit;
@@ -87,4 +87,4 @@ TEST(JournalDisk, FullForTheHeaderLeavesAFileThatCanBegin) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::journal_disk_test

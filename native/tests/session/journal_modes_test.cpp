@@ -16,7 +16,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::journal_modes_test {
 namespace {
 
 using test::error_of;
@@ -211,4 +211,4 @@ TEST(JournalModes, LeaveToMachinesWhatTheyCanMake) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::journal_modes_test

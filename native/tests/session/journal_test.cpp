@@ -18,7 +18,7 @@
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler {
+namespace riffler::journal_test {
 namespace {
 
 using test::error_of;
@@ -451,4 +451,4 @@ TEST(JournalProgram, AsksForAFeedWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::journal_test

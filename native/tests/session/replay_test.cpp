@@ -19,7 +19,7 @@
 #include "sweep/move_carver.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::replay_test {
 namespace {
 
 using test::error_of;
@@ -210,4 +210,4 @@ TEST(Replay, TellsHowFarItIsAndStops) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::replay_test

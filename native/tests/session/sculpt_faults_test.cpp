@@ -16,7 +16,7 @@
 #include "support/temporary_file.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::sculpt_faults_test {
 namespace {
 
 using test::SculptBench;
@@ -153,4 +153,4 @@ TEST(SculptFault, AFullDiskEndsTheCutTheForceGoesWithItAndBothComeBackWithRoom) 
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::sculpt_faults_test

@@ -15,7 +15,7 @@
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::sculpt_loop_test {
 namespace {
 
 using test::kStock;
@@ -340,4 +340,4 @@ TEST(SculptLoop, SamplesOfAnyKindLeaveItAlive) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::sculpt_loop_test

@@ -19,7 +19,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::session_test {
 namespace {
 
 using test::RememberingSink;
@@ -321,4 +321,4 @@ TEST(Session, BadInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::session_test

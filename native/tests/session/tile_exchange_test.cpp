@@ -10,7 +10,7 @@
 #include "geom/ring.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::tile_exchange_test {
 namespace {
 
 Volume block(const char* directions = "xyz") {
@@ -125,4 +125,4 @@ TEST(Ring, TwoThreadsLoseNothing) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::tile_exchange_test

@@ -3,7 +3,7 @@
 
 #include "stress/contact_run.hpp"
 
-namespace riffler::stress {
+namespace riffler::stress::contact_stress_test {
 namespace {
 
 constexpr long kSessions = 12;
@@ -28,4 +28,4 @@ TEST(ContactStress, DrawsTheSameSessionAgain) {
 }
 
 }  // namespace
-}  // namespace riffler::stress
+}  // namespace riffler::stress::contact_stress_test

@@ -9,8 +9,9 @@
 #include "mesh/shapes.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/mesh_run.hpp"
+#include "support/checkout.hpp"
 
-namespace riffler::stress {
+namespace riffler::stress::mesh_stress_test {
 namespace {
 
 TEST(MeshStress, HoldsForVolumesFromTheDegenerateLimits) {
@@ -28,7 +29,7 @@ TEST(MeshStress, HoldsForVolumesFromTheDegenerateLimits) {
 
 /// Volumes that a mesher once failed for: the least of each, as riffler_mesh_stress writes them.
 TEST(MeshStress, HoldsForVolumesThatOnceFailed) {
-  for (const auto& entry : std::filesystem::directory_iterator(RIFFLER_VOLUMES))
+  for (const auto& entry : std::filesystem::directory_iterator(test::checkout() / "native/tests/marching/volumes"))
     EXPECT_EQ(check_mesh(load(entry.path()), true), "") << entry.path().filename();
 }
 
@@ -94,4 +95,4 @@ TEST(FloatAudit, SeesEveryDefect) {
 }
 
 }  // namespace
-}  // namespace riffler::stress
+}  // namespace riffler::stress::mesh_stress_test

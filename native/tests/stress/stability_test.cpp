@@ -4,7 +4,7 @@
 
 #include "haptics/passive_bound.hpp"
 
-namespace riffler::stress {
+namespace riffler::stress::stability_test {
 namespace {
 
 TEST(WallSimulation, MovesAFreeDeviceAsTheClosedFormSays) {
@@ -99,4 +99,4 @@ TEST(Stability, EncoderStepsOfFiveCoordinatesAddUp) {
 }
 
 }  // namespace
-}  // namespace riffler::stress
+}  // namespace riffler::stress::stability_test

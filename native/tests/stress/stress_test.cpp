@@ -3,7 +3,7 @@
 #include "stress/run.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::stress {
+namespace riffler::stress::stress_test {
 namespace {
 
 /// The stress run of every cutter, short and always the same.
@@ -153,4 +153,4 @@ TEST(StressChecks, ASessionIsTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace riffler::stress
+}  // namespace riffler::stress::stress_test

@@ -9,7 +9,7 @@
 #include "reference/swept_distance.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::carve_test {
 namespace {
 
 struct Named {
@@ -376,4 +376,4 @@ TEST(Carve, NormalsOfNewSurfacesLookIntoTheTool) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::carve_test

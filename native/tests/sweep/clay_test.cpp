@@ -14,7 +14,7 @@
 #include "reference/swept_distance.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::clay_test {
 namespace {
 
 Vec3 unit(double x, double y, double z) {
@@ -251,4 +251,4 @@ TEST(Clay, NamesAnotherGridAndStopsWithoutATraceWhenCancelled) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::clay_test

@@ -6,7 +6,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::first_look_test {
 namespace {
 
 std::vector<Pose> lifted(std::vector<Pose> poses, double by) {
@@ -71,4 +71,4 @@ TEST(FirstLook, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfThat) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::first_look_test

@@ -9,7 +9,7 @@
 #include "sweep/kernels.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::instruction_sets_test {
 namespace {
 
 struct Result {
@@ -87,4 +87,4 @@ TEST(Kernels, RefuseAnInstructionSetThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::instruction_sets_test

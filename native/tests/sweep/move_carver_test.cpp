@@ -12,7 +12,7 @@
 #include "support/allocations.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::move_carver_test {
 namespace {
 
 /// A spiral at cutting depth whose turns overlap, 0.5 mm a step; with `lean`, the axis wobbles.
@@ -87,4 +87,4 @@ TEST(MoveCarver, BadInputChangesNothing) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::move_carver_test

@@ -6,7 +6,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::random_moves_test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -111,4 +111,4 @@ TEST(Carve, DiscsThatTurnEdgeOnToTheRaysKeepTheTolerance) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::random_moves_test

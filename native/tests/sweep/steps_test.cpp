@@ -12,7 +12,7 @@
 #include "sweep/turning_part.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::steps_test {
 namespace {
 
 TEST(ConvexGroups, NamedCuttersAreOne) {
@@ -261,4 +261,4 @@ TEST(SweptNormal, IsTheGradientOfTheDistance) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::steps_test

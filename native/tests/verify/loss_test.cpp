@@ -4,7 +4,7 @@
 
 #include "stress/random.hpp"
 
-namespace riffler {
+namespace riffler::loss_test {
 namespace {
 
 using Pieces = std::vector<std::pair<double, double>>;
@@ -52,4 +52,4 @@ TEST(Loss, RandomRaysLoseWhatACountOfPointsSays) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::loss_test

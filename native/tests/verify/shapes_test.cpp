@@ -6,7 +6,7 @@
 #include "tool/cutters.hpp"
 #include "verify/moves.hpp"
 
-namespace riffler {
+namespace riffler::shapes_test {
 namespace {
 
 Pose random_pose(stress::Random& random) {
@@ -85,4 +85,4 @@ TEST(Moves, BlocksOfBoxesLeaveNoMoveOut) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::shapes_test

@@ -6,7 +6,7 @@
 #include "tool/cutters.hpp"
 #include "verify/toolset.hpp"
 
-namespace riffler {
+namespace riffler::slab_packets_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -151,4 +151,4 @@ TEST(SlabPackets, DamageUnderARightChecksumIsNoCrash) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::slab_packets_test

@@ -8,7 +8,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::slab_test {
 namespace {
 
 Volume block(const char* directions, double pitch = 0.25) {
@@ -73,4 +73,4 @@ TEST(Slab, TheMaterialsBoxCoversEverySpanAndNoMore) {
 }
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::slab_test

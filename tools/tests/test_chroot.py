@@ -1,12 +1,10 @@
 """What goes into a chroot and comes out of it, in a folder that plays one."""
 
 import os
-import sys
 from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 import chroot
 import shell
 

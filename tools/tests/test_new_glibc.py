@@ -1,12 +1,9 @@
 """auditwheel's knowledge of a newer glibc, from libraries of our own making."""
 
 import json
-import sys
-from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 import new_glibc
 
 LINUX = {"name": "linux", "aliases": [], "priority": 0, "symbol_versions": {}, "lib_whitelist": [], "blacklist": {}}

@@ -1,0 +1,5 @@
+#include "support/checkout.hpp"
+
+std::filesystem::path riffler::test::checkout() {
+  return RIFFLER_ROOT;
+}

@@ -1,0 +1,6 @@
+"""tools/ are scripts beside each other, not a package: the tests import them as they import each other."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))

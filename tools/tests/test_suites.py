@@ -1,0 +1,81 @@
+"""The suites run beside each other: all to the end, each one's output whole, the exit code that of the worst."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import shell
+
+TOOLS = Path(__file__).resolve().parents[1]
+SCRIPT = """
+import sys, threading
+sys.path.insert(0, {tools!r})
+import test
+from pathlib import Path
+from shell import StepError, main
+
+def fine(): print("fine, it printed")
+def broken(): raise StepError("it broke")
+def crashed(): raise ValueError("it crashed")
+def later(): print("later")
+
+test.LOGS, test.HEARTBEAT, test.__file__ = Path({logs!r}), 0.05, {script!r}
+test.SUITES = dict(fine=test.Suite(fine), broken=test.Suite(broken), crashed=test.Suite(crashed, lane=1),
+                   later=test.Suite(later, lane=1), unasked=test.Suite(later, always=False))
+main(test.entry)
+"""
+
+
+def suites(folder, *names):
+    script = folder / "suites.py"
+    script.write_text(SCRIPT.format(tools=str(TOOLS), logs=str(folder / "logs"), script=str(script)))
+    return subprocess.run([sys.executable, script, *names], capture_output=True, text=True, timeout=120, check=False)
+
+
+def rows(done):
+    table = done.stdout.rpartition("==> tests: results")[2]
+    return [line.split()[:2] for line in table.splitlines() if line]
+
+
+def test_all_run_to_the_end_and_one_that_fails_fails_the_whole(tmp_path):
+    done = suites(tmp_path)
+    assert done.returncode == 1
+    assert rows(done)[:4] == [["fine", "passed"], ["broken", "FAILED"], ["crashed", "FAILED"], ["later", "passed"]]
+    for text in ("fine, it printed", "it broke", "ValueError: it crashed"):
+        assert done.stdout.count(text) == 1
+    assert "unasked" not in done.stdout
+    assert "tests: running: " in done.stdout
+
+
+def test_named_ones_run_and_pass(tmp_path):
+    done = suites(tmp_path, "fine", "unasked", "fine")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert rows(done)[:2] == [["fine", "passed"], ["unasked", "passed"]]
+
+
+@pytest.mark.parametrize("name, code", [("fine", 0), ("broken", 1)])
+def test_one_alone_prints_as_it_goes(tmp_path, name, code):
+    done = suites(tmp_path, name)
+    assert done.returncode == code
+    assert not (tmp_path / "logs").exists()
+    assert rows(done)[0] == [name, "FAILED" if code else "passed"]
+
+
+def test_an_unknown_one_is_named(tmp_path):
+    done = suites(tmp_path, "fine", "fin")
+    assert done.returncode == 1 and "unknown suite 'fin'" in done.stderr and "fine, it printed" not in done.stdout
+
+
+def test_a_stamp_is_of_its_key_and_a_digest_of_names_and_contents(tmp_path, monkeypatch):
+    monkeypatch.setattr(shell, "ROOT", tmp_path)
+    (tmp_path / "a").write_text("1")
+    before = shell.digest([tmp_path / "a"], "word")
+    assert before == shell.digest([tmp_path / "a"], "word") != shell.digest([tmp_path / "a"], "other")
+    (tmp_path / "a").rename(tmp_path / "b")
+    assert before != shell.digest([tmp_path / "b"], "word")
+    stamp = tmp_path / "x" / "stamp"
+    assert not shell.is_stamped(stamp, before)
+    shell.write_stamp(stamp, before)
+    assert shell.is_stamped(stamp, before) and not shell.is_stamped(stamp, "")
