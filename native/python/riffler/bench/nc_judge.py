@@ -8,6 +8,7 @@ import re
 import resource
 import shutil
 import subprocess
+import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -152,21 +153,20 @@ def interpreted(program: Path) -> tuple[float, np.ndarray]:
     their ends, mm and degrees with the 4 decimals that it prints; RuntimeError with what it says."""
     rs274 = interpreter()
     assert rs274 is not None
-    table, out = program.with_suffix(".tbl"), program.with_suffix(".canon")
-    table.write_text("".join(f"T{n} P{n} Z0 D6\n" for n in range(1, 100)))
     usr = rs274.parents[1]
     libraries = os.pathsep.join([f"{usr}/lib", f"{usr}/lib/x86_64-linux-gnu", os.environ.get("LD_LIBRARY_PATH", "")])
-    start = child_seconds()
-    done = subprocess.run(
-        [rs274, "-t", table, "-g", program, out],
-        # It keeps its tools in a file of the home directory: runs beside each other must not share one.
-        env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": str(program.parent)},
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    seconds = child_seconds() - start
-    if done.returncode != 0 or not out.exists() or "PROGRAM_END" not in out.read_text():
-        raise RuntimeError((done.stderr.strip() or done.stdout.strip() or "no end of the program").splitlines()[-1])
-    text = out.read_text()
-    out.unlink()
+    with tempfile.TemporaryDirectory() as folder:
+        table, out = Path(folder) / "tools.tbl", Path(folder) / "calls"
+        table.write_text("".join(f"T{n} P{n} Z0 D6\n" for n in range(1, 100)))
+        start = child_seconds()
+        done = subprocess.run(
+            [rs274, "-t", table, "-g", program.resolve(), out],
+            # It keeps its tools in a file of the home directory: runs beside each other must not share one.
+            env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": folder},
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        seconds = child_seconds() - start
+        if done.returncode != 0 or not out.exists() or "PROGRAM_END" not in (text := out.read_text()):
+            raise RuntimeError((done.stderr.strip() or done.stdout.strip() or "no end of the program").splitlines()[-1])
     moves = re.findall(r"STRAIGHT_(?:FEED|TRAVERSE)\((.*)\)$", text, re.M)
     return seconds, np.array([[float(word) for word in move.split(",")] for move in moves]).reshape(-1, 6)
