@@ -225,7 +225,7 @@ def main() -> int:
     parser.add_argument("--no-window", action="store_true", help="headless only")
     parser.add_argument("--no-headless", action="store_true", help="windows only")
     parser.add_argument("--figures", action="store_true", help="also measure; writes out/blender/figures.json")
-    parser.add_argument("--timeout", type=float, default=600, help="seconds for one process")
+    parser.add_argument("--timeout", type=float, default=1200, help="seconds for one process")
     soaking.add_arguments(parser)
     arguments = parser.parse_args()
 

@@ -47,11 +47,8 @@ def environment() -> dict[str, str]:
     scikit-build-core for the name that Python was built with. Paths under the checkout count as relative ones, so that
     the checkout's own path is in no key."""
     if problem():
-        return {"CCACHE_DISABLE": "1"}  # build folders may have been configured while there was a cache
-    variables = {f"CMAKE_{language}_COMPILER_LAUNCHER": "ccache" for language in ("C", "CXX")}
-    if not os.environ.get("CCACHE_DIR"):
-        variables["CCACHE_MAXSIZE"] = SIZE
-    return variables | {
+        return {"CCACHE_DISABLE": "1"}
+    return ({} if os.environ.get("CCACHE_DIR") else {"CCACHE_MAXSIZE": SIZE}) | {
         "CC": "cc",
         "CXX": "c++",
         "CCACHE_DIR": str(folder()),
@@ -61,6 +58,12 @@ def environment() -> dict[str, str]:
         "CCACHE_SLOPPINESS": "pch_defines,time_macros",
         "CCACHE_STATSLOG": str(STATISTICS),
     }
+
+
+def arguments() -> list[str]:
+    """For CMake: what starts the compiler. Said each time, for a build folder remembers a ccache that has gone."""
+    launcher = "" if problem() else "ccache"
+    return [f"-DCMAKE_{language}_COMPILER_LAUNCHER={launcher}" for language in ("C", "CXX")]
 
 
 def report() -> str:

@@ -10,6 +10,7 @@ import os
 import sys
 from xml.etree import ElementTree
 
+import compiler_cache
 from shell import ROOT, StepError, main, run, say
 
 SLOWEST = 20
@@ -17,7 +18,7 @@ SLOWEST = 20
 
 def build_preset(preset: str, *targets: str) -> None:
     """Incremental: configuring again costs a second, building what is up to date costs nothing."""
-    run("cmake", "--preset", preset, "--log-level=NOTICE")
+    run("cmake", "--preset", preset, "--log-level=NOTICE", *compiler_cache.arguments())
     run("cmake", "--build", "--preset", preset, *(["--target", *targets] if targets else []))
 
 

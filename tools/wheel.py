@@ -12,6 +12,7 @@ import tempfile
 import zipfile
 from pathlib import Path
 
+import compiler_cache
 from shell import PYTHON, ROOT, StepError, digest, is_stamped, main, run, say, tool_environment, write_stamp
 
 FOLDER = ROOT / "build" / "wheel"
@@ -52,7 +53,8 @@ def build_wheel() -> tuple[Path, str]:
     FOLDER.mkdir(parents=True, exist_ok=True)
     # The PEP 517 hook that pip would call, called directly: the compiler's progress stays visible.
     hook = "import sys; from scikit_build_core.build import build_wheel; build_wheel(sys.argv[1])"
-    run(PYTHON, "-c", hook, FOLDER, env=tool_environment(CMAKE_GENERATOR="Ninja"))
+    arguments = " ".join([os.environ.get("CMAKE_ARGS", ""), *compiler_cache.arguments()])
+    run(PYTHON, "-c", hook, FOLDER, env=tool_environment(CMAKE_GENERATOR="Ninja") | {"CMAKE_ARGS": arguments})
     wheels = list(FOLDER.glob("riffler-*.whl"))
     if len(wheels) != 1:
         raise StepError(f"expected one wheel in {FOLDER.relative_to(ROOT)}, found {len(wheels)}")

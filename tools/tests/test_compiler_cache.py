@@ -70,6 +70,7 @@ def test_a_missing_program_is_named_with_its_package(fresh):
     fresh.setattr(compiler_cache.shutil, "which", lambda name: None if name == "ccache" else f"/usr/bin/{name}")
     assert compiler_cache.problem() == "there is no `ccache` (Debian: ccache)"
     assert compiler_cache.environment() == {"CCACHE_DISABLE": "1"}
+    assert compiler_cache.arguments() == ["-DCMAKE_C_COMPILER_LAUNCHER=", "-DCMAKE_CXX_COMPILER_LAUNCHER="]
 
 
 def test_hits_and_misses_are_read():
