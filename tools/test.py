@@ -1,9 +1,10 @@
 """Runs the test suites, several at a time, all of them even if one fails; closes with a table of results and times.
 
-    tools/test.py [SUITE ...]      cpp python tools docs blender (all of these without arguments), lint, sanitize
+    tools/test.py [SUITE ...]      cpp python tools docs blender (all of these without arguments), lint, asan, sanitize
 
 One suite alone prints as it goes. Of several, what each prints comes when it ends, whole, and a line every half minute
-says what runs; the full texts stay in build/tests. Suites of one lane run one after the other, lanes beside each other.
+says what runs; the full texts stay in build/tests. Stages come one after the other. In a stage, suites of one lane run
+one after the other, lanes beside each other.
 """
 
 from __future__ import annotations
@@ -67,30 +68,36 @@ def lint() -> None:
     build_preset("release", "all_verify_interface_header_sets")
 
 
-def sanitize() -> None:
-    """The C++ tests under the address and undefined-behaviour sanitizers. Nothing here is measured in time: what does
-    goes first."""
+def asan() -> None:
+    """What `sanitize` runs is compiled, behind everything else that wants the cores."""
     os.nice(10)
+    build_preset("asan", "riffler_tests")
+
+
+def sanitize() -> None:
+    """The C++ tests under the address and undefined-behaviour sanitizers."""
     test_preset("asan")
 
 
 @dataclass(frozen=True)
 class Suite:
     run: Callable[[], None]
-    lane: int = 0  # suites of one lane wait for each other
+    stage: int = 1  # a stage begins when the one before has ended
+    lane: int = 0  # suites of one lane and stage wait for each other
     always: bool = True  # also where no suite is named
 
 
-# Windows wait for themselves much of the time, and so do pens: the other lane fills that in. Suites that want what
-# another one makes stand behind it in its lane.
+# Windows wait for themselves much of the time: the other lane fills that in. The C++ tests have a stage to themselves,
+# with the sanitizers and without: threads of theirs keep a pen's time, and beside Blenders they come too late.
 SUITES = {
-    "cpp": Suite(cpp),
+    "cpp": Suite(cpp, stage=0),
     "python": Suite(python),
     "tools": Suite(tools),
     "docs": Suite(docs),
     "blender": Suite(blender, lane=1),
     "lint": Suite(lint, always=False),
-    "sanitize": Suite(sanitize, always=False),
+    "asan": Suite(asan, always=False),
+    "sanitize": Suite(sanitize, stage=2, always=False),
 }
 
 
@@ -152,22 +159,24 @@ def run_beside(name: str, progress: Progress) -> Result:
     return result
 
 
-def run_lanes(names: list[str]) -> list[Result]:
-    """All suites, the lanes beside each other; results in the order of `names`."""
+def run_stages(names: list[str]) -> list[Result]:
+    """All suites, the lanes of a stage beside each other; results in the order of `names`."""
     LOGS.mkdir(parents=True, exist_ok=True)
     progress, results, over = Progress(), {}, threading.Event()
 
-    def run_lane(lane: int) -> None:
+    def run_lane(stage: int, lane: int) -> None:
         for name in names:
-            if SUITES[name].lane == lane:
+            if (SUITES[name].stage, SUITES[name].lane) == (stage, lane):
                 results[name] = run_beside(name, progress)
 
-    lanes = [threading.Thread(target=run_lane, args=[lane]) for lane in sorted({SUITES[name].lane for name in names})]
-    clock = threading.Thread(target=progress.heartbeat, args=[over], daemon=True)
-    for thread in [*lanes, clock]:
-        thread.start()
-    for thread in lanes:
-        thread.join()
+    threading.Thread(target=progress.heartbeat, args=[over], daemon=True).start()
+    for stage in sorted({SUITES[name].stage for name in names}):
+        wanted = sorted({SUITES[name].lane for name in names if SUITES[name].stage == stage})
+        lanes = [threading.Thread(target=run_lane, args=[stage, lane]) for lane in wanted]
+        for thread in lanes:
+            thread.start()
+        for thread in lanes:
+            thread.join()
     over.set()
     return [results[name] for name in names]
 
@@ -184,7 +193,7 @@ def entry() -> None:
         say(f"tests: {names[0]}")
         results = [run_alone(names[0])]
     else:
-        results = run_lanes(names)
+        results = run_stages(names)
     say(compiler_cache.report())
     say("tests: results")
     for result in results:

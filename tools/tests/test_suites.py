@@ -1,5 +1,6 @@
 """The suites run beside each other: all to the end, each one's output whole, the exit code that of the worst."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ import shell
 
 TOOLS = Path(__file__).resolve().parents[1]
 SCRIPT = """
-import sys, threading
+import sys
 sys.path.insert(0, {tools!r})
 import test
 from pathlib import Path
@@ -22,8 +23,10 @@ def crashed(): raise ValueError("it crashed")
 def later(): print("later")
 
 test.LOGS, test.HEARTBEAT, test.__file__ = Path({logs!r}), 0.05, {script!r}
-test.SUITES = dict(fine=test.Suite(fine), broken=test.Suite(broken), crashed=test.Suite(crashed, lane=1),
-                   later=test.Suite(later, lane=1), unasked=test.Suite(later, always=False))
+test.SUITES = dict(
+    fine=test.Suite(fine), broken=test.Suite(broken), crashed=test.Suite(crashed, lane=1),
+    later=test.Suite(later, lane=1), last=test.Suite(later, stage=2), first=test.Suite(later, stage=0),
+    unasked=test.Suite(later, always=False))
 main(test.entry)
 """
 
@@ -43,6 +46,8 @@ def test_all_run_to_the_end_and_one_that_fails_fails_the_whole(tmp_path):
     done = suites(tmp_path)
     assert done.returncode == 1
     assert rows(done)[:4] == [["fine", "passed"], ["broken", "FAILED"], ["crashed", "FAILED"], ["later", "passed"]]
+    begun = [line.split()[-1] for line in done.stdout.splitlines() if re.fullmatch(r"==> tests: \w+", line)]
+    assert begun[0] == "first" and begun[-2:] == ["last", "results"]
     for text in ("fine, it printed", "it broke", "ValueError: it crashed"):
         assert done.stdout.count(text) == 1
     assert "unasked" not in done.stdout
