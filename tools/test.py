@@ -131,8 +131,8 @@ class Progress:
         while not over.wait(HEARTBEAT):
             with self.lock:
                 now = time.monotonic()
-                running = ", ".join(f"{name} {now - since:.0f} s" for name, since in self.running.items())
-                say(f"tests: running: {running}")
+                if running := ", ".join(f"{name} {now - since:.0f} s" for name, since in self.running.items()):
+                    say(f"tests: running: {running}")
 
 
 def run_alone(name: str) -> Result:
