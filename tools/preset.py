@@ -6,12 +6,11 @@ tools/preset.py PRESET --test
 
 from __future__ import annotations
 
-import os
 import sys
 from xml.etree import ElementTree
 
 import compiler_cache
-from shell import ROOT, StepError, main, run, say
+from shell import ROOT, StepError, cores, main, run, say
 
 SLOWEST = 20
 
@@ -28,7 +27,7 @@ def test_preset(preset: str) -> None:
     report = ROOT / "build" / preset / "tests.xml"
     report.unlink(missing_ok=True)
     try:
-        run("ctest", "--preset", preset, "--parallel", str(len(os.sched_getaffinity(0))), "--output-junit", report)
+        run("ctest", "--preset", preset, "--parallel", str(cores()), "--output-junit", report)
     finally:
         if report.is_file():
             print_slowest(

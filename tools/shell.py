@@ -17,6 +17,11 @@ VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
 
 
+def cores() -> int:
+    """How many this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
 class StepError(Exception):
     """A step that cannot go on; the text says what to do about it."""
 

@@ -20,14 +20,10 @@ from dataclasses import dataclass
 import compiler_cache
 import package
 from preset import build_preset, test_preset
-from shell import PYTHON, ROOT, StepError, main, run, say
+from shell import PYTHON, ROOT, StepError, cores, main, run, say
 
 LOGS = ROOT / "build" / "tests"
 HEARTBEAT = 30  # s
-
-
-def cores() -> int:
-    return len(os.sched_getaffinity(0))
 
 
 def cpp() -> None:
