@@ -70,7 +70,7 @@ class Chunks:
         self._shown = ""
         self.fillings: dict[int, int] = {}  # which one each block shows
         self._materials = [m.name for m in ob.data.materials if m and m.name != masks.NAME]
-        self._tool = ""  # name of its object
+        self._tool, self._tool_at = "", None  # name of its object; where it was put, unless an undo may have moved it
 
     # ------------------------------------------------------------------ what is shown
     def update(self, mesher, bricks, mask=None, stages=None):
@@ -101,6 +101,7 @@ class Chunks:
 
     def adopt(self, fillings):
         """After an undo: the objects that came back, and the bricks of those that do not show what `fillings` says."""
+        self._tool_at = None
         if fillings is None:  # nobody knows: all of them
             fillings = dict.fromkeys(range(len(self._blocks)), -1)
         found = {ob[NUMBER]: ob for ob in collection_of(self._mark).objects if NUMBER in ob and is_own(ob)}
@@ -129,7 +130,7 @@ class Chunks:
     # ------------------------------------------------------------------ the tool
     def show_tool(self, solid):
         """`solid`: vertices (mm, the tip in the origin, the axis z) and triangles."""
-        self._shown = uuid.uuid4().hex
+        self._shown, self._tool_at = uuid.uuid4().hex, None
         ob = next(iter(self._tools()), None)
         if ob is not None:
             self._tool, ob[SHOWN], ob.hide_viewport = ob.name, self._shown, False
@@ -150,7 +151,9 @@ class Chunks:
         ob, sculpt = bpy.data.objects.get(self._tool), sculpts.marked(self._mark)
         if ob is not None and sculpt is not None:
             turn = Vector((0, 0, 1)).rotation_difference(Vector(pose[3:])).to_matrix().to_4x4()
-            ob.matrix_world = sculpt.matrix_world @ Matrix.Translation(Vector(pose[:3]) / self._mm) @ turn
+            matrix = sculpt.matrix_world @ Matrix.Translation(Vector(pose[:3]) / self._mm) @ turn
+            if matrix != self._tool_at:  # a hand at rest has nothing drawn
+                self._tool_at = ob.matrix_world = matrix
 
     @property
     def tool_there(self):

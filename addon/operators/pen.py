@@ -36,7 +36,7 @@ NO_STROKE = {
 NOT_OURS = {"riffler.smooth": "Smooth", "riffler.mask": "Mask"}  # tools whose work no session does
 
 _shown = None  # arrows and gauge (drawing/force.py)
-_told = 0.0
+_told, _told_at = (), 0.0  # what the panel says, and since when
 
 
 def mode_of(context, choice):
@@ -221,21 +221,22 @@ def _look():
 
 
 def _tell(session):
-    global _told
+    global _told, _told_at
     run = session.run
     if _shown is not None and run.pose is not None:
         _shown.pose, _shown.to_world = run.pose, session.live.to_world
         _shown.force, _shown.torque = run.push
-    if time.perf_counter() - _told < TELL:
-        return
-    _told = time.perf_counter()
-    state = bpy.context.window_manager.riffler
-    state.force = f"Hand: {run.state}, {run.force:.2f} N"
     what = " put on" if session.mode == "add" else ""
-    state.text = f"{names.format_volume(session.changed)}{what} in {_strokes(session)}"
-    state.why = run.why
+    hand = f"Hand: {run.state}, {run.force:.2f} N"
+    text = f"{names.format_volume(session.changed)}{what} in {_strokes(session)}"
+    told = hand, text, run.why
+    if told == _told or time.perf_counter() - _told_at < TELL:
+        return
+    _told, _told_at = told, time.perf_counter()
+    state = bpy.context.window_manager.riffler
+    state.force, state.text, state.why = told
     why = f"    {run.why}" if run.why else ""
-    _status(f"Riffler: {state.force}, {state.text}    Esc: end    Ctrl Z: take a stroke back{why}")
+    _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: take a stroke back{why}")
     shared.redraw_sidebars(bpy.context)
 
 
@@ -251,7 +252,8 @@ def _status(text):
 
 def _leave():
     """The session has ended, whoever ended it."""
-    global _shown
+    global _shown, _told
+    _told = ()
     if _shown is not None:
         _shown = None
         force.end()

@@ -55,6 +55,16 @@ class Screen:
         parts += [("SIDEBAR", self.region("UI"))] if self.area.spaces.active.show_region_ui else []
         return [(kind, (p.x / w, 1 - (p.y + p.height) / h, (p.x + p.width) / w, 1 - p.y / h)) for kind, p in parts]
 
+    def draw_smoothly(self, smoothly):
+        """Smooth edges and outlines take a software renderer two thirds of its time: they are for pictures that people
+        will look at."""
+        system = bpy.context.preferences.system
+        system.viewport_aa = "FXAA" if smoothly else "OFF"  # the others draw several times
+        system.use_overlay_smooth_wire = smoothly
+        for area in self.window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.spaces.active.overlay.show_outline_selected = smoothly
+
     def picture(self, name, vary=()):
         """A picture of the whole display, compared with its reference if there is one: steps to `yield from`. Panels
         that glide to where they belong, and a renderer on a busy machine, get time to become like it.
@@ -63,6 +73,7 @@ class Screen:
             complaint = self._shoot(name, vary)
             if not complaint:
                 break
+            self.area.tag_redraw()  # panels glide with each drawing
             yield pause
         if complaint is None:
             harness.say(note=f"{self.script}/{name}.png: there are no references for Blender {VERSION}")
@@ -170,15 +181,27 @@ class Play:
         os._exit(0 if outcome == "passed" else 1)
 
 
+def rest():
+    """Blender's main loop sleeps where nothing happens, but not while it takes simulated events: it would keep a core
+    busy with waiting. This is called once in each of its turns."""
+    time.sleep(0.005)
+    return 0.0
+
+
 def main():
     support.JOB, support.Skip = harness.job, harness.Skip
     bpy.context.preferences.view.show_splash = False
+    bpy.context.preferences.view.smooth_view = 0
     script = Path(harness.job["files"][0])
     if "\nINSTALL = False\n" not in script.read_text():  # before the script, which may import riffler
         support.MODULE = harness.install()
     module = harness.load(script)
     harness.say(start=module.__name__)
-    play = Play(module.__name__, module.steps, Screen(harness.job["out"], module.__name__))
+    screen = Screen(harness.job["out"], module.__name__)
+    screen.draw_smoothly(False)
+    play = Play(module.__name__, module.steps, screen)
+    if bpy.app.use_event_simulate:
+        bpy.app.timers.register(rest, persistent=True)
     bpy.app.timers.register(play, first_interval=2.0, persistent=True)  # a script may open files
 
 

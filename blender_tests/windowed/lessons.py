@@ -32,8 +32,6 @@ def plain_window():
     preferences.view.show_tooltips = False
     preferences.view.show_splash = False
     preferences.view.show_developer_ui = True  # buttons say which operator they are
-    preferences.system.viewport_aa = "FXAA"  # one pass of drawing
-    preferences.view.smooth_view = 0
 
 
 def picture(screen, name, box=None):
@@ -41,6 +39,7 @@ def picture(screen, name, box=None):
     folder = screen.out / "tutorials"
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.png"
+    screen.draw_smoothly(True)
     yield 0.4
     command = ["import", "-window", "root"]
     if box is not None:
@@ -48,6 +47,7 @@ def picture(screen, name, box=None):
         crop = f"{right - left}x{above - below}+{left}+{screen.window.height - above}"
         command += ["-crop", crop, "+repage"]
     subprocess.run([*command, "-strip", "+dither", "-colors", str(COLOURS), f"PNG8:{path}"], check=True)
+    screen.draw_smoothly(False)
     size = path.stat().st_size
     assert 2_000 < size < 250_000, f"{path}: {size} bytes"
 

@@ -8,8 +8,8 @@ import harness
 import support
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
-# two million triangles: work that can be seen
-STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.15, "directions": "xyz"}
+# 700 000 triangles: work that can be seen
+STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.25, "directions": "xyz"}
 
 
 def running():

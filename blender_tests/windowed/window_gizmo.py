@@ -91,9 +91,6 @@ def quiet():
 
 
 def steps(screen):
-    # Each sample of the view's anti-aliasing is a redraw of its own: two thirds of a software
-    # renderer's time. (With a sidebar it is needed: its panels slide into their places with these redraws.)
-    bpy.context.preferences.system.viewport_aa = "OFF"
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     with screen.override():
         bpy.ops.riffler.millimetres()

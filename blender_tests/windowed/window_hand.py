@@ -57,7 +57,6 @@ def typed(screen, expected, **modifiers):
 
 def begin(screen, path):
     """A stock in a file of its own, and the tool."""
-    bpy.context.preferences.system.viewport_aa = "OFF"  # two thirds of a software renderer's time
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     strokes.cut.stock(screen, 0.5)
     strokes.tool(screen, "riffler.carve")

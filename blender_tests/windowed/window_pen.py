@@ -15,6 +15,7 @@ cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 NAME = "Stock"
 TOP = 20.0  # mm, of the block
+MINUTE = 60.0  # s: Blender makes its autosave no sooner
 SEEN = 0.12  # N: an arrow that is longer than its head
 
 
@@ -50,7 +51,7 @@ def only_open(*names):
 
 
 def autosaves():
-    """The folder that Blender's autosave goes into, within a minute from now."""
+    """The folder that Blender's autosave goes into, MINUTE from now."""
     folder = Path(support.out("pen-autosave"))
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -117,7 +118,7 @@ def of_the_page(screen):
 def steps(screen):
     yield from prepare(screen)
     before, whole = cut.state(), volume().volume
-    folder = autosaves()
+    folder, since = autosaves(), time.perf_counter()
     assert begin(screen, removal_constant=0.005) == {"FINISHED"} and sculpting()
     tool = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
     assert tool.idname == "riffler.carve" and bpy.data.objects[NAME].hide_get()
@@ -153,9 +154,13 @@ def steps(screen):
     screen.key("Z", ctrl=True, shift=True)
     yield lambda: volume().volume == made
     assert session() is mine
-    device.wander()
 
-    # nothing modal: Blender makes its autosave, and a stroke of the hand is in it
+    # nothing modal: Blender makes its autosave, and a stroke of the hand is in it; drawing begins again when it is due
+    look, session().look = session().look, lambda: True
+    yield lambda: session() is None or time.perf_counter() - since > MINUTE - 5
+    assert session() is mine
+    session().look = look
+    device.wander()
     yield lambda: list(folder.glob("*.blend"))
     assert session() is mine and sculpting()
     shutil.copy(next(folder.glob("*.blend")), support.out("pen-autosaved.blend"))
