@@ -4,7 +4,7 @@
     python blender_tests/run.py --only test_cut       tests whose name contains the text
     python blender_tests/run.py --blender 4.5 --mode source --no-window
 
-Each (Blender, way of installing), and each script of a window, is one process with a time limit; three run at a time.
+Each (Blender, way of installing), and each script of a window, is one process with a time limit; a few run at a time.
 Ways of installing: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
 source folder, of which one Blender tests what goes by the way of installing, and everything where --blender or --mode
 names it. Ends with the slowest tests and the number of those that passed, failed and were skipped, with reasons; exit
@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -36,7 +37,8 @@ MARK = "RIFFLER_TEST "
 sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
-AT_ONCE = 3  # processes, of a gigabyte each; windows and pens wait for themselves for a third of their time
+# Processes, of a gigabyte each; windows and pens wait for themselves for half of their time.
+AT_ONCE = min(4, 2 * (os.cpu_count() or 1))
 FIRST_DISPLAY = 90  # each window looks for a free one from a number of its own on: two at once would take the same
 FROM_SOURCE = (4, 5)  # the Blender that has the source folder, too
 # What may depend on where the add-on lies and what its module is called; the rest is the same code as in the extension,

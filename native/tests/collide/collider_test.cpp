@@ -8,6 +8,7 @@
 #include "marching/to_mesh.hpp"
 #include "stress/random.hpp"
 #include "support/box_mesh.hpp"
+#include "support/effort.hpp"
 #include "sweep/kernels.hpp"
 
 namespace riffler::collider_test {
@@ -113,15 +114,15 @@ TEST(Collider, KeepsADistanceExactlyWhereTheLeastOneDoesAndLooksNoDeeper) {
   const Assembly assembly(cutters::ball(6, 22).with_shank({{22, 3, 34, 3}}).with_holder({{34, 13, 70, 16}}));
   stress::Random random(12);
   int kept = 0;
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < test::cases(400); ++k) {
     const Pose pose{{random.uniform(-25, 35), random.uniform(-20, 20), random.uniform(-30, 20)}, random.direction()};
     const double nearest = collider.nearest(assembly, pose).distance;
     for (const double wanted : {-5.0, -0.01, 0.0, 1.0, nearest - 1e-6, nearest + 1e-6})
       EXPECT_EQ(collider.keeps(assembly, pose, wanted), nearest >= wanted) << k << ", " << wanted;
     kept += nearest >= 0;
   }
-  EXPECT_GT(kept, 20);
-  EXPECT_LT(kept, 380);
+  EXPECT_GT(kept, test::cases(20));
+  EXPECT_LT(kept, test::cases(380));
 }
 
 TEST(Collider, BoundOfWhatABudgetMissedIsNeverViolated) {
@@ -203,7 +204,7 @@ TEST(Collider, ForceConvergesToTheIntegralOfDepthOverTheSurface) {
     const Collider collider(mesh, {}, {.spacing = spacing});
     double worst = 0;
     random = Random(7);
-    for (int n = 0; n < 6; ++n) {
+    for (int n = 0; n < test::cases(6); ++n) {
       const Pose pose = tilted({random.uniform(4, 6), random.uniform(4, 6), random.uniform(2, 4)}, random, 0.4);
       const Contact c = collider.query(assembly, pose);
       const Vec3 expected = dense_force(mesh, assembly.outline(), pose, 60);

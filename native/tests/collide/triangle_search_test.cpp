@@ -8,6 +8,7 @@
 #include "collide/tools.hpp"
 #include "mesh/closest.hpp"
 #include "stress/random.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::triangle_search_test {
 namespace {
@@ -258,7 +259,7 @@ TEST(OutlineLanes, BoundsOfTrianglesAreNeverAboveTheLeast) {
     SCOPED_TRACE(tool.name());
     const Outline outline(tool);
     Random random(++seed);
-    for (int n = 0; n < 300; ++n) {
+    for (int n = 0; n < test::cases(300); ++n) {
       const ToolFrame frame({10.0 * random.direction(), random.direction()});
       const Group group(outline, frame, [&] { return triangle_near(outline, random); });
       for (int k = 0; k < kLanes; ++k) {

@@ -13,6 +13,7 @@
 #include "dexel/from_mesh.hpp"
 #include "dexel/openings.hpp"
 #include "dexel/shapes.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::from_mesh_open_test {
 namespace {
@@ -297,7 +298,7 @@ TEST(FromOpenMesh, ColumnsAlongVerticalBoundaries) {
 TEST(FromOpenMesh, RandomHolesCracksAndSoups) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < test::cases(6); ++round) {
     Mesh mesh = sphere({0, 0, 0}, 10, 10);
     mesh = joined(mesh, moved(box({-6, -6, -6}, {6, 6, 6}), rotation({1, 2, round + 0.1}, round), Vec3(4, 3, 2)));
     // Triangles lost, turned round and doubled.

@@ -5,6 +5,7 @@
 #include "haptics/coupling.hpp"
 #include "haptics/passive_bound.hpp"
 #include "stress/stability.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::passivity_test {
@@ -112,7 +113,8 @@ TEST(Passivity, QuantisationHidesNoMoreThanItsStepTimesTheChangeOfForce) {
     PassivitySettings settings = strict({9e4, 0});
     settings.resolution = {step, 0};
     for (const double times : {1.0, 10.0}) {
-      const stress::SessionResult r = press(device, {{1.0}, 4 * times, 0, true, 10}, {100'000, 2, 5}, settings);
+      const stress::SessionResult r =
+          press(device, {{1.0}, 4 * times, 0, true, 10}, {test::cases(100'000), 2, 5}, settings);
       EXPECT_EQ(r.unforeseen, 0);
       EXPECT_LE(r.measured_delivered, settings.reserve + 1e-9);
       EXPECT_LE(r.delivered, settings.reserve + r.variation + 1e-9);

@@ -8,6 +8,7 @@
 #include "stress/float_audit.hpp"
 #include "stress/random.hpp"
 #include "stress/solids.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::accuracy_test {
 namespace {
@@ -40,8 +41,8 @@ TEST(ToMeshAccuracy, OfASphere) {
 
 TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
   Errors edges, corners, vertices;
-  for (unsigned seed = 0; seed < 30; ++seed) {
-    Random random(seed);
+  for (int seed = 0; seed < test::cases(30); ++seed) {
+    Random random(static_cast<unsigned>(seed));
     const Vec3 centre = Vec3(10.0) + 0.3 * random.direction(), half{4.3, 3.7, 5.1};
     const Mat3 turn = random_turn(random);
     const Volume volume = solid_volume({{Vec3(0.0), Vec3(20.0)}, kPitch, "xyz"}, turned_box(centre, half, turn));

@@ -8,6 +8,7 @@
 #include "marching/to_mesh.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/mesh_scenes.hpp"
+#include "support/effort.hpp"
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
@@ -72,7 +73,7 @@ TEST(Mesher, FollowsACarvedBlock) {
     Mesher mesher(volume);
     Patches patches(mesher);
     Random random(7);
-    for (int stroke = 0; stroke < 25; ++stroke) {
+    for (int stroke = 0; stroke < test::cases(25); ++stroke) {
       const Tool tools[] = {cutters::ball(3, 40), cutters::flat(2.5, 40), cutters::taper(0.4, 0.3, 4, 40)};
       const auto pose = [&] {
         Vec3 axis = random.direction();
@@ -95,7 +96,7 @@ TEST(Mesher, FollowsACarvedBlock) {
 
 /// Sharp edges everywhere, in a bar of many bricks: candidates whose choices depend on each other's across borders.
 TEST(Mesher, FollowsABarFullOfEdges) {
-  for (unsigned seed = 0; seed < 2; ++seed) {
+  for (unsigned seed = 0; seed < (test::kSanitized ? 1 : 2); ++seed) {
     Random random(100 + seed);
     Volume volume = Volume::block({{{0, 0, 0}, {60, 7, 7}}, 0.25, "xyz"});
     const Tool tools[] = {cutters::flat(1.1, 12), cutters::flat(0.6, 12), cutters::cone_end(0.7, 0.6, 0.2, 2, 12)};
@@ -107,7 +108,7 @@ TEST(Mesher, FollowsABarFullOfEdges) {
     for (int n = 0; n < 600; ++n) nick(random.uniform(0, 60));
     Mesher mesher(volume);
     EXPECT_TRUE(float_audit(mesher.mesh()).clean()) << float_audit(mesher.mesh());
-    for (int step = 0; step < 16; ++step) {
+    for (int step = 0; step < test::cases(16); ++step) {
       nick(8.0 * (1 + random.below(7)) + random.uniform(-1, 1));  // near the borders of bricks
       const std::vector<std::size_t> changed = mesher.update(volume);
       expect_same(mesher, volume, "seed " + std::to_string(seed) + ", nick " + std::to_string(step));
@@ -141,7 +142,7 @@ TEST(Mesher, FollowsGridsThatContradictEachOther) {
     Patches patches(mesher);
     const std::string what = "seed " + std::to_string(seed);
     EXPECT_TRUE(float_audit(mesher.mesh()).clean()) << what << ": " << float_audit(mesher.mesh());
-    for (int step = 0; step < 8; ++step) {
+    for (int step = 0; step < test::cases(8); ++step) {
       const Volume before = volume;
       // One grid's rays in a rectangle become wild, or what they were at first.
       Grid& grid = volume.grids()[static_cast<std::size_t>(random.below(static_cast<int>(volume.grids().size())))];

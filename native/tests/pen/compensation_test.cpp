@@ -10,6 +10,7 @@
 #include "pen/pens.hpp"
 #include "pen/simulated_bench.hpp"
 #include "stress/random.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::compensation_test {
@@ -126,7 +127,7 @@ TEST(Compensation, TheHandFeelsLessFrictionByTheShare) {
 /// Random hands, loose and firm, that tremble and let go; with jitter on the cable. The motors' account never passes
 /// what friction took.
 TEST(Compensation, OfFrictionNeverGivesWhatFrictionDidNotTake) {
-  for (unsigned seed = 1; seed <= 6; ++seed) {
+  for (unsigned seed = 1; seed <= (test::kSanitized ? 2 : 6); ++seed) {
     SimulatedPenSettings settings;
     settings.cable.jitter_us = 1000;
     const Pose home = SimulatedPen(settings).arms().posture().pose;

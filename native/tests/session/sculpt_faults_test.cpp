@@ -12,6 +12,7 @@
 #include "session/journal_sink.hpp"
 #include "session/replay.hpp"
 #include "session/sculpt_bench.hpp"
+#include "support/effort.hpp"
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
 #include "tool/cutters.hpp"
@@ -76,6 +77,7 @@ std::unique_ptr<JournalSink> sink_to(const std::filesystem::path& path, const Vo
 }
 
 TEST(SculptFault, EachTakesTheForceAndLeavesAJournalThatReplaysWhatWasCut) {
+  const double after = test::kSanitized ? 3 : 6;  // s
   for (const Fault& fault : faults()) {
     SCOPED_TRACE(fault.name);
     const Volume stock = test::sculpt_stock(0.5);
@@ -97,7 +99,7 @@ TEST(SculptFault, EachTakesTheForceAndLeavesAJournalThatReplaysWhatWasCut) {
     bench.run(0.6);
     bench.loop.reset();
     double removed = 0;
-    bench.run(6, [&](const SculptTick& tick) { removed += tick.removed; });
+    bench.run(after, [&](const SculptTick& tick) { removed += tick.removed; });
     EXPECT_EQ(removed > 1, fault.comes_back) << "it does not work again, or should not";
     EXPECT_EQ(pushed > began + 1, fault.comes_back) << "the force does not come back, or should not";
     bench.loop.finish();

@@ -12,6 +12,7 @@
 #include "session/sculpt_bench.hpp"
 #include "support/allocations.hpp"
 #include "support/box_mesh.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
@@ -179,7 +180,7 @@ TEST(SculptLoop, TheHandFeelsTheSameStiffnessAtEveryScale) {
                     Pose{{0, 0, 0}, {0, 0, 1}});
     Wrench out;
     double depth = 0;
-    for (int k = 0; k < 3000; ++k) {
+    for (int k = 0; k < (test::kSanitized ? 1500 : 3000); ++k) {
       PenSample sample;
       depth = 1 / scale + std::min(2.0, 2e-3 * k);  // of which the first part is air
       sample.pose = {{0, 0, -depth}, {0, 0, 1}};

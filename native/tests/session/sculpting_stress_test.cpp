@@ -11,15 +11,10 @@
 #include <string>
 
 #include "support/allocations.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::sculpting_stress_test {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // ten times as slow, and memory is the sanitizer's
-#else
-constexpr bool kSanitized = false;
-#endif
 
 void print(const char* what, stress::SculptingRun& run) {
   auto& s = run.step_seconds;
@@ -30,8 +25,9 @@ void print(const char* what, stress::SculptingRun& run) {
 }
 
 TEST(Sculpting, TheLastMinuteIsAsTheFirst) {
-  const double seconds = kSanitized ? 40 : std::getenv("RIFFLER_LONG") ? 600 : 120;
-  stress::SculptingRun run = stress::sculpting_run({.seconds = seconds, .allocations = &test::allocations});
+  const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 120;
+  stress::SculptingRun run = stress::sculpting_run(
+      {.seconds = seconds, .warm = std::min(30.0, seconds / 2), .allocations = &test::allocations});
   print((std::to_string(std::lround(seconds)) + " s of sculpting").c_str(), run);
   EXPECT_NEAR(static_cast<double>(run.steps), 1000 * seconds, 2 * seconds);
   EXPECT_GT(run.strokes, seconds / 4);
@@ -43,7 +39,7 @@ TEST(Sculpting, TheLastMinuteIsAsTheFirst) {
   EXPECT_LT(run.gained, 1.1);   // the reserve, and a frame's worth
   EXPECT_GT(run.account, -10);  // for a moment: of wrenches on the cable (docs/stability.md)
   EXPECT_GT(run.greatest, 1);
-  if (kSanitized) return;
+  if (test::kSanitized) return;  // memory is the sanitizer's
   // The surface grows rougher, and its mesh and its tiles with it.
   EXPECT_LT(run.resident.back(), run.resident[1] + 25);
   if (seconds >= 600) {

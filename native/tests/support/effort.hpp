@@ -1,0 +1,18 @@
+// How much of itself a test does under a sanitizer, which takes four to ten times as long: a fault of memory or of
+// arithmetic shows where code runs at all, not in how many cases it holds. All cases run in the release build.
+#pragma once
+
+namespace riffler::test {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+/// Of `all` cases: all, or a quarter under a sanitizer.
+constexpr int cases(int all) {
+  return kSanitized ? (all + 3) / 4 : all;
+}
+
+}  // namespace riffler::test
