@@ -56,6 +56,7 @@ stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, ho
 	build/release/native/stress/riffler_mesh_stress --volumes $(or $(VOLUMES),100000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)
 	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Sculpting.*'
+	RIFFLER_LONG=1 $(python) -m pytest -q native/tests/python/test_tasks.py -k many_tasks
 
 scenes:  ## Write the hashes of the replayed journals anew: native/tests/scenes/hashes.txt
 	@$(ready) cpp-tests

@@ -233,7 +233,8 @@ def _with_lines(program, plan, post, chosen):
         except ValueError:
             return program, ""
     lines = course.lines(program.poses, read.poses, read.line)
-    more = {"spindle": program.spindle, "tools": program.tools, "provenance": program.provenance}
+    more = {"spindle": program.spindle, "tools": program.tools}
+    more |= {"provenance": program.provenance, "notes": program.notes}
     return riffler.Program(program.poses, program.feed, program.rapid, program.tool, lines, **more), text
 
 
@@ -283,7 +284,7 @@ def _with_tools(context, program, name):
     number = np.where(program.tool == 0, called[0], program.tool) if called[0] else program.tool
     return riffler.Program(
         program.poses, program.feed, program.rapid, number, program.line,
-        spindle=program.spindle, tools=tools, provenance=program.provenance,
+        spindle=program.spindle, tools=tools, provenance=program.provenance, notes=program.notes,
     )  # fmt: skip
 
 

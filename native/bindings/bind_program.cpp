@@ -64,7 +64,7 @@ Provenance to_provenance(const py::object& object) {
 
 Program make_program(const Doubles& poses, const py::object& feed, const py::object& rapid, const py::object& tool,
                      const py::object& line, const py::object& spindle, const py::object& tools,
-                     const py::object& provenance) {
+                     const py::object& provenance, const std::vector<Note>& notes) {
   const std::vector<Pose> rows = to_poses(poses, "poses");
   const std::size_t n = rows.size();
   const auto column = [&](const py::object& object, const char* name) { return to_column(object, n, name); };
@@ -78,6 +78,7 @@ Program make_program(const Doubles& poses, const py::object& feed, const py::obj
                     to_int(lines[row], "line", row), rapids[row] != 0});
   program.tools = to_tools(tools);
   program.provenance = to_provenance(provenance);
+  program.notes = notes;
   return program;
 }
 
@@ -246,6 +247,16 @@ void bind_program(py::module_& m) {
         "Machines that programs are written for and read from, ours and your own: name to description. A post has its "
         "machine's name; the path of a .toml file that describes one will do as well.");
 
+  py::class_<Note>(m, "Note", "What a reader of NC code assumed or passed over.")
+      .def_readonly("kind", &Note::kind,
+                    "\"skipped\", \"coordinates\" (skipped with axis words: what follows may be elsewhere), \"units\", "
+                    "\"machine position\", \"tool length\", \"user code\" or \"end\".")
+      .def_readonly("line", &Note::line, "Of the source, from 1.")
+      .def_readonly("message", &Note::message)
+      .def("__repr__", [](const Note& n) {
+        return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
+      });
+
   py::class_<NcStream>(m, "ProgramStream", "What Program.stream gives: an iterator of programs.")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", [](NcStream& self) {
@@ -267,7 +278,7 @@ One row per move end. Between two rows the tip moves on a line and the axis on t
 comment of the NC code repeats. Lengths in mm, feed in mm/min at the tip, spindle in rev/min.)")
       .def(py::init(&make_program), py::arg("poses"), py::arg("feed"), py::arg("rapid") = false, py::arg("tool") = 1,
            py::arg("line") = 0, py::arg("spindle") = 0.0, py::arg("tools") = py::none(),
-           py::arg("provenance") = py::none(),
+           py::arg("provenance") = py::none(), py::arg_v("notes", std::vector<Note>(), "[]"),
            R"(From columns: poses (n, 6), everything else one value for all rows or (n,).
 
 ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves.)")
@@ -357,6 +368,9 @@ would take).)")
             return out;
           },
           "dict of strings.")
+      .def_property_readonly(
+          "notes", [](const Program& self) { return self.notes; },
+          "What the reader assumed or passed over: a list of Note. Programs that are made of numbers have none.")
       .def("trimmed", &trimmed, py::arg("first"), py::arg("last"),
            "Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.")
       .def("transformed", &edited_transform, py::arg("matrix"),

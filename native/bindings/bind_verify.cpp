@@ -5,6 +5,7 @@
 #include "bindings/shared_report.hpp"
 #include "bindings/task.hpp"
 #include "dexel/from_mesh.hpp"
+#include "nc/reader.hpp"
 
 namespace riffler {
 
@@ -80,7 +81,7 @@ VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const 
                                 double rapid_feed, const std::optional<std::string>& machine,
                                 const py::object& machine_options) {
   VerifyOptions out{tolerance, gouge_tolerance, rest_tolerance, rapid_feed, {}};
-  if (machine) out.machine = MachineChoice{*machine, to_options(machine_options)};
+  if (machine) out.machine = MachineChoice{*machine, without_reading(to_options(machine_options))};
   if (!machine && !machine_options.is_none()) throw py::value_error("machine_options: there is no machine");
   return out;
 }
@@ -345,7 +346,7 @@ Volume or Mesh (which becomes a Volume at the stock's pitch). ``tools``: dict of
 ``tolerance`` (mm): of cutting, as in Volume.carve; contact that is less deep is none. ``gouge_tolerance`` (mm): what is
 taken from the part deeper under its surface is a gouge. ``rest_tolerance`` (mm): what stands higher on the part is a
 finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time. ``machine``: a name of
-machines() on which it is to run, with ``machine_options``: the first row that its axes or their limits cannot hold is a
+machines() on which it is to run, with ``machine_options`` (those of reading are passed over): the first row that its axes or their limits cannot hold is a
 finding "machine".
 
 Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come

@@ -49,7 +49,10 @@ class AptReader {
     }
     place_.text = {};
     if (circle_) place_.fail("CIRCLE without the GOTO of its end");
-    if (!skipped_.empty()) program_.provenance.emplace_back("skipped", skipped_);
+    std::string skipped;
+    for (const Note& n : program_.notes)
+      skipped += (skipped.empty() ? "line " : "; line ") + std::to_string(n.line) + ": " + n.message;
+    if (!skipped.empty()) program_.provenance.emplace_back("skipped", skipped);
     return std::move(program_);
   }
 
@@ -132,8 +135,7 @@ class AptReader {
   }
 
   void list(const std::string& what) {
-    if (listed_++ >= kMaxListed) return;
-    skipped_ += (skipped_.empty() ? "line " : "; line ") + std::to_string(s_.line) + ": " + what;
+    if (program_.notes.size() < kMaxListed) program_.notes.push_back({"skipped", s_.line, what});
   }
 
   // --- Feed, speed, tools ---
@@ -310,8 +312,6 @@ class AptReader {
   double chord_tolerance_ = 0;
   bool skip_unknown_ = false;
   Program program_;
-  std::string skipped_;
-  std::size_t listed_ = 0;
 
   double unit_ = 1, feed_ = 0, feed_unit_ = 0, speed_ = 0;
   bool per_turn_ = false, rapid_ = false, loads_ = false, cutter_waits_ = false;

@@ -22,7 +22,7 @@ Program copied(const Program& program, std::size_t first, std::size_t last, cons
     change(move, row);
     out.append(move);
   }
-  out.tools = program.tools, out.provenance = program.provenance;
+  out.tools = program.tools, out.provenance = program.provenance, out.notes = program.notes;
   return out;
 }
 
@@ -80,6 +80,7 @@ Program joined(std::span<const Program* const> programs) {
   for (const Program* p : programs) {
     for (std::size_t row = 0; row < p->size(); ++row) out.append((*p)[row]);
     for (const auto& [number, tool] : p->tools) add_tool(out.tools, number, tool);
+    out.notes.insert(out.notes.end(), p->notes.begin(), p->notes.end());
     for (const auto& [key, value] : p->provenance)
       if (std::none_of(out.provenance.begin(), out.provenance.end(), [&](const auto& own) { return own.first == key; }))
         out.provenance.emplace_back(key, value);

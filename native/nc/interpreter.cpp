@@ -13,8 +13,12 @@ namespace riffler {
 
 namespace {
 
-/// Of each kind that provenance lists.
+/// Of each kind.
 constexpr std::size_t kMaxNotes = 20;
+
+bool is_skipped(std::string_view kind) {
+  return kind == "skipped" || kind == "coordinates";
+}
 
 /// A path, which OptionReader has no form of its own for.
 std::string path_option(const Options& options, OptionReader& taken, const std::string& name) {
@@ -81,33 +85,37 @@ bool NcInterpreter::executes(NcCursor& cursor) {
   const char c = cursor.peek();
   if (c == '\0') return false;
   if (c == '%') {
-    percent(cursor);
+    percent();
     return false;
   }
+  if (c == ':') {  // ISO 6983's other letter for O and for N
+    cursor.take();
+    if (cursor.at_number()) cursor.number(':');
+  }
+  if (!started_ && cursor.take_word("<O")) return false;  // a program's number, on some controls
   if (c == '/') {
     if (given_.block_delete) return false;
     cursor.take();
   }
   if (cursor.peek() == 'N') {
     cursor.take();
-    const double number = cursor.number('N');
-    if (!(std::abs(number) <= kMaxNumber)) place_.fail("N is out of range");
-    if (number < 0 || number != std::floor(number)) place_.fail("N must be a whole number");
+    if (!(std::abs(cursor.number('N')) <= kMaxNumber)) place_.fail("N is out of range");
   }
   return cursor.peek() != '\0';
 }
 
-/// Whether nothing can follow `line`, which stands after the end of the program: subroutines may.
+/// Whether `line`, which stands after the end of the program, is the last that is looked at: what executes there is
+/// not reached, as on LinuxCNC, and subroutines may follow.
 bool NcInterpreter::ended(std::string_view line) {
   if (NcControlFlow::begins_subroutine(line)) return true;
   NcCursor cursor(line, place_);
-  if (executes(cursor)) place_.fail("text after the end of the program");
-  return false;
+  if (!executes(cursor)) return false;
+  note("end", "what follows the end of the program is not read");
+  return true;
 }
 
-void NcInterpreter::percent(NcCursor& cursor) {
-  cursor.take();
-  if (cursor.peek() != '\0') place_.fail("text beside %");
+/// What stands beside it is the name of a tape or a file.
+void NcInterpreter::percent() {
   // The first frames the start, the second the end.
   if (!started_ && !percent_)
     percent_ = true;
@@ -128,10 +136,10 @@ void NcInterpreter::block(NcCursor& cursor) {
   }
   words_->read(cursor, parameters_);
   for (const std::string& word : skipped_here_) {
-    if (skipped_.size() < kMaxNotes)
-      skipped_.push_back("line " + std::to_string(place_.line) + ": " + word);
+    if (words_->lost_axes())
+      note("coordinates", word + " was skipped, with its axis words");
     else
-      ++more_skipped_;
+      note("skipped", word);
   }
   skipped_here_.clear();
   parameters_.apply();
@@ -141,7 +149,7 @@ void NcInterpreter::block(NcCursor& cursor) {
 /// In the order in which LinuxCNC does it (its manual, "G-Code Order of Execution"), except that G20 and G21 hold for
 /// the F beside them.
 void NcInterpreter::execute() {
-  if (words_->only_moves() && !words_->has('H')) {
+  if (words_->only_moves() && !words_->has('H') && !words_->has('D')) {
     feed_and_speed();
     if (words_->has('T')) next_tool_ = words_->whole('T');
     motion();
@@ -166,22 +174,26 @@ void NcInterpreter::execute() {
   words_->check_all_used();
 }
 
-void NcInterpreter::note(const std::string& text) {
-  const std::string at = "line " + std::to_string(flow_->program_line()) + ": " + text;
-  if (notes_.size() < kMaxNotes) notes_.push_back(at);
+void NcInterpreter::note(const char* kind, const std::string& message) {
+  const auto alike = std::count_if(notes_.begin(), notes_.end(), [&](const Note& n) { return n.kind == kind; });
+  if (static_cast<std::size_t>(alike) < kMaxNotes)
+    notes_.push_back({kind, flow_->program_line(), message});
+  else if (is_skipped(kind))
+    ++more_skipped_;
 }
 
 Provenance NcInterpreter::provenance() const {
   Provenance out{{"source", source_}};
-  const auto list = [](const std::vector<std::string>& all) {
+  const auto list = [&](bool skipped) {
     std::string text;
-    for (const std::string& one : all) text += (text.empty() ? "" : "; ") + one;
+    for (const Note& n : notes_)
+      if (is_skipped(n.kind) == skipped)
+        text += (text.empty() ? "line " : "; line ") + std::to_string(n.line) + ": " + n.message;
     return text;
   };
-  if (!skipped_.empty())
-    out.emplace_back("skipped",
-                     list(skipped_) + (more_skipped_ ? "; and " + std::to_string(more_skipped_) + " more" : ""));
-  if (!notes_.empty()) out.emplace_back("notes", list(notes_));
+  if (const std::string skipped = list(true); !skipped.empty())
+    out.emplace_back("skipped", skipped + (more_skipped_ ? "; and " + std::to_string(more_skipped_) + " more" : ""));
+  if (const std::string others = list(false); !others.empty()) out.emplace_back("notes", others);
   return out;
 }
 

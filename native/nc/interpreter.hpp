@@ -32,6 +32,7 @@ class NcInterpreter final : private NcPredefined {
 
   /// "source", and "skipped" and "notes" where there are any.
   Provenance provenance() const;
+  const std::vector<Note>& notes() const { return notes_; }
 
  private:
   /// What M70 saves and M72 restores.
@@ -69,10 +70,10 @@ class NcInterpreter final : private NcPredefined {
   void take_options(const ReadOptions& options);
   bool executes(NcCursor& cursor);
   bool ended(std::string_view line);
-  void percent(NcCursor& cursor);
+  void percent();
   void block(NcCursor& cursor);
   void execute();
-  void note(const std::string& text);
+  void note(const char* kind, const std::string& message);
 
   // interpreter_modes.cpp: what moves nothing.
   void units_and_feed_mode();
@@ -132,7 +133,7 @@ class NcInterpreter final : private NcPredefined {
   std::unique_ptr<NcRows> rows_;
   std::unique_ptr<NcWords> words_;
   std::string source_;
-  std::vector<std::string> skipped_, notes_;
+  std::vector<Note> notes_;
   std::size_t more_skipped_ = 0;
 
   Joints at_{};  // program coordinates, mm and degrees
@@ -143,7 +144,7 @@ class NcInterpreter final : private NcPredefined {
   std::optional<Vec2> spline_end_;  // of a G5: from its end to its second control point
   int tool_ = 0, next_tool_ = 0, length_number_ = 0;
   std::optional<Vec3> length_;  // of the tool at hand, as the first dynamic offset gave it
-  bool length_used_ = false, length_off_ = false, home_noted_ = false;
+  bool length_used_ = false, length_off_ = false, home_noted_ = false, units_said_ = false;
   std::vector<Saved> saved_;
   bool started_ = false, percent_ = false, ended_ = false;
 };

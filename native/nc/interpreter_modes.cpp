@@ -11,7 +11,8 @@
 namespace riffler {
 
 void NcInterpreter::units_and_feed_mode() {
-  if (const int code = words_->code(NcGroup::Units); code >= 0) modes_.unit = code == 200 ? kInch : 1;
+  if (const int code = words_->code(NcGroup::Units); code >= 0)
+    modes_.unit = code == 200 || code == 700 ? kInch : 1, units_said_ = true;
   const int mode = words_->code(NcGroup::FeedMode);
   if (mode < 0) return;
   // Numbers of one mode mean nothing in another.
@@ -23,7 +24,7 @@ void NcInterpreter::feed_and_speed() {
   if (modes_.feed_mode == 930) modes_.feed = 0;  // F counts for its own block only
   if (words_->has('F')) {
     modes_.feed = words_->value('F', kMaxFeed / kInch) * (modes_.feed_mode == 930 ? 1 : modes_.unit);
-    if (!(modes_.feed > 0)) place_.fail("F must be positive");
+    if (modes_.feed < 0) place_.fail("F is negative");
   }
   if (words_->has('S')) {
     modes_.speed = words_->value('S', kMaxSpindle);
@@ -43,7 +44,6 @@ void NcInterpreter::spindle() {
       modes_.turning = 0;
       break;
     case 190:
-      if (!words_->has('R')) place_.fail("M19 needs R");
       words_->pass_over("RQP");
       modes_.turning = 0;
       break;
@@ -57,7 +57,6 @@ void NcInterpreter::spindle() {
     modes_.speed = words_->has('D') ? words_->value('D', kMaxSpindle) : 0;
     if (modes_.speed < 0) place_.fail("D is negative");
   } else if (mode == 970) {
-    if (!words_->has('S')) place_.fail("G97 needs S");
     modes_.surface_speed = false;
   }
 }
@@ -75,7 +74,7 @@ void NcInterpreter::signals() {
   if (words_->code(NcGroup::Override) >= 0) words_->pass_over("P");
   if (words_->code(NcGroup::User) >= 0) {
     words_->pass_over("PQ");
-    note(nc_code_name('M', words_->code(NcGroup::User)) + " is the user's own: taken to move nothing");
+    note("user code", nc_code_name('M', words_->code(NcGroup::User)) + " is the user's own: taken to move nothing");
   }
 }
 
@@ -152,9 +151,10 @@ void NcInterpreter::kinematics() {
 
 void NcInterpreter::dwell() {
   if (words_->code(NcGroup::NonModal) != 40) return;
-  if (!words_->has('P')) place_.fail("G4 needs P");
-  if (words_->value('P', 1e6) < 0) place_.fail("P is negative");
-  if (words_->has_axes() && words_->code(NcGroup::Motion) < 0) place_.fail("axis words beside G4");
+  const char time = words_->has('P') ? 'P' : 'X';  // Fanuc's G04 X2. waits two seconds
+  if (!words_->has(time)) place_.fail("G4 needs P");
+  if (words_->value(time, 1e6) < 0) place_.fail(std::string(1, time) + " is negative");
+  if (time == 'P' && words_->has_axes() && words_->code(NcGroup::Motion) < 0) place_.fail("axis words beside G4");
 }
 
 void NcInterpreter::modes() {
@@ -184,10 +184,9 @@ void NcInterpreter::modes() {
 /// difference.
 void NcInterpreter::tool_length() {
   const int code = words_->code(NcGroup::ToolLength);
-  if (words_->has('H')) {
-    if (code != 430 && code != 432 && code != 434) place_.fail("H without G43 or G43.4");
-    length_number_ = words_->whole('H');
-  }
+  // H and D beside no code that asks for them choose offsets that other blocks switch on.
+  if (words_->has('H')) length_number_ = words_->whole('H');
+  words_->pass_over("D");
   if (code < 0) return;
   NcFrame frame = frame_;
   frame.tip = Vec3(0);

@@ -19,6 +19,8 @@ constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'}, kCentre{'I', 'J', 'K'};
 /// Whether a code beside the motion's uses the axis words.
 bool NcInterpreter::axes_are_taken() const {
   switch (words_->code(NcGroup::NonModal)) {
+    case 40:  // of a dwell: X is its time
+      return !words_->has('P');
     case 100:
     case 280:
     case 300:
@@ -43,7 +45,6 @@ void NcInterpreter::motion() {
   if (axes_are_taken()) return;
   const bool arc = motion_ == 20 || motion_ == 30;
   if (!words_->has_axes() && !(arc && (words_->has('I') || words_->has('J') || words_->has('K')))) {
-    if (by_machine) place_.fail("G53 without axis words");
     if (code == 20 || code == 30) place_.fail("an arc without an end or a centre");
     if (code == 10) check_feed();
     if (is_drill_cycle(code)) place_.fail("a canned cycle without axis words");
@@ -128,14 +129,15 @@ Joints NcInterpreter::machine_target() {
   for (const char letter : rows_->machine().axes())
     if (words_->has(letter)) machine[joint_index(letter)] = length_or_angle(joint_index(letter));
   if (!home_noted_)
-    note("G28, G30 and G53 go to positions of the machine, here as if the work offset was 0: option parameters");
+    note("machine position",
+         "G28, G30 and G53 go to positions of the machine, here as if the work offset was 0: option parameters");
   home_noted_ = true;
   return frame_.to_program(machine);
 }
 
 NcRowWords NcInterpreter::row_words(bool rapid) {
   if (length_off_) {
-    note("a move after G49: its points are taken for those of the tip");
+    note("tool length", "a move after G49: its points are taken for those of the tip");
     length_off_ = false;
   }
   return {rapid,

@@ -168,7 +168,8 @@ void NcInterpreter::go_home(int first_parameter) {
       machine[k] = parameters_.stored(first_parameter + static_cast<int>(k));
   }
   if (!home_noted_)
-    note("G28, G30 and G53 go to positions of the machine, here as if the work offset was 0: option parameters");
+    note("machine position",
+         "G28, G30 and G53 go to positions of the machine, here as if the work offset was 0: option parameters");
   home_noted_ = true;
   line_to(frame_.to_program(machine), true);
 }

@@ -52,6 +52,15 @@ struct ToolRun {
 /// Keys and values for the reader of the code (part, recording, …), in the order in which they were given.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
+/// What a reader assumed or passed over, which whoever relies on the program has to know.
+struct Note {
+  std::string kind;  ///< "skipped", "coordinates", "units", "machine position", "tool length", "user code", "end"
+  int line = 0;      ///< 1-based, of the source
+  std::string message;
+
+  bool operator==(const Note&) const = default;
+};
+
 /// Rows in columns. Every row is valid: finite, unit axis, a feed where the tip moves.
 class Program {
  public:
@@ -78,6 +87,7 @@ class Program {
   /// The tools whose shape is known, by number; a number used by a row need not be here (NC code has no shapes).
   std::map<int, Tool> tools;
   Provenance provenance;
+  std::vector<Note> notes;  ///< in the order of their lines
 
  private:
   std::vector<Pose> poses_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <stdexcept>
 
 #include "dexel/planes.hpp"
@@ -56,6 +57,31 @@ void put_count(Bytes& out, std::size_t count) {
 void put_pieces(Bytes& out, const std::vector<Frustum>& pieces) {
   put_count(out, pieces.size());
   for (const Frustum& f : pieces) put(out, std::array{f.z0, f.r0, f.z1, f.r1});
+}
+
+constexpr std::string_view kNote = "note:";
+
+/// The provenance, and behind it the reader's notes.
+Provenance with_notes(const Program& program) {
+  Provenance out = program.provenance;
+  for (const Note& n : program.notes)
+    out.emplace_back(std::string(kNote) + std::to_string(n.line) + ":" + n.kind, n.message);
+  return out;
+}
+
+/// Takes the notes out of the provenance again; a key that only looks like one stays.
+void take_notes(Program& program) {
+  std::erase_if(program.provenance, [&](const auto& entry) {
+    std::string_view key = entry.first;
+    if (!key.starts_with(kNote)) return false;
+    key.remove_prefix(kNote.size());
+    int line = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), line);
+    if (error != std::errc() || line < 0 || end == key.data() + key.size() || *end != ':') return false;
+    program.notes.push_back(
+        {std::string(key.substr(static_cast<std::size_t>(end + 1 - key.data()))), line, entry.second});
+    return true;
+  });
 }
 
 Bytes tool_record(int number, const Tool& tool) {
@@ -123,6 +149,7 @@ class Reader {
     const std::vector<Record> all = records();
     Program program;
     program.provenance = notes(all[0]);
+    take_notes(program);
     for (std::size_t k = 1; k <= tools_; ++k) add_tool(all[k], program.tools);
     add_rows(std::span(all).subspan(1 + tools_), program, progress);
     return program;
@@ -303,7 +330,8 @@ class Reader {
 }  // namespace
 
 std::vector<std::uint8_t> to_bytes(const Program& program, const Progress& progress) {
-  std::vector<Bytes> records{notes_record(program.provenance)};
+  const Provenance noted = with_notes(program);
+  std::vector<Bytes> records{notes_record(noted)};
   for (const auto& [number, tool] : program.tools) records.push_back(tool_record(number, tool));
   const std::size_t before = records.size(), chunks = (program.size() + kChunkRows - 1) / kChunkRows;
   records.resize(before + chunks);
@@ -325,7 +353,7 @@ std::vector<std::uint8_t> to_bytes(const Program& program, const Progress& progr
   put_count(out, program.tools.size());
   put(out, length);
   put(out, static_cast<std::uint64_t>(program.size()));
-  put_count(out, program.provenance.size());
+  put_count(out, noted.size());
   put(out, checksum(out));
   for (const Bytes& bytes : records) out.insert(out.end(), bytes.begin(), bytes.end());
   return out;

@@ -6,11 +6,12 @@
 //                      payload u32 | payload
 //
 // All numbers are little-endian; a text is its length u32 and its bytes. One record "note": its number is that of the
-// notes, the payload key and value of each, in order. Then a record "tool" for every tool, by rising number: kind and
-// name; the count u32 of parameters, and name and value f64 of each; the count of the profile's segments, and of each
-// whether it has a centre (u32, 0 or 1), its end and, if so, its centre (2 or 4 × f64); shank and holder, each the
-// count of pieces and 4 × f64 for each. Then the rows, kChunkRows a record "rows" whose number is their count: columns
-// (dexel/planes.hpp) of tip and axis x y z, feed and spindle (bits of doubles, u64), tool and line (u32), rapid (u16).
+// notes, the payload key and value of each, in order; what a reader noted is a key "note:LINE:KIND" among them, with
+// the message. Then a record "tool" for every tool, by rising number: kind and name; the count u32 of parameters, and
+// name and value f64 of each; the count of the profile's segments, and of each whether it has a centre (u32, 0 or 1),
+// its end and, if so, its centre (2 or 4 × f64); shank and holder, each the count of pieces and 4 × f64 for each. Then
+// the rows, kChunkRows a record "rows" whose number is their count: columns (dexel/planes.hpp) of tip and axis x y z,
+// feed and spindle (bits of doubles, u64), tool and line (u32), rapid (u16).
 #pragma once
 
 #include <cstdint>

@@ -22,6 +22,9 @@ bool is_apt(const ReadOptions& options) {
   return language == "apt";
 }
 
+constexpr const char* kOfReading[] = {"chord_tolerance", "axis_tolerance", "block_delete", "header",
+                                      "unknown",         "subroutines",    "parameters",   "max_turns"};
+
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";
 }
@@ -36,11 +39,16 @@ Program read_all(NcInterpreter& interpreter) {
     for (const Move& move : pending) program.append(move);
     pending.clear();
   }
-  program.provenance = interpreter.provenance();
+  program.provenance = interpreter.provenance(), program.notes = interpreter.notes();
   return program;
 }
 
 }  // namespace
+
+Options without_reading(Options options) {
+  for (const char* name : kOfReading) options.erase(name);
+  return options;
+}
 
 Program parse_nc(std::string_view text, const std::string& file, const ReadOptions& options) {
   if (is_apt(options)) return parse_apt(text, file, options);
@@ -90,7 +98,7 @@ void NcStream::fill(Program& program) {
   };
   if (!interpreter_) {
     while (taken_ < whole_.size() && program.size() < rows_) append(whole_[taken_++]);
-    program.provenance = whole_.provenance, program.tools = whole_.tools;
+    program.provenance = whole_.provenance, program.notes = whole_.notes, program.tools = whole_.tools;
     return;
   }
   std::vector<Move>& pending = interpreter_->pending();
@@ -102,7 +110,7 @@ void NcStream::fill(Program& program) {
     }
     while (taken_ < pending.size() && program.size() < rows_) append(pending[taken_++]);
   }
-  program.provenance = interpreter_->provenance();
+  program.provenance = interpreter_->provenance(), program.notes = interpreter_->notes();
 }
 
 }  // namespace riffler

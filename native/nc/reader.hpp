@@ -24,6 +24,9 @@ struct ReadOptions {
   Options options;
 };
 
+/// `options` without those of the reader alone: what the same machine takes for other work.
+Options without_reading(Options options);
+
 /// One row per move end; rows of one block have its line. `file` (base name) stands in messages. FormatError naming the
 /// line, with its text, for everything that is not understood in full; docs/reading-nc.md says what is. Poses are in
 /// the coordinates in which the first move is programmed; offsets that change later move what comes after.

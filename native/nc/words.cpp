@@ -38,6 +38,10 @@ constexpr CodeTable g_codes() {
   put(t, FeedMode, {930, 940, 950});
   put(t, SpindleMode, {960, 970});
   put(t, ReturnLevel, {980, 990});
+  // Fanuc's units, which LinuxCNC calls G20 and G21.
+  put(t, Units, {700, 710});
+  // Polar coordinates, scaling, mirrors and turned planes off: what they would turn off is not read.
+  put(t, Off, {150, 500, 501, 690});
   return t;
 }
 
@@ -63,6 +67,36 @@ constexpr CodeTable kG = g_codes(), kM = m_codes();
 
 constexpr const char* kAdvice = ": correct it, or read with options {'unknown': 'skip'}";
 
+/// Codes that change where the words after them are: passed over, all that follows would be elsewhere.
+const char* never_skipped(char letter, double value) {
+  if (letter != 'G') return nullptr;
+  const int tenths = static_cast<int>(std::round(value * 10));
+  switch (tenths) {
+    case 121:
+    case 131:
+    case 160:
+      return "polar coordinates";
+    case 510:
+    case 511:
+      return "scaling and mirrors";
+    case 680:
+    case 681:
+      return "a turned coordinate system";
+    case 682:
+    case 683:
+    case 684:
+    case 531:
+    case 533:
+    case 536:
+      return "a tilted plane";
+    case 541:
+    case 1540:
+      return "a work offset beyond G59.3";
+    default:
+      return nullptr;
+  }
+}
+
 }  // namespace
 
 std::string nc_code_name(char letter, int tenths) {
@@ -79,7 +113,7 @@ void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
   if (!axis_bits_)
     for (const char letter : axes_) axis_bits_ |= bit(letter);
   given_ = used_ = groups_ = 0;
-  empty_ = true, skipped_code_ = false;
+  empty_ = true, skipped_g_ = skipped_m_ = lost_axes_ = false;
   codes_.fill(-1);
   while (const char c = cursor.peek()) {
     if (c == '#') {
@@ -107,7 +141,19 @@ void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
     }
     empty_ = false;
   }
-  if (skipped_code_) take_skipped_words();
+  take_look_ahead();
+  if (skipped_g_ || skipped_m_) take_skipped_words();
+}
+
+/// Fanuc's G05 P10000, G05.1 Q1 and G08 P1 switch a control's look-ahead; LinuxCNC's G5 and G5.1 are splines, which
+/// have their words.
+void NcWords::take_look_ahead() {
+  std::int16_t& motion = codes_[static_cast<std::size_t>(NcGroup::Motion)];
+  if ((motion == 50 || motion == 51) && !has_axes() && !has('I') && !has('J') && (has('P') || has('Q'))) {
+    motion = -1;
+    pass_over("PQR");
+  }
+  if (code(NcGroup::LatheRadius) == 80) pass_over("P");
 }
 
 void NcWords::add_code(char letter, double value) {
@@ -119,12 +165,24 @@ void NcWords::add_code(char letter, double value) {
   if (group == kUnknown) {
     char text[64];
     std::snprintf(text, sizeof text, "%c%.10g", letter, value);
-    skip_code(text);
+    if (const char* why = never_skipped(letter, value))
+      place_.fail(std::string(text) + " is not read: " + why +
+                  " would move what follows; have the CAM system write the program without");
+    skip_code(letter, text);
     return;
   }
   std::int16_t& slot = codes_[static_cast<std::size_t>(group)];
   const int number = static_cast<int>(tenths);
   if (slot == number) place_.fail(nc_code_name(letter, number) + " twice in one block");
+  // G80 beside a motion cancels nothing, as on LinuxCNC: headers name it among the modes.
+  if (static_cast<NcGroup>(group) == NcGroup::Motion && slot >= 0 && (slot == 800 || number == 800)) {
+    if (slot == 800) slot = static_cast<std::int16_t>(number);
+    return;
+  }
+  if (static_cast<NcGroup>(group) == NcGroup::Off) {
+    slot = static_cast<std::int16_t>(number);  // G50 G69 G15 in one header
+    return;
+  }
   if (slot >= 0)
     place_.fail((static_cast<NcGroup>(group) == NcGroup::Motion ? "two motions in one block: "
                                                                 : "codes that contradict each other: ") +
@@ -133,23 +191,24 @@ void NcWords::add_code(char letter, double value) {
   groups_ |= 1U << group;
 }
 
-void NcWords::skip_code(const std::string& shown) {
+void NcWords::skip_code(char letter, const std::string& shown) {
   if (!skip_) place_.fail("unknown code " + shown + kAdvice);
   skip_->push_back(shown);
-  skipped_code_ = true;
+  (letter == 'G' ? skipped_g_ : skipped_m_) = true;
 }
 
-/// An unknown code takes with it the words that it may own: where the block names no motion of its own, the axis words
-/// too.
+/// An unknown code takes with it the words that it may own: a G code the axis words, too, where the block names no
+/// motion of its own. An M code owns none.
 void NcWords::take_skipped_words() {
   constexpr std::string_view kOwn = "DEHIJKLPQR";
   const bool moves = code(NcGroup::Motion) >= 0;
   const bool codes_with_words = moves || code(NcGroup::NonModal) >= 0 || code(NcGroup::ToolLength) >= 0;
-  if (codes_with_words) {
+  if (codes_with_words || !skipped_g_) {
     pass_over(kOwn);
     return;
   }
   for (const char letter : kOwn) given_ &= ~bit(letter);
+  lost_axes_ = has_axes();
   given_ &= ~axis_bits_;
 }
 

@@ -49,6 +49,8 @@ ProgramRows::Chunk ProgramRows::open(const Program& program, Toolset& tools) con
 }
 
 void ProgramRows::close(const Chunk& chunk, double rapid_feed, const MachineChoice* machine) {
+  for (const Note& n : chunk.program.notes)
+    if (std::ranges::find(notes_, n) == notes_.end()) notes_.push_back(n);
   if (machine)
     if (auto fault = machine_fault(chunk.program, chunk.first_row, *machine)) faults_.push_back(std::move(*fault));
   if (chunk.start) seconds_.push_back(0);

@@ -51,6 +51,8 @@ class ProgramRows {
   bool without_tool() const { return without_tool_; }
   /// What the machine cannot run, one a chunk at most.
   const std::vector<Finding>& faults() const { return faults_; }
+  /// Of all chunks; those of a stream repeat what the ones before had.
+  const std::vector<Note>& notes() const { return notes_; }
   /// s, one per row.
   std::vector<double> take_seconds() { return std::move(seconds_); }
 
@@ -60,6 +62,7 @@ class ProgramRows {
   std::set<std::uint32_t> tools_;
   bool without_tool_ = false;
   std::vector<Finding> faults_;
+  std::vector<Note> notes_;
 };
 
 }  // namespace riffler

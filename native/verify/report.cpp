@@ -1,11 +1,19 @@
 #include "verify/report.hpp"
 
 #include <limits>
+#include <string>
 
 #include "marching/to_mesh.hpp"
 #include "mesh/closest.hpp"
 
 namespace riffler {
+
+void add_notes(VerifyReport& report, const std::vector<Note>& notes) {
+  for (const Note& n : notes) {
+    report.not_checked.push_back("line " + std::to_string(n.line) + ": " + n.message);
+    report.uncertain = report.uncertain || n.kind == "coordinates" || n.kind == "units";
+  }
+}
 
 std::pair<Mesh, std::vector<double>> deviation_of(const Volume& left, const Mesh& part, const Progress& progress) {
   Mesh mesh = to_mesh(left, riffler::part(progress, 0, 0.5));

@@ -10,6 +10,7 @@
 #include "dexel/volume.hpp"
 #include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
+#include "nc/program.hpp"
 #include "verify/event.hpp"
 
 namespace riffler {
@@ -37,15 +38,19 @@ struct Finding {
 
 struct VerifyReport {
   std::vector<Finding> findings;         ///< by rows
-  std::vector<std::string> not_checked;  ///< what was not asked for
+  std::vector<std::string> not_checked;  ///< what was not asked for, and what the program's reader noted
   std::vector<double> removed;           ///< mm³, one per row; row 0: 0
   std::vector<double> seconds;           ///< s, one per row
   Volume volume;                         ///< what is left
   std::shared_ptr<const Mesh> part;      ///< or null
   VerifyStats stats;
+  bool uncertain = false;  ///< coordinates were passed over: other moves may have been looked at
 
-  bool passed() const { return findings.empty(); }
+  bool passed() const { return findings.empty() && !uncertain; }
 };
+
+/// What the reader of the program assumed or passed over was not checked.
+void add_notes(VerifyReport& report, const std::vector<Note>& notes);
 
 /// The mesh of what is left and, per vertex, its distance from the part's surface: positive where rest material stands
 /// on it, negative in gouges, mm.

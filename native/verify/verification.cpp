@@ -238,6 +238,7 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
   FindingList findings;
   findings.add(std::move(events), program.tool(), program.line(), 0);
   VerifyReport report = conclude(slabs, findings, tools, without_tool, faults, part(progress, 0.8, 1));
+  add_notes(report, program.notes);
   report.removed = std::move(removed), report.seconds = std::move(seconds), report.stats = stats;
   memory_ = Memory{std::move(rows), std::move(slabs)};
   return report;
@@ -271,6 +272,7 @@ void VerifyStream::add(const Program& program, const Progress& progress) {
 
 VerifyReport VerifyStream::finish(const Progress& progress) {
   VerifyReport report = of_.conclude(slabs_, findings_, rows_.tools(), rows_.without_tool(), rows_.faults(), progress);
+  add_notes(report, rows_.notes());
   report.removed = std::move(removed_), report.seconds = rows_.take_seconds(), report.stats = stats_;
   return report;
 }

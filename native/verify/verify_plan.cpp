@@ -113,6 +113,7 @@ VerifyReport VerifyPlan::finish(const Progress& progress) {
     findings.add(std::move(events), tool_, line_, 0);
   }
   VerifyReport report = of_.conclude(slabs_, findings, rows_.tools(), rows_.without_tool(), rows_.faults(), progress);
+  add_notes(report, rows_.notes());
   report.removed = std::move(removed_), report.seconds = rows_.take_seconds(), report.stats = stats_;
   return report;
 }

@@ -6,7 +6,7 @@ import numpy.typing
 import os
 import typing
 import types
-__all__: list[str] = ['Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'contact_locations', 'cutter_locations', 'drop', 'engrave', 'least_tilt', 'lift', 'machines', 'orientation_maps', 'pencil', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'verify']
+__all__: list[str] = ['Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'contact_locations', 'cutter_locations', 'drop', 'engrave', 'least_tilt', 'lift', 'machines', 'orientation_maps', 'pencil', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -545,6 +545,25 @@ class Mesher:
     @property
     def triangles(self) -> int:
         ...
+class Note:
+    """
+    What a reader of NC code assumed or passed over.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def kind(self) -> str:
+        """
+        "skipped", "coordinates" (skipped with axis words: what follows may be elsewhere), "units", "machine position", "tool length", "user code" or "end".
+        """
+    @property
+    def line(self) -> int:
+        """
+        Of the source, from 1.
+        """
+    @property
+    def message(self) -> str:
+        ...
 class ProgramStream:
     """
     What Program.stream gives: an iterator of programs.
@@ -608,7 +627,7 @@ class Program:
         """
     def __getstate__(self) -> bytes:
         ...
-    def __init__(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feed: typing.Any, rapid: typing.Any = False, tool: typing.Any = 1, line: typing.Any = 0, spindle: typing.Any = 0.0, tools: typing.Any = None, provenance: typing.Any = None) -> None:
+    def __init__(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feed: typing.Any, rapid: typing.Any = False, tool: typing.Any = 1, line: typing.Any = 0, spindle: typing.Any = 0.0, tools: typing.Any = None, provenance: typing.Any = None, notes: collections.abc.Sequence[Note] = []) -> None:
         """
         From columns: poses (n, 6), everything else one value for all rows or (n,).
 
@@ -679,6 +698,11 @@ class Program:
     def line(self) -> numpy.ndarray:
         """
         (n,) int32 source lines from 1; 0: no source.
+        """
+    @property
+    def notes(self) -> list[Note]:
+        """
+        What the reader assumed or passed over: a list of Note. Programs that are made of numbers have none.
         """
     @property
     def poses(self) -> numpy.ndarray:
@@ -1890,7 +1914,7 @@ def verify(program: typing.Any, stock_volume: Volume, part_mesh: typing.Any = No
     ``tolerance`` (mm): of cutting, as in Volume.carve; contact that is less deep is none. ``gouge_tolerance`` (mm): what is
     taken from the part deeper under its surface is a gouge. ``rest_tolerance`` (mm): what stands higher on the part is a
     finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time. ``machine``: a name of
-    machines() on which it is to run, with ``machine_options``: the first row that its axes or their limits cannot hold is a
+    machines() on which it is to run, with ``machine_options`` (those of reading are passed over): the first row that its axes or their limits cannot hold is a
     finding "machine".
 
     Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come

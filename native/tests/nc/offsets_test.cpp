@@ -93,7 +93,6 @@ TEST(NcOffsets, AreRefusedWhereTheyMakeNoSense) {
       {"G53 X1", "axis words without a motion (G0, G1, G2, G3)"},
       {"G53 G2 X1 I.5 F1", "G53 goes with G0 and G1 only"},
       {"G91 G53 G0 X1", "G53 under G91: positions of the machine are absolute (G90)"},
-      {"G53 G0", "G53 without axis words"},
       {"G0 X1 G92 Y1", "two codes that both use axis words: they need a block each"},
       {"G41 D1 G1 X1 F1",
        "cutter radius compensation (G41) is not read: have the CAM system write the path of the tool's centre"},

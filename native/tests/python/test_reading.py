@@ -1,6 +1,7 @@
 """Reading NC code and APT files from Python: streams, options, what is recorded."""
 
 import itertools
+import pickle
 import threading
 
 import numpy as np
@@ -82,6 +83,25 @@ def test_what_was_skipped_is_in_the_provenance(tmp_path):
     program = riffler.Program.read(file, options={"unknown": "skip"})
     assert program.provenance["skipped"] == "line 2: G187; line 3: U"
     assert program.provenance["notes"].startswith("line 4: G28, G30 and G53 go to positions of the machine")
+
+
+def test_notes_stay_with_the_program(tmp_path):
+    file = tmp_path / "p.ngc"
+    file.write_text("G0 X1\nG60 X9\nG187 P1\nG1 X2 F100\nM30\nX5\n")
+    program = riffler.Program.read(file, options={"unknown": "skip"})
+    said = [("coordinates", 2), ("skipped", 3), ("end", 6)]
+    assert [(note.kind, note.line) for note in program.notes] == said
+    assert repr(program.notes[0]) == "<riffler.Note: line 2, coordinates: G60 was skipped, with its axis words>"
+    program.save(tmp_path / "p.rprog")
+    others = [
+        riffler.Program.load(tmp_path / "p.rprog"), pickle.loads(pickle.dumps(program)), program.retimed(2),
+        riffler.Program.joined([program]), program.trimmed(0, 2),
+        list(riffler.Program.stream(file, options={"unknown": "skip"}))[-1],
+        riffler.Program(program.poses, program.feed, program.rapid, notes=program.notes),
+    ]  # fmt: skip
+    for other in others:
+        assert [(note.kind, note.line) for note in other.notes] == said
+        assert not any(key.startswith("note:") for key in other.provenance)
 
 
 @pytest.mark.parametrize(

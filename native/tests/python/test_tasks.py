@@ -1,5 +1,6 @@
 """riffler.tasks: the same calls on a thread of their own; and how many threads calls use."""
 
+import functools
 import gc
 import os
 import signal
@@ -125,6 +126,13 @@ def bits(thing):
     if isinstance(thing, list | tuple):
         return type(thing), [bits(one) for one in thing], own
     return own or (type(thing), repr(thing))
+
+
+@functools.cache
+def expected_bits(name):
+    """Of the plain call; made once."""
+    call, args, kwargs = CALLS[name]
+    return bits(call(*args, **kwargs))
 
 
 def endless():
@@ -347,12 +355,12 @@ def test_a_dropped_task_leaves_no_thread():
     assert threads_of_process() == before
 
 
-def test_three_hundred_tasks_cancelled_or_dropped_at_any_time():
+def test_many_tasks_cancelled_or_dropped_at_any_time():
+    """A hundred, or a thousand where RIFFLER_LONG is set (`make stress`)."""
     rng, before = np.random.default_rng(7), threads_of_process()
     names = list(CALLS)
-    expected = {name: bits(call(*args, **kwargs)) for name, (call, args, kwargs) in CALLS.items()}
     held, ended = [], {"cancelled": 0, "found": 0}
-    for _ in range(300):
+    for _ in range(1000 if os.environ.get("RIFFLER_LONG") else 100):
         name = names[rng.integers(len(names))]
         task = started(name, *CALLS[name][1], **CALLS[name][2])
         if rng.random() < 0.7:
@@ -364,7 +372,7 @@ def test_three_hundred_tasks_cancelled_or_dropped_at_any_time():
         if len(held) > 3:
             name, task = held.pop(rng.integers(len(held)))
             try:
-                assert bits(task.result()) == expected[name]
+                assert bits(task.result()) == expected_bits(name)
                 ended["found"] += 1
             except riffler.Cancelled:
                 ended["cancelled"] += 1
@@ -436,7 +444,7 @@ def test_a_number_of_threads_without_meaning_changes_nothing(free_choice):
 
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_any_number_of_threads_gives_the_same_bytes(free_choice, count):
-    expected = [bits(call(*args, **kwargs)) for call, args, kwargs in CALLS.values()]
+    expected = [expected_bits(name) for name in CALLS]
     riffler.set_threads(count)
     found = [started(name, *args, **kwargs).result() for name, (_, args, kwargs) in CALLS.items()]
     assert [bits(one) for one in found] == expected

@@ -49,6 +49,29 @@ def test_a_good_program_passes_and_a_bad_one_names_the_block(folder, capsys):
     assert "NOT passed" in said and "retract higher" in said and "fixtures: none were given" in said
 
 
+def test_what_was_passed_over_is_said_and_skipped_coordinates_never_pass(folder, capsys):
+    good = (folder / "good.ngc").read_text()
+    skip = ["--machine", "3-axis", "--machine-option", "unknown=skip"]
+    (folder / "odd.ngc").write_text(good.replace("G0 Z40", "G187 P1\nG0 Z40\nG60 X9"))
+    status = main(["verify", "odd.ngc", *WORDS, *skip])
+    said = capsys.readouterr()
+    assert status == 1 and "odd.ngc, line 11: G60 was skipped, with its axis words" in said.err
+    assert "line 9: G187" in said.err and "NOT passed" in said.out and "G60" in said.out
+    status, data = run(capsys, "odd.ngc", *WORDS, *skip)
+    assert status == 1 and data["findings"] == [] and not data["passed"]
+    assert "line 9: G187" in data["not_checked"]
+    # Without coordinates nothing is uncertain; every option of reading may be given beside a machine's own.
+    (folder / "fine.ngc").write_text(good.replace("G0 Z40", "G187 P1\nG0 Z40\nM30\nM30"))
+    more = ["--machine-option", "block_delete=true", "--machine-option", "chord_tolerance=0.01"]
+    status, data = run(capsys, "fine.ngc", *WORDS, *skip, *more)
+    assert status == 0 and data["passed"]
+    out = ["--out", "left.rvol", "--program", "odd.ngc", *WORDS[:6]]
+    assert main(["carve", *out, *skip]) == 0
+    assert "line 11: G60 was skipped" in capsys.readouterr().err
+    assert main(["post", "odd.ngc", *skip, "--post", "3-axis", "--out", "again.ngc"]) == 0
+    assert "line 11: G60 was skipped" in capsys.readouterr().err
+
+
 def test_parts_fixtures_and_holders_are_checked(folder, capsys):
     status, data = run(capsys, "good.ngc", *WORDS, "--part", "part.stl", "--fixture", "clamp.stl")
     assert status == 1 and [f["kind"] for f in data["findings"]] == ["fixture"] and data["findings"][0]["line"] == 6

@@ -95,6 +95,16 @@ def output_file(text: str, suffixes: tuple[str, ...], option: str = "--out") -> 
     return path
 
 
+def add_machine_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--machine-option",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="of it, or of reading: docs/reading-nc.md; may be repeated",
+    )
+
+
 def machine_options(texts: list[str], flag: str) -> dict[str, Any]:
     """``key=value``: a number, a list of them as in 0,0,-40, true or false, or a word."""
     found: dict[str, Any] = {}

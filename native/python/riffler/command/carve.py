@@ -13,7 +13,20 @@ import numpy as np
 
 from .. import Program, Tool, Volume
 from . import tools
-from .arguments import MESHES, ORIGINS, VOLUMES, add_directions, add_pitch, box, input_file, is_box, length, output_file
+from .arguments import (
+    MESHES,
+    ORIGINS,
+    VOLUMES,
+    add_directions,
+    add_machine_option,
+    add_pitch,
+    box,
+    input_file,
+    is_box,
+    length,
+    machine_options,
+    output_file,
+)
 from .console import Console, number, times
 from .shapes import from_mesh, rays, write_left
 
@@ -26,6 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
     parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274, or .rprog")
     parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
+    add_machine_option(parser)
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
     parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply, .3mf or .rvol")
 
@@ -35,7 +49,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     out = output_file(arguments.out, MESHES + VOLUMES)
     wanted = [tools.parse(text) for text in arguments.tool]
     with console.step("program"):
-        program = read_program(Path(arguments.program), arguments.machine)
+        how = machine_options(arguments.machine_option, "--machine-option")
+        program = read_program(Path(arguments.program), arguments.machine, how, console)
         poses = np.asarray(program.poses)
         called = np.asarray(program.tool)
         rapid = np.asarray(program.rapid)[1:]
@@ -75,9 +90,12 @@ def is_saved(path: Path) -> bool:
     return path.suffix.lower() == ".rprog"
 
 
-def read_program(path: Path, machine: str, options: dict[str, Any] | None = None) -> Program:
-    """A saved program, or NC code for the machine."""
-    return Program.load(path) if is_saved(path) else Program.read(path, machine, options)
+def read_program(path: Path, machine: str, options: dict[str, Any] | None, console: Console) -> Program:
+    """A saved program, or NC code for the machine; what was noted while reading is said."""
+    program = Program.load(path) if is_saved(path) else Program.read(path, machine, options)
+    for note in program.notes:
+        console.warning(f"{path.name}, line {note.line}: {note.message}")
+    return program
 
 
 def add_stock(parser: argparse.ArgumentParser) -> None:

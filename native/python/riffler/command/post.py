@@ -16,7 +16,8 @@ import numpy as np
 
 from .. import Collider, Journal, Mesh, Program, Tool, plan
 from . import tools
-from .arguments import MESHES, finite, input_file, length, machine_options, output_file
+from .arguments import MESHES, add_machine_option, finite, input_file, length, machine_options, output_file
+from .carve import read_program
 from .console import Console, number, times
 
 HELP = "write NC code for a machine"
@@ -50,9 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--axis", metavar="X,Y,Z", help="of the tool, on a plan's paths that say none (default 0,0,1)")
     parser.add_argument("--part", metavar="FILE", help="of a plan: lift the tool along its axis where it would gouge")
     parser.add_argument("--machine", metavar="NAME", help="that NC code was written for")
-    parser.add_argument(
-        "--machine-option", action="append", default=[], metavar="KEY=VALUE", help="of it; may be repeated"
-    )
+    add_machine_option(parser)
     parser.add_argument("--out", required=True, metavar="FILE", help="NC code (.ngc, .nc, …), or .rprog")
 
 
@@ -112,11 +111,9 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
             planned = plan.load(path)
         elif kind in RECORDINGS:
             program, notes = recorded(path, arguments)
-        elif kind in PROGRAMS:
-            program = Program.load(path)
         else:
             how = machine_options(arguments.machine_option, "--machine-option")
-            program = Program.read(path, machine=arguments.machine, options=how)
+            program = read_program(path, arguments.machine, how, console)
     if kind in PLANS:
         return from_plan(planned, path.name, arguments, console)
     return changed(program, arguments), notes
@@ -148,8 +145,9 @@ def changed(program: Program, arguments: argparse.Namespace) -> Program:
         given = tools.assign(map(tools.parse, arguments.tool), np.asarray(program.tool)[1:], 0.0)
         known |= {n: tool for n, tool in given.items() if n > 0}
     return Program(
-        program.poses, feed, rapid, program.tool, program.line, spindle, tools=known, provenance=program.provenance
-    )
+        program.poses, feed, rapid, program.tool, program.line, spindle,
+        tools=known, provenance=program.provenance, notes=program.notes,
+    )  # fmt: skip
 
 
 def from_plan(

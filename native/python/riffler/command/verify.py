@@ -17,6 +17,7 @@ from . import tools
 from .arguments import (
     MESHES,
     VOLUMES,
+    add_machine_option,
     finite,
     input_file,
     length,
@@ -49,9 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--machine", help='what the program\'s axes mean (default "tcp": tip and axis); its limits are checked'
     )
-    parser.add_argument(
-        "--machine-option", action="append", default=[], metavar="KEY=VALUE", help="of it; may be repeated"
-    )
+    add_machine_option(parser)
     parser.add_argument("--part", metavar="FILE", help="what it should become: .stl, .obj, .ply or .3mf")
     parser.add_argument(
         "--fixture", action="append", default=[], metavar="FILE", help="a mesh or .rvol file; may be repeated"
@@ -84,7 +83,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     path = Path(arguments.program)
     how = machine_options(arguments.machine_option, "--machine-option")
     with console.step("program"):
-        program = read_program(path, arguments.machine or "tcp", how)
+        program = read_program(path, arguments.machine or "tcp", how, console)
     volume = stock(arguments, console)
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = with_holders(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)

@@ -1,0 +1,110 @@
+// Forms that CAM systems and controls write, each of which was once refused, or read as something else.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "support/nc_reading.hpp"
+
+namespace riffler::real_programs_test {
+namespace {
+
+using test::nc_error;
+using test::read_nc_text;
+
+const Options kSkip{{"unknown", std::string("skip")}};
+
+std::vector<std::string> kinds(const Program& program) {
+  std::vector<std::string> out;
+  for (const Note& n : program.notes) out.push_back(n.kind);
+  return out;
+}
+
+void expect_same_moves(const Program& a, const Program& b, const std::string& what) {
+  ASSERT_EQ(a.size(), b.size()) << what;
+  for (std::size_t row = 0; row < a.size(); ++row) {
+    EXPECT_EQ(a.poses()[row].tip, b.poses()[row].tip) << what << ", row " << row;
+    EXPECT_EQ(a.feed()[row], b.feed()[row]) << what << ", row " << row;
+    EXPECT_EQ(a.rapid()[row], b.rapid()[row]) << what << ", row " << row;
+  }
+}
+
+TEST(RealPrograms, FormsThatMoveNothingAreTaken) {
+  const std::string moves = "G0 X0 Y0 Z5\nG1 X10 F100\n";
+  const Program plain = read_nc_text(moves);
+  const std::string headers[] = {"G0 G17 G40 G49 G80 G90",
+                                 "G00 G90 G80 G40 G69 G50 G15",
+                                 "G97",
+                                 "G05 P10000",
+                                 "G05.1 Q1",
+                                 "G08 P1",
+                                 "G53",
+                                 "H01",
+                                 "G43 H01 D01",
+                                 "G0 G90 H00 D00",
+                                 ":1234",
+                                 ": G90 G40",
+                                 "<O1001>",
+                                 "% 123",
+                                 "%_N_PART_MPF",
+                                 "%\nO01001 (JV)",
+                                 "\xEF\xBB\xBF%",
+                                 "N10.5 G90",
+                                 "M19",
+                                 "F0",
+                                 "G04 X2.",
+                                 std::string(40, '\0')};
+  for (const std::string& header : headers) {
+    const Program read = read_nc_text(header + "\n" + moves);
+    expect_same_moves(read, plain, header);
+    EXPECT_TRUE(read.notes.empty()) << header << ": " << read.notes[0].message;
+  }
+  expect_same_moves(read_nc_text("G0 X0 Y0 Z5\r\r\nG1 X10 F100\r\r\n\x1A"), plain, "CR CR LF");
+  expect_same_moves(read_nc_text("G0 X0 Y0 Z5 H1 D2\nG1 X10 F100 D2"), plain, "H and D");
+}
+
+TEST(RealPrograms, WhatFollowsTheEndIsNotReadAndNoted) {
+  const Program p = read_nc_text("G0 X1\nM30\n(a comment)\nM30\nG0 X2\n%\nnonsense");
+  EXPECT_EQ(p.size(), 1U);
+  ASSERT_EQ(p.notes.size(), 1U);
+  EXPECT_EQ(p.notes[0], (Note{"end", 4, "what follows the end of the program is not read"}));
+  EXPECT_TRUE(read_nc_text("G0 X1\nM30\n(a comment)\n%\n").notes.empty());
+}
+
+TEST(RealPrograms, UnitsHaveTwoNames) {
+  EXPECT_EQ(read_nc_text("G70 G0 X1").poses()[0].tip.x, 25.4);
+  EXPECT_EQ(read_nc_text("G20 G0 X1\nG71 X1").poses()[1].tip.x, 1);
+  EXPECT_EQ(read_nc_text("G70\nG1 X1 F2", "tcp", kSkip).feed()[0], 50.8);
+  // A bolt circle on some controls: never taken for units.
+  EXPECT_EQ(nc_error("G70 I10 J0 L6"), "line 1: I has no meaning in this block [G70 I10 J0 L6]");
+}
+
+TEST(RealPrograms, AnMCodeOwnsNoAxisWord) {
+  const Program p = read_nc_text("G0 X0 Y0\nY20 M88\nX5 M97 P3", "tcp", kSkip);
+  ASSERT_EQ(p.size(), 3U);
+  EXPECT_EQ(p.poses()[2].tip, Vec3(5, 20, 0));
+  EXPECT_EQ(kinds(p), (std::vector<std::string>{"skipped", "skipped"}));
+}
+
+TEST(RealPrograms, CoordinatesThatWereSkippedAreNotedAsSuch) {
+  const Program p = read_nc_text("G0 X0\nG60 X9\nG60 G0 X3", "tcp", kSkip);
+  ASSERT_EQ(p.size(), 2U);
+  EXPECT_EQ(kinds(p), (std::vector<std::string>{"coordinates", "skipped"}));
+  EXPECT_EQ(p.notes[0].line, 2);
+}
+
+TEST(RealPrograms, WhatWouldMoveAllThatFollowsIsNeverSkipped) {
+  for (const char* code : {"G68 X0 Y0 R30", "G68.2 X0 Y0 Z0 I0 J30 K0", "G53.1", "G16", "G12.1", "G51 X2", "G51.1 X0",
+                           "G54.1 P3", "G154 P3"}) {
+    for (const Options& options : {Options{}, kSkip}) {
+      const std::string said = nc_error(std::string("G0 X0\n") + code + "\nX5", "tcp", options);
+      EXPECT_NE(said.find("would move what follows"), said.npos) << said;
+      EXPECT_EQ(said.find("skip"), said.npos) << said;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace riffler::real_programs_test
