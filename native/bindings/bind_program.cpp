@@ -250,7 +250,7 @@ void bind_program(py::module_& m) {
   py::class_<Note>(m, "Note", "What a reader of NC code assumed or passed over.")
       .def_readonly("kind", &Note::kind,
                     "\"skipped\", \"coordinates\" (skipped with axis words: what follows may be elsewhere), \"units\", "
-                    "\"machine position\", \"tool length\", \"user code\" or \"end\".")
+                    "\"machine position\", \"tool length\", \"cutter compensation\", \"user code\" or \"end\".")
       .def_readonly("line", &Note::line, "Of the source, from 1.")
       .def_readonly("message", &Note::message)
       .def("__repr__", [](const Note& n) {
@@ -306,7 +306,8 @@ corners around stock, part and fixtures.)")
 Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
 given, feed blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row;
 ``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
-is listed in ``provenance``); ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's
+is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
+centre); ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's
 parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
 programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.)")
       .def_static(

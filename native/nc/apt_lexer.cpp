@@ -34,10 +34,15 @@ bool AptLexer::next(AptStatement& statement) {
   statement = {};
   std::string whole;
   std::string_view line;
-  bool more = false;
+  bool more = false, comment = false;
   while (source_.next(line)) {
     place_.line = source_.line(), place_.text = line;
     std::string_view part = trimmed(line);
+    // Creo's comments that say something go on behind a $, as statements do.
+    if (!more && (comment || part.starts_with("$$->"))) {
+      comment = part.ends_with('$') && part != "$$";
+      continue;
+    }
     if (!more && is_text(part)) {
       statement.line = place_.line;
       statement.major = compact(part.substr(0, 6));

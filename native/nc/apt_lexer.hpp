@@ -18,7 +18,8 @@ struct AptStatement {
   std::string text;
 };
 
-/// A statement is a line; $ continues it on the next line, $$ does not; what follows either is a comment.
+/// A statement is a line; $ continues it on the next line, $$ does not; what follows either is a comment. A comment
+/// that begins with $$-> goes on where its line ends with a $.
 class AptLexer {
  public:
   /// Keeps `text` and `place`, in which it says where it is.

@@ -2,30 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "nc/apt_cutter.hpp"
+#include "nc/apt_cycle.hpp"
 #include "nc/apt_lexer.hpp"
+#include "nc/apt_statements.hpp"
+#include "nc/apt_system.hpp"
 #include "nc/arc.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/post.hpp"
 #include "nc/units.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler {
 
 namespace {
 
 constexpr std::size_t kMaxListed = 20;
-
-constexpr std::string_view kPassedOver[] = {
-    "PARTNO", "PPRINT", "COOLNT", "END",    "STOP",    "OPSTOP",   "MACHIN",  "MODE",        "DELAY", "SEQNO",
-    "TOOLNO", "OPSKIP", "PREFUN", "AUXFUN", "DISPLAY", "TOOLPATH", "PAINT",   "END-OF-PATH", "MSYS",  "LEADER",
-    "REWIND", "CLEARP", "LPRINT", "CLPRNT", "NOPOST",  "ROTREF",   "SELECTL", "TPNAME",      "OP",    "LINTOL",
-};
 
 class AptReader {
  public:
@@ -36,6 +32,7 @@ class AptReader {
     take_post_options(taken);  // the same options write and read
     chord_tolerance_ = taken.positive("chord_tolerance").value_or(0.002);
     skip_unknown_ = taken.word("unknown", {"error", "skip"}, "error") == "skip";
+    ignore_compensation_ = taken.word("cutter_compensation", {"error", "ignore"}, "error") == "ignore";
     taken.done();
     if (chord_tolerance_ < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
     program_.provenance.emplace_back("source", file);
@@ -51,7 +48,8 @@ class AptReader {
     if (circle_) place_.fail("CIRCLE without the GOTO of its end");
     std::string skipped;
     for (const Note& n : program_.notes)
-      skipped += (skipped.empty() ? "line " : "; line ") + std::to_string(n.line) + ": " + n.message;
+      if (n.kind == "skipped")
+        skipped += (skipped.empty() ? "line " : "; line ") + std::to_string(n.line) + ": " + n.message;
     if (!skipped.empty()) program_.provenance.emplace_back("skipped", skipped);
     return std::move(program_);
   }
@@ -65,29 +63,40 @@ class AptReader {
     if (m == "RAPID") {
       rapid_ = true;
     } else if (m == "CIRCLE") {
-      circle_ = values(7, 16);
+      circle();
     } else if (m == "FEDRAT") {
       feed_rate();
     } else if (m == "SPINDL") {
       spindle();
     } else if (m == "TLAXIS") {
       axis_ = unit(values(3, 3), 0);
-    } else if (m == "UNITS") {
-      unit_ = word() == "MM" ? 1 : word() == "INCHES" || word() == "INCH" ? kInch : fail_word("MM or INCHES");
+    } else if (m == "UNITS" || m == "UNIT") {
+      const bool inches = word() == "INCHES" || word() == "INCH" || word() == "IN";
+      unit_ = word() == "MM" ? 1 : inches ? kInch : fail_word("MM or INCHES");
+    } else if (m == "GOHOME") {
+      from(values(3, 3));
+    } else if (m == "MSYS" || m == "CSYS" || m == "TRNTYP") {
+      system();
+    } else if (m == "TLDATA") {
+      tool_data();
     } else if (m == "MULTAX") {
       if (!s_.words.empty() && word() != "ON" && word() != "OFF") fail_word("ON or OFF");
     } else if (m == "LOADTL" || m == "TURRET") {
-      load_tool();
+      load_tool(word());
+    } else if (m == "LOAD") {
+      if (word() != "TOOL" || s_.words.size() < 2) fail_word("TOOL and its number");
+      load_tool(s_.words[1]);
     } else if (m == "CUTTER") {
       cutter(values(1, 7));
     } else if (m == "CUTCOM") {
-      if (word() != "OFF")
-        place_.fail("cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre");
+      compensation();
     } else if (m == "CYCLE") {
-      if (word() != "OFF") place_.fail("cycles (CYCLE) are not read: have the CAM system write their moves");
+      cycle_ = apt_cycle(s_, lexer_, unit_, place_);
     } else if (m == "INSERT") {
       list("INSERT " + s_.text);
-    } else if (std::find(std::begin(kPassedOver), std::end(kPassedOver), m) == std::end(kPassedOver)) {
+    } else if (!apt_says_nothing(m)) {
+      if (apt_moves(m))
+        place_.fail(m + " is not read: it would move the tool or what follows; have the CAM system write GOTOs");
       if (!skip_unknown_)
         place_.fail("unknown statement " + m + ": correct it, or read with options {'unknown': 'skip'}");
       list(m);
@@ -180,43 +189,31 @@ class AptReader {
     }
   }
 
-  void load_tool() {
-    const std::optional<double> number = lexer_.number(word());
+  void load_tool(const std::string& given) {
+    const std::optional<double> number = lexer_.number(given);
     if (!number || !(*number >= 0 && *number <= kMaxNumber && *number == std::floor(*number)))
       place_.fail(s_.major + " needs the tool's number");
     tool_ = static_cast<int>(*number), loads_ = true;
     use_cutter();
   }
 
-  /// d, r, e, f, a, b, h of the seven-parameter cutter: flat, ball and fillet ends are shapes of ours; of others the
-  /// shape stays unknown.
-  void cutter(std::vector<double> v) {
-    const bool has_height = v.size() == 7;
-    v.resize(7);
-    const double d = v[0] * unit_, r = v[1] * unit_, h = v[6] * unit_;
+  /// A shape that is not known stays so, which is noted.
+  void cutter(const std::vector<double>& v) {
+    cutter_ = apt_cutter(v, unit_, place_);
+    cutter_waits_ = true;
+    if (!cutter_) list("CUTTER of a shape that is not known");
+  }
+
+  /// NX: MILL, diameter, corner radius, length, and angles of flank and end.
+  void tool_data() {
+    std::vector<double> v;
+    for (std::size_t k = 1; k < s_.words.size(); ++k)
+      if (const std::optional<double> value = lexer_.number(s_.words[k])) v.push_back(*value);
+    if (word() == "MILL" && v.size() >= 3 && std::all_of(v.begin() + 3, v.end(), [](double x) { return x == 0; }))
+      return cutter({v[0], v[1], v[0] / 2 - v[1], v[1], 0, 0, v[2]});
     cutter_.reset();
     cutter_waits_ = true;
-    const double flank = v[5] * (std::numbers::pi / 180);
-    // The corner's centre lies where a corner that touches the end and the flank has it.
-    const double slack = 1e-6 * std::abs(d);
-    const bool plain =
-        std::abs(v[2] * unit_ - (d / 2 - r)) <= slack && std::abs(v[3] * unit_ - r) <= slack && v[4] == 0;
-    const bool is_ball = std::abs(2 * r - d) <= slack;
-    if (!(has_height && plain && d > 0 && r >= 0 && h > 0 && flank >= 0) || (flank > 0 && !is_ball))
-      return list("CUTTER of a shape that is not known");
-    try {
-      if (flank > 0)  // a cone up to the top, from where the ball ends
-        cutter_ =
-            cutters::taper(r, flank, 2 * (r * std::cos(flank) + (h - r * (1 - std::sin(flank))) * std::tan(flank)), h);
-      else if (r == 0)
-        cutter_ = cutters::flat(d, h);
-      else if (is_ball)
-        cutter_ = cutters::ball(d, h);
-      else
-        cutter_ = cutters::fillet(d, r, h);
-    } catch (const std::invalid_argument& e) {
-      place_.fail(std::string("CUTTER: ") + e.what());
-    }
+    list("TLDATA of a shape that is not known");
   }
 
   /// The cutter belongs to the tool that is loaded beside it, before or after; where a file loads none, each is one.
@@ -228,6 +225,38 @@ class AptReader {
     if (!fresh && !(found->second.parameters() == cutter_->parameters() && found->second.kind() == cutter_->kind()))
       place_.fail("tool " + std::to_string(tool_) + " has two shapes");
     cutter_.reset();
+  }
+
+  // --- Where coordinates are ---
+
+  /// A CSYS or TRNTYP that is not the first one's says nothing about where the part is.
+  void system() {
+    if (s_.major == "MSYS") {
+      const std::vector<double> v = values(9, 9);
+      const Vec3 here = system_.in_first(at_);
+      system_.use(point(v), unit(v, 3), unit(v, 6), place_);
+      at_ = system_.from_first(here), axis_ = {0, 0, 1};
+      return;
+    }
+    std::string& known = s_.major == "CSYS" ? csys_ : trntyp_;
+    std::string all;
+    for (const std::string& word : s_.words) all += word + ',';
+    if (!known.empty() && known != all)
+      place_.fail(s_.major +
+                  " of another system than before: where the one lies in the other is not read; write a program for "
+                  "each");
+    known = all;
+  }
+
+  void compensation() {
+    if (word() == "OFF" || word() == "ON") return;
+    if (!ignore_compensation_)
+      place_.fail(
+          "cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre, or, where that is "
+          "what the file has, read it with options {'cutter_compensation': 'ignore'}");
+    if (!std::exchange(compensation_noted_, true))
+      program_.notes.push_back(
+          {"cutter compensation", s_.line, "CUTCOM is ignored: points are taken for those of the tool's centre"});
   }
 
   // --- Moves ---
@@ -248,8 +277,20 @@ class AptReader {
     const Pose to{point(v), v.size() == 6 ? unit(v, 3) : axis_};
     if (circle_)
       arc(to);
+    else if (cycle_ && !rapid_)
+      cycle_at(to);
     else
       move(to);
+  }
+
+  void cycle_at(const Pose& point) {
+    const double feed = feed_;
+    if (cycle_->feed > 0) feed_ = cycle_->feed;
+    apt_cycle_moves(*cycle_, point, [&](const Pose& pose, bool rapid) {
+      rapid_ = rapid;
+      move(pose);
+    });
+    feed_ = feed;
   }
 
   void move(const Pose& to) {
@@ -271,8 +312,30 @@ class AptReader {
     }
     // Where the tool comes from to its first point is not known: it is not cut.
     const bool first = program_.empty();
-    program_.append({pose, first && !(feed > 0) ? 0 : feed, turning_ * speed_, tool_, s_.line, rapid_ || first});
+    program_.append({{system_.in_first(pose.tip), system_.turned(pose.axis)},
+                     first && !(feed > 0) ? 0 : feed,
+                     turning_ * speed_,
+                     tool_,
+                     s_.line,
+                     rapid_ || first});
     at_ = pose.tip, axis_ = pose.axis;
+  }
+
+  /// Centre, axis and, unless the start gives it, radius; a word may turn its way round.
+  void circle() {
+    bool clockwise = false;
+    std::vector<std::string> words;
+    for (const std::string& word : s_.words) {
+      if (word == "TIMES") place_.fail("CIRCLE of several turns (TIMES) is not read: have the CAM system write them");
+      if (word == "CLOCKWISE" || word == "COUNTERCLOCKWISE")
+        clockwise = word == "CLOCKWISE";
+      else
+        words.push_back(word);
+    }
+    s_.words = words;
+    circle_ = values(6, 16);
+    if (clockwise)
+      for (std::size_t k = 3; k < 6; ++k) (*circle_)[k] = 0 - (*circle_)[k];
   }
 
   /// About the circle's axis, right-handed; along it evenly.
@@ -280,7 +343,6 @@ class AptReader {
     const std::vector<double> v = *std::exchange(circle_, std::nullopt);
     if (program_.empty()) place_.fail("CIRCLE before the first point");
     const Vec3 centre = point(v), n = unit(v, 3), from = at_;
-    const double radius = v[6] * unit_;
     Vec3 x = from - centre - glm::dot(from - centre, n) * n;
     if (!(glm::length(x) > 0)) place_.fail("an arc of radius 0");
     x /= glm::length(x);
@@ -293,7 +355,8 @@ class AptReader {
     } catch (const std::invalid_argument& e) {
       place_.fail(e.what());
     }
-    if (!(std::abs(round.r0 - radius) <= kArcMiss)) place_.fail("the circle's radius is not the distance of its start");
+    if (v.size() > 6 && !(std::abs(round.r0 - v[6] * unit_) <= kArcMiss))
+      place_.fail("the circle's radius is not the distance of its start");
     if (!(glm::dot(axis_, to.axis) > -1 + 1e-12)) place_.fail("the tool's axis turns to its opposite");
     const Motion turning({from, axis_}, to);
     const int chords = round.chords(chord_tolerance_);
@@ -310,7 +373,7 @@ class AptReader {
   AptLexer lexer_;
   AptStatement s_;
   double chord_tolerance_ = 0;
-  bool skip_unknown_ = false;
+  bool skip_unknown_ = false, ignore_compensation_ = false, compensation_noted_ = false;
   Program program_;
 
   double unit_ = 1, feed_ = 0, feed_unit_ = 0, speed_ = 0;
@@ -318,6 +381,9 @@ class AptReader {
   int turning_ = 0, tool_ = 0;
   Vec3 at_{0}, axis_{0, 0, 1};
   std::optional<std::vector<double>> circle_;
+  std::optional<AptCycle> cycle_;
+  AptSystem system_;
+  std::string csys_, trntyp_;
   std::optional<Tool> cutter_;
 };
 

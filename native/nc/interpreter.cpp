@@ -60,6 +60,7 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   given_.check_header = taken.word("header", {"check", "ignore"}, "check") == "check";
   given_.max_turns = taken.positive("max_turns").value_or(1e6);
   given_.skip_unknown = taken.word("unknown", {"error", "skip"}, "error") == "skip";
+  given_.ignore_compensation = taken.word("cutter_compensation", {"error", "ignore"}, "error") == "ignore";
   if (const std::string folder = path_option(options.options, taken, "subroutines"); !folder.empty())
     given_.folders.emplace_back(folder);
   given_.parameters = path_option(options.options, taken, "parameters");

@@ -52,7 +52,7 @@ class NcInterpreter final : private NcPredefined {
     double max_turns = 0;
     std::vector<std::filesystem::path> folders;
     std::string parameters;
-    bool skip_unknown = false;
+    bool skip_unknown = false, ignore_compensation = false;
   };
   struct Saved {
     Modes modes;
@@ -87,6 +87,7 @@ class NcInterpreter final : private NcPredefined {
   void kinematics();
   void dwell();
   void modes();
+  void compensate(int code);
   void tool_length();
   void paths();
   void subprograms();
@@ -144,7 +145,7 @@ class NcInterpreter final : private NcPredefined {
   std::optional<Vec2> spline_end_;  // of a G5: from its end to its second control point
   int tool_ = 0, next_tool_ = 0, length_number_ = 0;
   std::optional<Vec3> length_;  // of the tool at hand, as the first dynamic offset gave it
-  bool length_used_ = false, length_off_ = false, home_noted_ = false, units_said_ = false;
+  bool length_used_ = false, length_off_ = false, home_noted_ = false, compensation_noted_ = false;
   std::vector<Saved> saved_;
   bool started_ = false, percent_ = false, ended_ = false;
 };

@@ -11,8 +11,7 @@
 namespace riffler {
 
 void NcInterpreter::units_and_feed_mode() {
-  if (const int code = words_->code(NcGroup::Units); code >= 0)
-    modes_.unit = code == 200 || code == 700 ? kInch : 1, units_said_ = true;
+  if (const int code = words_->code(NcGroup::Units); code >= 0) modes_.unit = code == 200 || code == 700 ? kInch : 1;
   const int mode = words_->code(NcGroup::FeedMode);
   if (mode < 0) return;
   // Numbers of one mode mean nothing in another.
@@ -173,10 +172,20 @@ void NcInterpreter::modes() {
     default:
       place_.fail("planes of the axes U V W (G17.1, G18.1, G19.1) are not read");
   }
-  if (const int code = words_->code(NcGroup::CutterCompensation); code > 400)
-    place_.fail("cutter radius compensation (" + nc_code_name('G', code) +
-                ") is not read: have the CAM system write the path of the tool's centre");
+  if (const int code = words_->code(NcGroup::CutterCompensation); code > 400) compensate(code);
   if (words_->code(NcGroup::LatheRadius) == 70) place_.fail("G7 (diameters) is for lathes: write radii (G8)");
+}
+
+void NcInterpreter::compensate(int code) {
+  const std::string name = nc_code_name('G', code);
+  if (!given_.ignore_compensation)
+    place_.fail("cutter radius compensation (" + name +
+                ") is not read: have the CAM system write the path of the tool's centre, or, where that is what the "
+                "program has, read it with options {'cutter_compensation': 'ignore'}");
+  words_->pass_over("DL");
+  if (!compensation_noted_)
+    note("cutter compensation", name + " is ignored: points are taken for those of the tool's centre");
+  compensation_noted_ = true;
 }
 
 /// The tip is what is programmed, whatever the tool's length: G43, G43.2 and G43.4 say that the control knows it. Of

@@ -172,7 +172,8 @@ void NcInterpreter::arc_to(const Joints& to, bool clockwise) {
 
 Arc NcInterpreter::the_arc(const Vec2& from, const Vec2& end, bool clockwise) {
   const auto [u, v, w] = modes_.plane;
-  if (words_->has(kCentre[w])) place_.fail(std::string(1, kCentre[w]) + " does not lie in the arc's plane");
+  if (words_->has(kCentre[w]) && words_->value(kCentre[w], kMaxLength) != 0)
+    place_.fail(std::string(1, kCentre[w]) + " does not lie in the arc's plane");
   const bool offsets = words_->has(kCentre[u]) || words_->has(kCentre[v]);
   if (words_->has('R')) {
     if (offsets) place_.fail("an arc with both R and a centre");

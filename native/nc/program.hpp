@@ -54,7 +54,8 @@ using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 /// What a reader assumed or passed over, which whoever relies on the program has to know.
 struct Note {
-  std::string kind;  ///< "skipped", "coordinates", "units", "machine position", "tool length", "user code", "end"
+  std::string kind;  ///< "skipped", "coordinates", "units", "machine position", "tool length",
+                     ///< "cutter compensation", "user code", "end"
   int line = 0;      ///< 1-based, of the source
   std::string message;
 

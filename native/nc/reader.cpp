@@ -22,8 +22,9 @@ bool is_apt(const ReadOptions& options) {
   return language == "apt";
 }
 
-constexpr const char* kOfReading[] = {"chord_tolerance", "axis_tolerance", "block_delete", "header",
-                                      "unknown",         "subroutines",    "parameters",   "max_turns"};
+constexpr const char* kOfReading[] = {"chord_tolerance", "axis_tolerance", "block_delete",
+                                      "header",          "unknown",        "subroutines",
+                                      "parameters",      "max_turns",      "cutter_compensation"};
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";

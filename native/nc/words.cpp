@@ -148,6 +148,9 @@ void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
 /// Fanuc's G05 P10000, G05.1 Q1 and G08 P1 switch a control's look-ahead; LinuxCNC's G5 and G5.1 are splines, which
 /// have their words.
 void NcWords::take_look_ahead() {
+  if (const int units = code(NcGroup::Units); units >= 700 && (has('Q') || has('P')))
+    place_.fail("turning cycles (G70, G71) are not read; alone, " + nc_code_name('G', units) +
+                " says inches or millimetres");
   std::int16_t& motion = codes_[static_cast<std::size_t>(NcGroup::Motion)];
   if ((motion == 50 || motion == 51) && !has_axes() && !has('I') && !has('J') && (has('P') || has('Q'))) {
     motion = -1;

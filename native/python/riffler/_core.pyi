@@ -554,7 +554,7 @@ class Note:
     @property
     def kind(self) -> str:
         """
-        "skipped", "coordinates" (skipped with axis words: what follows may be elsewhere), "units", "machine position", "tool length", "user code" or "end".
+        "skipped", "coordinates" (skipped with axis words: what follows may be elsewhere), "units", "machine position", "tool length", "cutter compensation", "user code" or "end".
         """
     @property
     def line(self) -> int:
@@ -615,7 +615,8 @@ class Program:
         Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
         given, feed blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row;
         ``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
-        is listed in ``provenance``); ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's
+        is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
+        centre); ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's
         parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
         programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.
         """

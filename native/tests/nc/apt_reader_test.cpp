@@ -64,6 +64,56 @@ TEST(AptReader, CirclesGoCounterClockwiseAboutTheirAxis) {
   EXPECT_EQ(p.poses().back().tip, Vec3(10, 0, 3));
 }
 
+TEST(AptReader, ReadsCyclesAsTheMotionTheyMean) {
+  const Program p = read(
+      "PARTNO/1\nUNIT/MM\nCUTTER/12.,0,6.,0,0,0,63.\nLOAD/TOOL,12\nCSI_SET_FLUTE_LENGTH/4.\nSELECT/TOOL,11\nTRNTYP/"
+      "WORLD,0,0,0\nCSYS/1.,0,0,0,0,1.,0,0,0,0,1.,0\nRAPID/\nGOTO/10,20,25\nCYCLE/INIT\nCYCLE/DRILL,FEDTO,5,MMPM,300,"
+      "RAPTO,3,RTRCTO,27.5,DWELL,0\nGOTO/10,20,-2.5\nCYCLE/OFF\nCYCLE/"
+      "DEEP2,FEDTO,8,1STPECK,5,SUBPECK,2,MMPM,400,RAPTO,3\n"
+      "GOTO/30,20,0\nCYCLE/TAP,FEDTO,4,IPM,10,RAPTO,2\nGOTO/0,0,0,0,0.6,0.8\nCYCLE/OFF\nRAPID\nGOTO/0,0,50\nFINI");
+  const std::vector<double> z{25, 25, 0.5, -7.5, 25, 3, -5, 3, -4.746, -7, 3, -6.746, -8, 3, 1.6, -3.2, 1.6, 50};
+  ASSERT_EQ(p.size(), z.size());
+  for (std::size_t k = 0; k < z.size(); ++k) EXPECT_NEAR(p.poses()[k].tip.z, z[k], 1e-12) << k;
+  EXPECT_EQ(p.feed()[3], 300);
+  EXPECT_EQ(p.feed()[6], 400);
+  EXPECT_EQ(p.feed()[15], 254);
+  EXPECT_EQ(p.feed()[16], 254) << "a tap is fed out";
+  EXPECT_EQ(p.poses()[15].tip, Vec3(0, -2.4, -3.2)) << "along the tool's axis";
+  EXPECT_EQ(p.tool()[0], 12);
+  EXPECT_EQ(p.tools.at(12).parameters(), cutters::flat(12, 63).parameters());
+  EXPECT_TRUE(p.notes.empty());
+}
+
+TEST(AptReader, KeepsSystemsApart) {
+  // The second system's x is the first one's y, its origin 100 further on.
+  const Program p = read(
+      "MSYS/10,0,0,1,0,0,0,1,0\nTLDATA/MILL,40.0,1.0,50.0,0.0,0.0\nFEDRAT/MMPM,100\nGOTO/1,2,3\n"
+      "MSYS/110,0,5,0,1,0,-1,0,0\nGOTO/1,2,3,1,0,0\nGODLTA/1,0,0\nMSYS/10,0,0,1,0,0,0,1,0\nGODLTA/0,0,1");
+  EXPECT_EQ(p.poses()[0].tip, Vec3(1, 2, 3));
+  EXPECT_EQ(p.poses()[1].tip, Vec3(98, 1, 8));
+  EXPECT_EQ(p.poses()[1].axis, Vec3(0, 1, 0));
+  EXPECT_EQ(p.poses()[2].tip, Vec3(98, 2, 8));
+  EXPECT_EQ(p.poses()[3].tip, Vec3(98, 2, 9)) << "from where the tool was";
+  EXPECT_EQ(p.tools.at(1).parameters(), cutters::fillet(40, 1, 50).parameters());
+}
+
+TEST(AptReader, ReadsCreosCommentsAndCirclesWithoutARadius) {
+  const Program p = read(
+      "$$*  Pro/CLfile  Version 11.0\n$$-> MFGNO / MFG0006\nPARTNO / MFG0006\n$$-> CSYS / 1.0, 0.0, 0.0, 0.0,  $\n"
+      "0.0, 1.0, 0.0, 0.0, $\n0.0, 0.0, 1.0, 0.0\nUNITS / MM\nFEDRAT / 10.0, MMPM\nGOTO / 10.0, 0.0, 0.0\n"
+      "CIRCLE / 0, 0, 0, 0, 0, 1\nGOTO / 0, 10, 0\nCIRCLE/0,0,0,0,0,1,10,CLOCKWISE\nGOTO/10,0,0\n$$-> END /\nFINI ");
+  double turned = 0;
+  for (std::size_t k = 1; k < p.size(); ++k) {
+    const Vec3 &a = p.poses()[k - 1].tip, &b = p.poses()[k].tip;
+    turned += std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
+    EXPECT_GT(b.x + b.y, 9.99);
+  }
+  EXPECT_NEAR(turned, std::numbers::pi, 1e-9);
+  const Program left = read("CUTCOM/LEFT\nGOTO/1,2,3\nCUTCOM/OFF", {{"cutter_compensation", std::string("ignore")}});
+  ASSERT_EQ(left.notes.size(), 1U);
+  EXPECT_EQ(left.notes[0].kind, "cutter compensation");
+}
+
 TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
   const std::pair<const char*, const char*> cases[] = {
       {"GOTO/1,2", "GOTO takes 3 to 6 numbers, not 2 [GOTO/1,2]"},
@@ -77,9 +127,26 @@ TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
       {"FEDRAT/5,PARSEC", "FEDRAT: unknown word PARSEC [FEDRAT/5,PARSEC]"},
       {"SPINDL/5,SFM", "SPINDL: unknown word SFM [SPINDL/5,SFM]"},
       {"UNITS/FEET", "UNITS: expected MM or INCHES, not FEET [UNITS/FEET]"},
-      {"CYCLE/DRILL,5", "cycles (CYCLE) are not read: have the CAM system write their moves [CYCLE/DRILL,5]"},
+      {"CYCLE/DRILL,5",
+       "CYCLE with numbers alone: what they mean is known to one post processor only; have the CAM system write FEDTO, "
+       "RAPTO and RTRCTO, or the moves [CYCLE/DRILL,5]"},
+      {"CYCLE/MILL,FEDTO,5",
+       "CYCLE/MILL is not read: DRILL, FACE, DEEP, TAP, REAM and BORE are; have the CAM system write its moves "
+       "[CYCLE/MILL,FEDTO,5]"},
+      {"CYCLE/DRILL,RAPTO,5", "CYCLE needs FEDTO, its depth below the point [CYCLE/DRILL,RAPTO,5]"},
+      {"CYCLE/DEEP,FEDTO,5", "CYCLE/DEEP needs the depth of a peck, INCR [CYCLE/DEEP,FEDTO,5]"},
+      {"CYCLE/DEEP,FEDTO,5,INCR,1e-9", "CYCLE: too many pecks [CYCLE/DEEP,FEDTO,5,INCR,1e-9]"},
+      {"CYCLE/DRILL,FEDTO", "CYCLE: FEDTO without a number [CYCLE/DRILL,FEDTO]"},
+      {"ROTABL/90,AAXIS",
+       "ROTABL is not read: it would move the tool or what follows; have the CAM system write GOTOs [ROTABL/90,AAXIS]"},
+      {"CSYS/1,0,0,0,0,1,0,0,0,0,1,0\nCSYS/1,0,0,5,0,1,0,0,0,0,1,0",
+       "CSYS of another system than before: where the one lies in the other is not read; write a program for each "
+       "[CSYS/1,0,0,5,0,1,0,0,0,0,1,0]"},
+      {"MSYS/0,0,0,1,0,0,0.8,0.6,0", "MSYS whose axes are not at right angles [MSYS/0,0,0,1,0,0,0.8,0.6,0]"},
       {"CUTCOM/LEFT",
-       "cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre [CUTCOM/LEFT]"},
+       "cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre, or, where that is what "
+       "the "
+       "file has, read it with options {'cutter_compensation': 'ignore'} [CUTCOM/LEFT]"},
       {"LOADTL/1.5", "LOADTL needs the tool's number [LOADTL/1.5]"},
       {"THREAD/1", "unknown statement THREAD: correct it, or read with options {'unknown': 'skip'} [THREAD/1]"},
       {"FEDRAT/1\nGOTO/0,0,0\nCIRCLE/5,0,0,0,0,1,4\nGOTO/10,0,0",

@@ -62,6 +62,7 @@ TEST(RealPrograms, FormsThatMoveNothingAreTaken) {
     EXPECT_TRUE(read.notes.empty()) << header << ": " << read.notes[0].message;
   }
   expect_same_moves(read_nc_text("G0 X0 Y0 Z5\r\r\nG1 X10 F100\r\r\n\x1A"), plain, "CR CR LF");
+  expect_same_moves(read_nc_text("G0 X0 Y0\nG2 X2 I1 J0 K0.000 F1"), read_nc_text("G0 X0 Y0\nG2 X2 I1 J0 F1"), "K0");
   expect_same_moves(read_nc_text("G0 X0 Y0 Z5 H1 D2\nG1 X10 F100 D2"), plain, "H and D");
 }
 
@@ -78,6 +79,7 @@ TEST(RealPrograms, UnitsHaveTwoNames) {
   EXPECT_EQ(read_nc_text("G20 G0 X1\nG71 X1").poses()[1].tip.x, 1);
   EXPECT_EQ(read_nc_text("G70\nG1 X1 F2", "tcp", kSkip).feed()[0], 50.8);
   // A bolt circle on some controls: never taken for units.
+  EXPECT_NE(nc_error("G70 Q100 X15 Z4 P1").find("turning cycles"), std::string::npos);
   EXPECT_EQ(nc_error("G70 I10 J0 L6"), "line 1: I has no meaning in this block [G70 I10 J0 L6]");
 }
 
@@ -93,6 +95,14 @@ TEST(RealPrograms, CoordinatesThatWereSkippedAreNotedAsSuch) {
   ASSERT_EQ(p.size(), 2U);
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"coordinates", "skipped"}));
   EXPECT_EQ(p.notes[0].line, 2);
+}
+
+TEST(RealPrograms, ThePathOfTheCentreIsReadUnderCompensationWhereItIsAskedFor) {
+  const std::string text = "G0 X0 Y0\nG1 G41 D1 X10 F100\nG40 Y5";
+  EXPECT_NE(nc_error(text).find("{'cutter_compensation': 'ignore'}"), std::string::npos);
+  const Program p = read_nc_text(text, "tcp", {{"cutter_compensation", std::string("ignore")}});
+  EXPECT_EQ(p.poses().back().tip, Vec3(10, 5, 0));
+  EXPECT_EQ(kinds(p), std::vector<std::string>{"cutter compensation"});
 }
 
 TEST(RealPrograms, WhatWouldMoveAllThatFollowsIsNeverSkipped) {
