@@ -38,7 +38,7 @@ sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
 # Processes, of a gigabyte each; windows and pens wait for themselves for half of their time.
-AT_ONCE = min(4, 2 * (os.cpu_count() or 1))
+AT_ONCE = min(3, 2 * (os.cpu_count() or 1))
 FIRST_DISPLAY = 90  # each window looks for a free one from a number of its own on: two at once would take the same
 FROM_SOURCE = (4, 5)  # the Blender that has the source folder, too
 # What may depend on where the add-on lies and what its module is called; the rest is the same code as in the extension,

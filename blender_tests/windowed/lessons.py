@@ -19,7 +19,7 @@ HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
 COLOURS = 128  # of a picture's palette: at most 250 kB for a whole window
 PIE = {"riffler.carve": (-1, 0), "riffler.add": (1, 0), "riffler.smooth": (0, -1), "riffler.mask": (0, 1)}
-STEP = 16  # pixels from one look at a panel's buttons to the next: less than a button is high
+STEP = 12  # pixels from one look at a panel's buttons to the next: less than a button is high
 
 
 def module(name):
