@@ -113,6 +113,22 @@ def in_frusta(points, frusta, pose) -> np.ndarray:
     return depth
 
 
+def near_frusta(points, frusta, poses, margin=0.5) -> np.ndarray:
+    """The points that truncated cones could come within `margin` of at any of the poses: those in a box of all the
+    balls about them."""
+    z0, z1 = min(f[0] for f in frusta), max(f[2] for f in frusta)
+    radius = np.hypot((z1 - z0) / 2, max(max(f[1], f[3]) for f in frusta)) + margin
+    centres = poses[:, :3] + (z0 + z1) / 2 * poses[:, 3:]
+    inside = (points > centres.min(0) - radius) & (points < centres.max(0) + radius)
+    points = points[inside.all(axis=1)]
+    # And of the slabs across the tool's axis at the middle pose, as far as any pose leans from it.
+    middle = poses[len(poses) // 2]
+    ends = np.concatenate([poses[:, :3] + z * poses[:, 3:] for z in (z0, z1)]) - middle[:3]
+    side = max(max(f[1], f[3]) for f in frusta) * np.sqrt(np.clip(1 - (poses[:, 3:] @ middle[3:]) ** 2, 0, 1)).max()
+    along, ends = (points - middle[:3]) @ middle[3:], ends @ middle[3:]
+    return points[(along > ends.min() - side - margin) & (along < ends.max() + side + margin)]
+
+
 UP = [0.0, 0.0, 1.0]
 
 
