@@ -234,7 +234,8 @@ def _with_lines(program, plan, post, chosen):
             return program, ""
     lines = course.lines(program.poses, read.poses, read.line)
     more = {"spindle": program.spindle, "tools": program.tools}
-    more |= {"provenance": program.provenance, "notes": program.notes}
+    more |= {"provenance": program.provenance, "notes": program.notes, "at_machine": program.at_machine}
+    more |= {"via": program.via}
     return riffler.Program(program.poses, program.feed, program.rapid, program.tool, lines, **more), text
 
 
@@ -285,6 +286,7 @@ def _with_tools(context, program, name):
     return riffler.Program(
         program.poses, program.feed, program.rapid, number, program.line,
         spindle=program.spindle, tools=tools, provenance=program.provenance, notes=program.notes,
+        at_machine=program.at_machine, via=program.via,
     )  # fmt: skip
 
 

@@ -1,9 +1,11 @@
 // riffler.Program, riffler.machines
 #include <cmath>
+#include <cstring>
 
 #include "bindings/bindings.hpp"
 #include "nc/cutter_path.hpp"
 #include "nc/edit.hpp"
+#include "nc/follow.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/program.hpp"
@@ -62,20 +64,50 @@ Provenance to_provenance(const py::object& object) {
   return out;
 }
 
+using Via = std::shared_ptr<const std::vector<Pose>>;
+
+std::map<std::size_t, Via> to_vias(const py::object& object, std::size_t rows) {
+  std::map<std::size_t, Via> out;
+  if (object.is_none()) return out;
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("via must be a dict: row to poses (k, 6)");
+  for (const auto& [key, value] : py::cast<py::dict>(object)) {
+    if (!py::isinstance<py::int_>(key)) throw py::value_error("via must be a dict: row to poses (k, 6)");
+    const int row = to_int(py::cast<double>(key), "via", out.size());
+    if (row < 1 || static_cast<std::size_t>(row) >= rows)
+      throw py::value_error("via: no row to lead to: " + std::to_string(row));
+    const std::string name = "via[" + std::to_string(row) + "]";
+    out.emplace(row, std::make_shared<const std::vector<Pose>>(to_poses(to_doubles(value, name), name.c_str())));
+  }
+  return out;
+}
+
+py::dict vias_of(const Program& program) {
+  py::dict out;
+  for (const auto& [row, via] : program.via()) {
+    py::array_t<double> poses({static_cast<py::ssize_t>(via->size()), py::ssize_t{6}});
+    std::memcpy(poses.mutable_data(), via->data(), via->size() * sizeof(Pose));
+    out[py::int_(row)] = poses;
+  }
+  return out;
+}
+
 Program make_program(const Doubles& poses, const py::object& feed, const py::object& rapid, const py::object& tool,
                      const py::object& line, const py::object& spindle, const py::object& tools,
-                     const py::object& provenance, const std::vector<Note>& notes) {
+                     const py::object& provenance, const std::vector<Note>& notes, const py::object& at_machine,
+                     const py::object& via) {
   const std::vector<Pose> rows = to_poses(poses, "poses");
   const std::size_t n = rows.size();
   const auto column = [&](const py::object& object, const char* name) { return to_column(object, n, name); };
   const std::vector<double> feeds = column(feed, "feed"), rapids = column(rapid, "rapid"),
                             numbers = column(tool, "tool"), lines = column(line, "line"),
-                            speeds = column(spindle, "spindle");
+                            speeds = column(spindle, "spindle"), away = column(at_machine, "at_machine");
+  const std::map<std::size_t, Via> ways = to_vias(via, n);
   Program program;
   program.reserve(n);
   for (std::size_t row = 0; row < n; ++row)
     program.append({rows[row], feeds[row], speeds[row], to_int(numbers[row], "tool", row),
-                    to_int(lines[row], "line", row), rapids[row] != 0});
+                    to_int(lines[row], "line", row), rapids[row] != 0, away[row] != 0,
+                    ways.contains(row) ? ways.at(row) : nullptr});
   program.tools = to_tools(tools);
   program.provenance = to_provenance(provenance);
   program.notes = notes;
@@ -167,8 +199,10 @@ py::array poses(const py::object& self) {
 
 py::list cuts(const py::object& self) {
   py::list out;
-  const py::array all = poses(self);
-  for (const ToolRun& run : py::cast<const Program&>(self).runs())
+  const auto& given = py::cast<const Program&>(self);
+  const py::object whole = given.via().empty() ? self : py::cast(followed(given));
+  const py::array all = poses(whole);
+  for (const ToolRun& run : py::cast<const Program&>(whole).runs())
     out.append(py::make_tuple(
         run.tool, all[py::slice(static_cast<py::ssize_t>(run.begin), static_cast<py::ssize_t>(run.end), 1)]));
   return out;
@@ -249,8 +283,9 @@ void bind_program(py::module_& m) {
 
   py::class_<Note>(m, "Note", "What a reader of NC code assumed or passed over.")
       .def_readonly("kind", &Note::kind,
-                    "\"skipped\", \"coordinates\" (skipped with axis words: what follows may be elsewhere), \"units\", "
-                    "\"machine position\", \"tool length\", \"cutter compensation\", \"user code\" or \"end\".")
+                    "\"skipped\", \"coordinates\" (what follows may be elsewhere), \"work offset\", \"units\", "
+                    "\"machine position\", "
+                    "\"rapid\", \"motion\", \"start\", \"tool length\", \"cutter compensation\", \"user code\" or \"end\".")
       .def_readonly("line", &Note::line, "Of the source, from 1.")
       .def_readonly("message", &Note::message)
       .def("__repr__", [](const Note& n) {
@@ -273,15 +308,18 @@ void bind_program(py::module_& m) {
   py::class_<Program, std::shared_ptr<Program>>(m, "Program",
                                                 R"(Where the tool goes, how fast and with which tool; immutable.
 
-One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate.
+One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate, by way
+of the poses in ``via`` where there are any.
 ``tools`` is a dict of the tools whose shape is known, by number; ``provenance`` a dict of strings that the header
 comment of the NC code repeats. Lengths in mm, feed in mm/min at the tip, spindle in rev/min.)")
       .def(py::init(&make_program), py::arg("poses"), py::arg("feed"), py::arg("rapid") = false, py::arg("tool") = 1,
            py::arg("line") = 0, py::arg("spindle") = 0.0, py::arg("tools") = py::none(),
            py::arg("provenance") = py::none(), py::arg_v("notes", std::vector<Note>(), "[]"),
+           py::arg("at_machine") = false, py::arg("via") = py::none(),
            R"(From columns: poses (n, 6), everything else one value for all rows or (n,).
 
-ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves.)")
+ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves, ``at_machine`` with another pose
+than the row before.)")
       .def_static("from_cl", &from_cl, py::arg("cl"), py::arg("tools"), py::arg("feed"), py::arg("spindle") = 0.0,
                   py::kw_only(), py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
                   py::arg("occupied") = py::none(), py::arg("provenance") = py::none(),
@@ -304,11 +342,13 @@ corners around stock, part and fixtures.)")
           R"(Reads NC code (RS-274 as LinuxCNC has it); ``machine`` is a name of machines(), or "apt" for an APT file.
 
 Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
-given, feed blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row;
+given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the
+poses on its way are in ``via``;
 ``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
 is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
-centre); ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's
-parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
+centre); ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
+end may miss its circle; ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes
+lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
 programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.)")
       .def_static(
           "stream",
@@ -356,6 +396,11 @@ would take).)")
       .def_property_readonly(
           "rapid", [](const py::object& self) { return view<bool>(self, py::cast<const Program&>(self).rapid()); },
           "(n,) bool.")
+      .def_property_readonly(
+          "at_machine",
+          [](const py::object& self) { return view<bool>(self, py::cast<const Program&>(self).at_machine()); },
+          "(n,) bool: rows that end at a position of the machine (G28, G30, G53) whose place in the part is not known. "
+          "Their pose is that of the row before; the motions there and from there are neither cut nor compared.")
       .def_property_readonly("tool", column_getter(&Program::tool), "(n,) int32 tool numbers; 0: none.")
       .def_property_readonly("line", column_getter(&Program::line), "(n,) int32 source lines from 1; 0: no source.")
       .def_property_readonly("spindle", column_getter(&Program::spindle),
@@ -372,6 +417,14 @@ would take).)")
       .def_property_readonly(
           "notes", [](const Program& self) { return self.notes; },
           "What the reader assumed or passed over: a list of Note. Programs that are made of numbers have none.")
+      .def_property_readonly(
+          "via", &vias_of,
+          "dict: row to (k, 6) poses on the way there, where rotary axes that turn evenly take the tool another way "
+          "than the "
+          "great circle: by more than 0.002 rad, in programs that were read without ``axis_tolerance``.")
+      .def(
+          "followed", [](const Program& self) { return followed(self); },
+          "With the poses of ``via`` as rows of their own: between its rows the tool moves as the machine moves it.")
       .def("trimmed", &trimmed, py::arg("first"), py::arg("last"),
            "Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.")
       .def("transformed", &edited_transform, py::arg("matrix"),
@@ -384,7 +437,9 @@ would take).)")
            "Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share "
            "one.")
       .def("cuts", &cuts,
-           "For replay: a list of (tool number, poses (k, 6)), one per run of rows with one tool, rapids included.")
+           "For replay: a list of (tool number, poses (k, 6)), one per run of rows in the part with one tool, rapids "
+           "and the "
+           "poses of ``via`` included.")
       .def("__len__", &Program::size)
       .def("__repr__", &repr);
 }

@@ -18,9 +18,13 @@ constexpr double kMaxPecks = 100'000;
 /// Lengths and feeds in pairs, a word and its number.
 void take_words(AptCycle& cycle, const AptStatement& statement, const AptLexer& lexer, double unit,
                 const NcPlace& place) {
-  bool retracts = false;
+  bool retracts = false, feeds = false;
   for (std::size_t k = 1; k < statement.words.size(); k += 2) {
     const std::string& word = statement.words[k];
+    if (word == "DEEP" && k == 1) {
+      --k;  // beside DRILL
+      continue;
+    }
     const std::optional<double> number =
         k + 1 < statement.words.size() ? lexer.number(statement.words[k + 1]) : std::nullopt;
     if (lexer.number(word))
@@ -31,7 +35,7 @@ void take_words(AptCycle& cycle, const AptStatement& statement, const AptLexer& 
     const double length = *number * unit;
     if (!(std::abs(length) <= kMaxLength)) place.fail("CYCLE: " + word + " is out of range");
     if (word == "FEDTO")
-      cycle.depth = length;
+      cycle.depth = length, feeds = true;
     else if (word == "RAPTO")
       cycle.clearance = length;
     else if (word == "RTRCTO")
@@ -46,6 +50,7 @@ void take_words(AptCycle& cycle, const AptStatement& statement, const AptLexer& 
       place.fail("CYCLE: unknown word " + word);
   }
   if (!retracts) cycle.retract = cycle.clearance;
+  if (!feeds || cycle.depth < 0) place.fail("CYCLE needs FEDTO, its depth below the point");
 }
 
 }  // namespace
@@ -63,7 +68,6 @@ std::optional<AptCycle> apt_cycle(const AptStatement& statement, const AptLexer&
   AptCycle cycle;
   cycle.feeds_out = feeds_out;
   take_words(cycle, statement, lexer, unit, place);
-  if (!(cycle.depth > 0)) place.fail("CYCLE needs FEDTO, its depth below the point");
   if (!(cycle.clearance >= 0 && cycle.retract >= 0)) place.fail("CYCLE: RAPTO and RTRCTO lie above the point");
   if (!(cycle.feed >= 0 && cycle.feed <= kMaxFeed)) place.fail("CYCLE: its feed is out of range");
   if (!pecks) {

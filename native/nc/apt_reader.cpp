@@ -325,8 +325,16 @@ class AptReader {
   void circle() {
     bool clockwise = false;
     std::vector<std::string> words;
-    for (const std::string& word : s_.words) {
-      if (word == "TIMES") place_.fail("CIRCLE of several turns (TIMES) is not read: have the CAM system write them");
+    turns_ = 1;
+    for (std::size_t k = 0; k < s_.words.size(); ++k) {
+      const std::string& word = s_.words[k];
+      if (word == "TIMES") {
+        const std::optional<double> turns = k + 1 < s_.words.size() ? lexer_.number(s_.words[k + 1]) : std::nullopt;
+        if (!turns || !(*turns >= 1 && *turns <= 1000 && *turns == std::floor(*turns)))
+          place_.fail("TIMES needs a whole number of turns");
+        turns_ = static_cast<int>(*turns);
+        break;
+      }
       if (word == "CLOCKWISE" || word == "COUNTERCLOCKWISE")
         clockwise = word == "CLOCKWISE";
       else
@@ -357,6 +365,9 @@ class AptReader {
     }
     if (v.size() > 6 && !(std::abs(round.r0 - v[6] * unit_) <= kArcMiss))
       place_.fail("the circle's radius is not the distance of its start");
+    if (turns_ > 1 && std::abs(high - low) > kArcMiss)
+      place_.fail("CIRCLE of several turns along its axis (TIMES) is not read: have the CAM system write the helix");
+    round = round.with_turns(turns_);
     if (!(glm::dot(axis_, to.axis) > -1 + 1e-12)) place_.fail("the tool's axis turns to its opposite");
     const Motion turning({from, axis_}, to);
     const int chords = round.chords(chord_tolerance_);
@@ -381,6 +392,7 @@ class AptReader {
   int turning_ = 0, tool_ = 0;
   Vec3 at_{0}, axis_{0, 0, 1};
   std::optional<std::vector<double>> circle_;
+  int turns_ = 1;  // of the circle
   std::optional<AptCycle> cycle_;
   AptSystem system_;
   std::string csys_, trntyp_;

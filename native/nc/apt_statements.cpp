@@ -8,10 +8,10 @@ namespace riffler {
 namespace {
 
 constexpr std::string_view kPassedOver[] = {
-    "PARTNO", "PPRINT",      "COOLNT", "END",    "STOP",   "OPSTOP", "MACHIN",  "MODE",
-    "DELAY",  "SEQNO",       "TOOLNO", "OPSKIP", "PREFUN", "AUXFUN", "DISPLAY", "TOOLPATH",
-    "PAINT",  "END-OF-PATH", "LEADER", "REWIND", "CLEARP", "LPRINT", "CLPRNT",  "NOPOST",
-    "ROTREF", "SELECTL",     "TPNAME", "OP",     "LINTOL", "SELECT", "TPRINT",  "BOX",
+    "PARTNO", "PPRINT", "COOLNT", "END",    "STOP",   "OPSTOP",  "MACHIN",   "MODE",    "DELAY",
+    "SEQNO",  "TOOLNO", "OPSKIP", "PREFUN", "AUXFUN", "DISPLAY", "TOOLPATH", "PAINT",   "END-OF-PATH",
+    "LEADER", "REWIND", "CLEARP", "LPRINT", "CLPRNT", "NOPOST",  "ROTREF",   "SELECTL", "TPNAME",
+    "OP",     "LINTOL", "SELECT", "TPRINT", "BOX",    "SETUP",
 };
 
 constexpr std::string_view kMoving[] = {

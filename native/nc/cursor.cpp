@@ -12,9 +12,11 @@ char NcCursor::skip_comment() {
     at_ = end_;
     return '\0';
   }
-  for (++at_; at_ != end_; ++at_) {
-    if (*at_ == '(') fail("a comment within a comment");
-    if (*at_ == ')') {
+  // What a control that ends at the first bracket makes of the rest is a comment, too, where brackets pair.
+  int depth = 0;
+  for (; at_ != end_; ++at_) {
+    depth += *at_ == '(' ? 1 : *at_ == ')' ? -1 : 0;
+    if (depth == 0) {
       ++at_;
       return peek();
     }

@@ -22,7 +22,7 @@ class Describer : TomlReader {
 
   MachineDescription describe(const std::string& name, OptionReader& options) {
     allow(root(), {"description", "control", "words", "direction", "tool_length", "feed", "note", "options", "rotary",
-                   "axis", "start", "end"});
+                   "axis", "start", "end", "rapids"});
     summary();
     MachineDescription out;
     out.name = name;
@@ -144,6 +144,8 @@ class Describer : TomlReader {
         word(root(), "feed", {"inverse-time", "per-minute"}, out.tip_words ? "per-minute" : "inverse-time");
     c.inverse_time =
         c.language == "rs274" && options.word("feed", {"inverse-time", "per-minute"}, feed) == "inverse-time";
+    const std::vector<std::string> ways{"straight", "independent", "unknown"};
+    c.rapids = options.word("rapids", ways, word(root(), "rapids", {"straight", "independent", "unknown"}, "unknown"));
     if (const toml::node* note = root().get("note")) {
       if (!note->is_table()) fail(*note, "note must be a table");
       allow(*note->as_table(), {"tip", "joints"});

@@ -13,7 +13,7 @@ struct DrillCycle {
   double retract;  ///< R
   double bottom;   ///< Z
   double clear;    ///< where the tool goes in the end: R, or the level from before (G98)
-  double peck;     ///< Q; 0: none
+  double peck;     ///< Q, of G73, G83 and of tapping; 0: none
 };
 
 /// LinuxCNC's: what a peck keeps from the ground before (G83), or breaks the chip with (G73).
@@ -21,6 +21,9 @@ inline constexpr double kPeckClearance = 0.254;
 
 /// Whether `code` (times ten) is a drilling cycle that is read.
 bool is_drill_cycle(int code);
+
+/// G74 and G84: in and out in feed.
+bool is_tapping_cycle(int code);
 
 /// Calls `move(height, rapid)` for every move from R on. FormatError where the cycle has more pecks than can be held.
 void drill(const DrillCycle& cycle, const NcPlace& place, const std::function<void(double, bool)>& move);

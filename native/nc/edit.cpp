@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -63,8 +65,14 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
     for (int j = 0; j < 3; ++j) off = std::max(off, std::abs(square[i][j] - (i == j)));
   if (!(off < 1e-9) || !(glm::determinant(turn) > 0) || !finite(shift))
     throw std::invalid_argument("matrix must turn and move only: no scale, no mirror, finite");
-  return copied(program,
-                [&](Move& move) { move.pose = {turn * move.pose.tip + shift, glm::normalize(turn * move.pose.axis)}; });
+  return copied(program, [&](Move& move) {
+    const auto turned = [&](const Pose& p) { return Pose{turn * p.tip + shift, glm::normalize(turn * p.axis)}; };
+    move.pose = turned(move.pose);
+    if (!move.via) return;
+    auto via = std::make_shared<std::vector<Pose>>();
+    std::ranges::transform(*move.via, std::back_inserter(*via), turned);
+    move.via = std::move(via);
+  });
 }
 
 Program retimed(const Program& program, double factor) {

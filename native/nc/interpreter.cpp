@@ -8,6 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/post.hpp"
+#include "nc/units.hpp"
 
 namespace riffler {
 
@@ -38,11 +39,7 @@ NcInterpreter::NcInterpreter(std::unique_ptr<NcSource> source, const std::filesy
   if (given_.check_header) check_header(*source, rows_->machine());
   flow_ = std::make_unique<NcControlFlow>(std::move(source), given_.folders, given_.max_turns, place_, parameters_);
   words_ = std::make_unique<NcWords>(rows_->machine().axes(), place_, given_.skip_unknown ? &skipped_here_ : nullptr);
-  if (!given_.parameters.empty()) {
-    parameters_.load(given_.parameters);
-    modes_.system = std::clamp(static_cast<int>(parameters_.stored(5220)), 1, 9);
-    home_noted_ = true;
-  }
+  use_positions();
   frame_ = frame_of_parameters();
   rows_->set_frame(frame_);
   at_ = frame_.to_program({});
@@ -64,13 +61,24 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   if (const std::string folder = path_option(options.options, taken, "subroutines"); !folder.empty())
     given_.folders.emplace_back(folder);
   given_.parameters = path_option(options.options, taken, "parameters");
+  given_.units = taken.given("units");
+  if (taken.word("units", {"mm", "inch"}, "mm") == "inch") modes_.unit = kInch;
+  given_.arc_miss = taken.positive("arc_tolerance").value_or(kArcMiss);
+  take_positions(taken);
   taken.done();
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
+  if (given_.arc_miss > 1) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
   rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);
 }
 
 bool NcInterpreter::step() {
+  if (execute_line()) return true;
+  rows_->release(true);
+  return false;
+}
+
+bool NcInterpreter::execute_line() {
   std::string_view line;
   // What follows the end in a subroutine, or may be met on another way, is not judged.
   if (ended_ && (flow_->depth() > 0 || flow_->is_used())) return false;
@@ -138,7 +146,8 @@ void NcInterpreter::block(NcCursor& cursor) {
   words_->read(cursor, parameters_);
   for (const std::string& word : skipped_here_) {
     if (words_->lost_axes())
-      note("coordinates", word + " was skipped, with its axis words");
+      note("coordinates",
+           word + (word.size() == 1 ? " was skipped, an axis of the program" : " was skipped, with its axis words"));
     else
       note("skipped", word);
   }
@@ -188,7 +197,7 @@ Provenance NcInterpreter::provenance() const {
   const auto list = [&](bool skipped) {
     std::string text;
     for (const Note& n : notes_)
-      if (is_skipped(n.kind) == skipped)
+      if (is_skipped(n.kind) == skipped && n.kind != "rapid" && n.kind != "units")
         text += (text.empty() ? "line " : "; line ") + std::to_string(n.line) + ": " + n.message;
     return text;
   };

@@ -7,8 +7,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "nc/arc.hpp"
 #include "nc/control_flow.hpp"
 #include "nc/frame.hpp"
 #include "nc/parameters.hpp"
@@ -53,6 +55,21 @@ class NcInterpreter final : private NcPredefined {
     std::vector<std::filesystem::path> folders;
     std::string parameters;
     bool skip_unknown = false, ignore_compensation = false;
+    double arc_miss = kArcMiss;
+    bool units = false;                                          // given by an option
+    std::vector<std::pair<int, std::vector<double>>> positions;  // by the first of their parameters
+  };
+  /// What is known of where an axis stands.
+  enum class Stand : std::uint8_t {
+    Given,    // the program named its coordinate
+    Start,    // as before the program, which is taken for 0
+    Machine,  // at a position of the machine, of which nobody knows where in the part it is
+  };
+  /// What is known of an axis's zero in a work offset.
+  enum class Zero : std::uint8_t {
+    Unknown,   // taken for 0
+    Relative,  // where it lies from the first system that the program moves in
+    Machine,   // where on the machine
   };
   struct Saved {
     Modes modes;
@@ -68,6 +85,7 @@ class NcInterpreter final : private NcPredefined {
 
   // interpreter.cpp: options, lines, the order of what a block does.
   void take_options(const ReadOptions& options);
+  bool execute_line();
   bool executes(NcCursor& cursor);
   bool ended(std::string_view line);
   void percent();
@@ -93,6 +111,23 @@ class NcInterpreter final : private NcPredefined {
   void subprograms();
   void stop();
 
+  // interpreter_machine.cpp: positions of the machine, and what is known of work offsets.
+  void take_positions(OptionReader& options);
+  void go_home(int code);
+  Joints machine_target();
+  void use_positions();
+  bool is_zero_known(std::size_t joint) const;
+  void to_machine_position(std::size_t joint, Joints& machine, double position, bool known);
+  void leave_part(const char* code);
+  std::string axes_away() const;
+  void check_stands_in_part(const char* what) const;
+  bool moves_in_part(bool rapid);
+  void begin_or_wait(bool rapid);
+  void note_start();
+  void note_rapid(const Joints& to);
+  void check_work_offset();
+  void learn_zero(int number, std::size_t joint, bool by_position);
+
   // interpreter_offsets.cpp: where program coordinates are; parameters that say so.
   NcFrame frame_of_parameters() const;
   void use_frame(const NcFrame& frame);
@@ -102,19 +137,19 @@ class NcInterpreter final : private NcPredefined {
   void set_system(int number, bool by_position);
   void shift_by_words(bool local);
   void store_shift();
-  void go_home(int first_parameter);
   double length_or_angle(std::size_t joint);
   std::optional<double> predefined(int number) const override;
   std::optional<double> predefined(std::string_view name) const override;
 
   // interpreter_motion.cpp
   void motion();
+  void choose_motion(int code);
+  bool goes_home() const;
   void move(int code);
   void refuse(int code);
   bool axes_are_taken() const;
   void check_feed() const;
   Joints target();
-  Joints machine_target();
   void line_to(const Joints& to, bool rapid);
   void arc_to(const Joints& to, bool clockwise);
   Arc the_arc(const Vec2& from, const Vec2& end, bool clockwise);
@@ -138,14 +173,24 @@ class NcInterpreter final : private NcPredefined {
   std::size_t more_skipped_ = 0;
 
   Joints at_{};  // program coordinates, mm and degrees
+  std::array<Stand, 6> stand_{Stand::Start, Stand::Start, Stand::Start, Stand::Given, Stand::Given, Stand::Given};
+  std::array<std::array<Zero, 3>, 10> zero_{};  // of X Y Z, by system
+  std::size_t first_system_ = 0;                // that rows were made in
+  std::array<bool, 10> offset_noted_{};
+  /// Of G28 and G30, by axis: the machine's position is known, or a position in the part (G28.1).
+  std::array<std::array<bool, 6>, 2> home_known_{}, home_in_part_{};
   Modes modes_;
-  int motion_ = -1;  // the code times ten; −1: none
+  int motion_ = -1, before_cycle_ = -1;  // the code times ten; −1: none
+  bool cancelled_ = false;               // by G80
   NcFrame frame_;
   Cycle cycle_;
   std::optional<Vec2> spline_end_;  // of a G5: from its end to its second control point
   int tool_ = 0, next_tool_ = 0, length_number_ = 0;
   std::optional<Vec3> length_;  // of the tool at hand, as the first dynamic offset gave it
-  bool length_used_ = false, length_off_ = false, home_noted_ = false, compensation_noted_ = false;
+  bool length_used_ = false, length_off_ = false, compensation_noted_ = false;
+  bool begun_ = false;  // whether every linear axis has been named, or taken for 0
+  bool position_noted_ = false, rotary_noted_ = false, start_noted_ = false, away_noted_ = false, units_said_ = false;
+  bool rapid_noted_ = false;
   std::vector<Saved> saved_;
   bool started_ = false, percent_ = false, ended_ = false;
 };

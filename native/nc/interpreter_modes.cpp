@@ -11,7 +11,10 @@
 namespace riffler {
 
 void NcInterpreter::units_and_feed_mode() {
-  if (const int code = words_->code(NcGroup::Units); code >= 0) modes_.unit = code == 200 || code == 700 ? kInch : 1;
+  if (const int code = words_->code(NcGroup::Units); code >= 0) {
+    modes_.unit = code == 200 || code == 700 ? kInch : 1;
+    units_said_ = true;
+  }
   const int mode = words_->code(NcGroup::FeedMode);
   if (mode < 0) return;
   // Numbers of one mode mean nothing in another.
@@ -34,9 +37,11 @@ void NcInterpreter::feed_and_speed() {
 void NcInterpreter::spindle() {
   switch (words_->code(NcGroup::Spindle)) {
     case 30:
+    case 130:  // with coolant
       modes_.turning = 1;
       break;
     case 40:
+    case 140:
       modes_.turning = -1;
       break;
     case 50:
@@ -73,7 +78,8 @@ void NcInterpreter::signals() {
   if (words_->code(NcGroup::Override) >= 0) words_->pass_over("P");
   if (words_->code(NcGroup::User) >= 0) {
     words_->pass_over("PQ");
-    note("user code", nc_code_name('M', words_->code(NcGroup::User)) + " is the user's own: taken to move nothing");
+    note("user code",
+         nc_code_name('M', words_->code(NcGroup::User)) + " is a function of the machine: taken to move nothing");
   }
 }
 
@@ -145,6 +151,7 @@ void NcInterpreter::kinematics() {
   if (other->joint_words() == tip_words)
     place_.fail(nc_code_name('M', code) + " switches kinematics that machine " + machine_ +
                 " does not have: read with the machine that the program is for");
+  if (!axes_away().empty()) stand_[0] = stand_[1] = stand_[2] = Stand::Machine;
   at_ = rows_->change_machine(std::move(other), at_);
 }
 

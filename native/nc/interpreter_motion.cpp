@@ -36,12 +36,11 @@ void NcInterpreter::motion() {
   const int code = words_->code(NcGroup::Motion);
   const bool by_machine = words_->code(NcGroup::NonModal) == 530;
   if (code >= 0) {
-    if (axes_are_taken() && code != 800 && words_->has_axes())
+    if (axes_are_taken() && code != 800 && words_->has_axes() && !(code <= 10 && goes_home()))
       place_.fail("two codes that both use axis words: they need a block each");
-    motion_ = code == 800 ? -1 : code;
-    if (code == 800) cycle_.code = -1;
+    choose_motion(code);
   }
-  if (code >= 0 || by_machine) refuse(motion_);
+  if (code >= 0 || by_machine) refuse(code == 800 ? -1 : motion_);
   if (axes_are_taken()) return;
   const bool arc = motion_ == 20 || motion_ == 30;
   if (!words_->has_axes() && !(arc && (words_->has('I') || words_->has('J') || words_->has('K')))) {
@@ -50,7 +49,10 @@ void NcInterpreter::motion() {
     if (is_drill_cycle(code)) place_.fail("a canned cycle without axis words");
     return;
   }
-  if (motion_ < 0) place_.fail("axis words without a motion (G0, G1, G2, G3)");
+  if (motion_ < 0 || code == 800) place_.fail("axis words without a motion (G0, G1, G2, G3)");
+  if (cancelled_ && !by_machine)
+    note("motion", "axis words after G80: taken for the motion from before the cycle, as Fanuc's controls do");
+  cancelled_ = false;
   if (by_machine) {
     if (motion_ > 10) place_.fail("G53 goes with G0 and G1 only");
     if (!modes_.absolute) place_.fail("G53 under G91: positions of the machine are absolute (G90)");
@@ -58,11 +60,30 @@ void NcInterpreter::motion() {
   move(motion_);
 }
 
+/// G80 ends a cycle, and the motion from before it holds again, as on Fanuc's controls; LinuxCNC wants it named.
+void NcInterpreter::choose_motion(int code) {
+  cycle_.code = is_drill_cycle(code) ? cycle_.code : -1;
+  cancelled_ = code == 800;
+  if (cancelled_) {
+    if (is_drill_cycle(motion_)) motion_ = before_cycle_;
+    return;
+  }
+  if (is_drill_cycle(code) && !is_drill_cycle(motion_)) before_cycle_ = motion_;
+  motion_ = code;
+}
+
+/// G0 and G1 beside them say what the motion is after them.
+bool NcInterpreter::goes_home() const {
+  const int code = words_->code(NcGroup::NonModal);
+  return code == 280 || code == 300;
+}
+
 void NcInterpreter::move(int code) {
   if (!is_drill_cycle(code)) cycle_.code = -1;
   if (code != 50) spline_end_.reset();
   if (code != 0) check_feed();
   if (is_drill_cycle(code)) return drill_at(code);
+  if (code > 10) check_stands_in_part("an arc or a spline");
   const Joints to = words_->code(NcGroup::NonModal) == 530 ? machine_target() : target();
   if (code <= 10)
     line_to(to, code == 0);
@@ -84,9 +105,6 @@ void NcInterpreter::refuse(int code) {
     case 331:
     case 760:
       place_.fail("threads (G33, G33.1, G76) are cut by the spindle's position: they are not read");
-    case 740:
-    case 840:
-      place_.fail("tapping (G74, G84) turns the spindle back at the bottom: it is not read");
     case 870:
     case 880:
       place_.fail("canned cycles that stop for the operator (G87, G88) are not read");
@@ -117,22 +135,11 @@ Joints NcInterpreter::target() {
     const std::size_t k = joint_index(letter);
     const double word = length_or_angle(k);
     to[k] = modes_.absolute ? word : at_[k] + word;
+    if (modes_.absolute) stand_[k] = Stand::Given;
     if (!(std::abs(to[k]) <= (k < 3 ? kMaxLength : kMaxAngle)))
       place_.fail(std::string(1, letter) + " is out of range");
   }
   return to;
-}
-
-/// Under G53.
-Joints NcInterpreter::machine_target() {
-  Joints machine = frame_.to_machine(at_);
-  for (const char letter : rows_->machine().axes())
-    if (words_->has(letter)) machine[joint_index(letter)] = length_or_angle(joint_index(letter));
-  if (!home_noted_)
-    note("machine position",
-         "G28, G30 and G53 go to positions of the machine, here as if the work offset was 0: option parameters");
-  home_noted_ = true;
-  return frame_.to_program(machine);
 }
 
 NcRowWords NcInterpreter::row_words(bool rapid) {
@@ -149,7 +156,12 @@ NcRowWords NcInterpreter::row_words(bool rapid) {
 }
 
 void NcInterpreter::line_to(const Joints& to, bool rapid) {
-  rows_->line(at_, to, row_words(rapid));
+  const NcRowWords words = row_words(rapid);
+  if (rapid && !rapid_noted_) note_rapid(to);
+  if (moves_in_part(rapid))
+    rows_->line(at_, to, words);
+  else
+    rows_->at_machine(words);
   at_ = to;
 }
 
@@ -166,6 +178,7 @@ void NcInterpreter::arc_to(const Joints& to, bool clockwise) {
     if (turns < 1) place_.fail("P of an arc is its turns: 1 at least");
     arc = arc.with_turns(turns);
   }
+  moves_in_part(false);
   rows_->arc(at_, to, arc, u, v, row_words(false));
   at_ = to;
 }
@@ -177,7 +190,8 @@ Arc NcInterpreter::the_arc(const Vec2& from, const Vec2& end, bool clockwise) {
   const bool offsets = words_->has(kCentre[u]) || words_->has(kCentre[v]);
   if (words_->has('R')) {
     if (offsets) place_.fail("an arc with both R and a centre");
-    return arc_of_radius(from, end, words_->value('R', kMaxLength) * modes_.unit, clockwise);
+    return arc_of_radius(from, end, words_->value('R', kMaxLength) * modes_.unit, clockwise,
+                         std::max(kRadiusMiss, given_.arc_miss == kArcMiss ? 0 : given_.arc_miss));
   }
   if (!offsets) place_.fail("an arc without a centre (I, J, K) or R");
   if (modes_.absolute_centre && !(words_->has(kCentre[u]) && words_->has(kCentre[v])))
@@ -185,7 +199,7 @@ Arc NcInterpreter::the_arc(const Vec2& from, const Vec2& end, bool clockwise) {
   Vec2 centre = modes_.absolute_centre ? Vec2(0, 0) : from;
   if (words_->has(kCentre[u])) centre.x += words_->value(kCentre[u], kMaxLength) * modes_.unit;
   if (words_->has(kCentre[v])) centre.y += words_->value(kCentre[v], kMaxLength) * modes_.unit;
-  return arc_about(from, end, centre, clockwise);
+  return arc_about(from, end, centre, clockwise, given_.arc_miss);
 }
 
 /// G5: a cubic whose control points are I J from its start and P Q from its end; G5.1: a quadratic, I J from its start.
@@ -221,6 +235,7 @@ void NcInterpreter::spline_to(const Joints& to, int code) {
   double length = 0;
   for (int i = 1; i <= static_cast<int>(parts); ++i) length += glm::length(point(i / parts) - point((i - 1) / parts));
   Joints joints = at_;
+  moves_in_part(false);
   rows_->curve(
       at_, static_cast<int>(parts), length,
       [&](double t) {
@@ -249,8 +264,12 @@ void NcInterpreter::take_cycle_words(int code) {
     if (words_->has('Q')) cycle_.peck = words_->value('Q', kMaxLength) * modes_.unit;
     if (!(cycle_.peck > 0)) place_.fail("Q must be positive");
   }
+  if (is_tapping_cycle(code)) {
+    words_->pass_over("PJ");
+    cycle_.peck = words_->has('Q') ? words_->value('Q', kMaxLength) * modes_.unit : 0;
+    if (cycle_.peck < 0) place_.fail("Q must be positive");
+  }
   if (code == 820 || code == 860 || code == 890) {
-    need('P', "its dwell");
     if (words_->has('P') && words_->value('P', 1e6) < 0) place_.fail("P is negative");
   }
   if (cycle_.code < 0) cycle_.level = at_[modes_.plane[2]];
@@ -269,11 +288,17 @@ void NcInterpreter::drill_at(int code) {
   const double retract = cycle_.retract + (modes_.absolute ? 0 : cycle_.level);
   const double bottom = cycle_.bottom + (modes_.absolute ? 0 : retract);
   if (retract < bottom) place_.fail("the canned cycle's R is below its depth");
+  // Where the drilling axis is at a position of the machine, the first move in the part is the one to R.
+  bool away = stand_[w] == Stand::Machine;
+  if (away && (!modes_.absolute || modes_.return_level == 980)) check_stands_in_part("a canned cycle under G91 or G98");
   NcRowWords words = row_words(true);
   const auto go = [&](const Joints& to, bool rapid) {
-    if (to == at_) return;
+    if (to == at_ && !away) return;
     words.rapid = rapid;
-    rows_->line(at_, to, words);
+    if (moves_in_part(rapid))
+      rows_->line(at_, to, words);
+    else
+      rows_->at_machine(words);
     at_ = to;
   };
   const auto height = [&](double z) {
@@ -282,22 +307,28 @@ void NcInterpreter::drill_at(int code) {
     return to;
   };
   // From above R too, where cycles before it had theirs higher: so LinuxCNC does.
-  if (cycle_.level < retract) go(height(retract), true);
+  if (!away && cycle_.level < retract) go(height(retract), true);
   // Where G98 returns, and goes from.
   const double level = modes_.return_level == 980 ? std::max(cycle_.level, retract) : retract;
   for (int k = 0; k < repeats; ++k) {
-    Joints to = height(at_[w] > retract ? at_[w] : level);
+    Joints to = away ? at_ : height(at_[w] > retract ? at_[w] : level);
     for (const std::size_t axis : {u, v}) {
       if (!words_->has(kAxes[axis])) continue;
       const double word = length_or_angle(axis);
       to[axis] = modes_.absolute ? word : at_[axis] + word;
+      if (modes_.absolute) stand_[axis] = Stand::Given;
       if (!(std::abs(to[axis]) <= kMaxLength)) place_.fail(std::string(1, kAxes[axis]) + " is out of range");
     }
     go(to, true);
+    stand_[w] = Stand::Given;
     go(height(retract), true);
+    away = false;
     const double turning = words.spindle;
+    const bool taps = is_tapping_cycle(code);
+    const double cutting = code == 740 ? -modes_.speed : modes_.speed;
     drill({code, retract, bottom, level, cycle_.peck}, place_, [&](double z, bool rapid) {
       if (code == 860 && rapid) words.spindle = 0;
+      if (taps) words.spindle = z > at_[w] && !rapid ? -cutting : cutting;
       go(height(z), rapid);
     });
     words.spindle = turning;

@@ -8,27 +8,15 @@
 
 namespace riffler {
 
-namespace {
-
-// LinuxCNC's numbers: G92 in 5210 … 5216, the system in use in 5220, system n in 5201 + 20 n … 5210 + 20 n.
-constexpr int kShifted = 5210, kShift = 5211, kSystem = 5220, kHome = 5161, kSecondHome = 5181;
-
-constexpr int origin_parameter(int system) {
-  return 5201 + 20 * system;
-}
-constexpr int rotation_parameter(int system) {
-  return 5210 + 20 * system;
-}
-
-}  // namespace
+using namespace nc_parameter;
 
 NcFrame NcInterpreter::frame_of_parameters() const {
   NcFrame frame;
   frame.tip = frame_.tip;
-  frame.rotation = parameters_.stored(rotation_parameter(modes_.system));
+  frame.rotation = parameters_.stored(rotation(modes_.system));
   const bool shifted = parameters_.stored(kShifted) != 0;
   for (std::size_t k = 0; k < frame.origin.size(); ++k) {
-    frame.origin[k] = parameters_.stored(origin_parameter(modes_.system) + static_cast<int>(k));
+    frame.origin[k] = parameters_.stored(origin(modes_.system) + static_cast<int>(k));
     if (shifted) frame.shift[k] = parameters_.stored(kShift + static_cast<int>(k));
   }
   return frame;
@@ -37,6 +25,8 @@ NcFrame NcInterpreter::frame_of_parameters() const {
 /// The machine stays where it is.
 void NcInterpreter::use_frame(const NcFrame& frame) {
   if (frame == frame_) return;
+  if (frame.rotation != frame_.rotation && (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine))
+    stand_[0] = stand_[1] = Stand::Machine;
   at_ = frame.to_program(frame_.to_machine(at_));
   frame_ = frame;
   rows_->set_frame(frame_);
@@ -62,14 +52,17 @@ void NcInterpreter::non_modal() {
     case 100:
       return set_data();
     case 280:
-      return go_home(kHome);
     case 300:
-      return go_home(kSecondHome);
+      return go_home(words_->code(NcGroup::NonModal));
     case 281:
     case 301: {
+      check_stands_in_part("G28.1 and G30.1");
       const Joints machine = frame_.to_machine(at_);
       const int first = words_->code(NcGroup::NonModal) == 281 ? kHome : kSecondHome;
-      for (std::size_t k = 0; k < machine.size(); ++k) parameters_.set(first + static_cast<int>(k), machine[k]);
+      for (std::size_t k = 0; k < machine.size(); ++k) {
+        parameters_.set(first + static_cast<int>(k), machine[k]);
+        home_in_part_[first == kHome ? 0 : 1][k] = true;
+      }
       return;
     }
     case 520:
@@ -110,12 +103,11 @@ void NcInterpreter::set_data() {
 void NcInterpreter::set_system(int number, bool by_position) {
   if (words_->has('R')) {
     if (by_position) place_.fail("R with G10 L20: only L2 turns a system");
-    parameters_.set(rotation_parameter(number), words_->value('R', kMaxAngle));
+    parameters_.set(rotation(number), words_->value('R', kMaxAngle));
   }
   NcFrame frame = frame_;
-  frame.rotation = parameters_.stored(rotation_parameter(number));
-  for (std::size_t k = 0; k < 6; ++k)
-    frame.origin[k] = parameters_.stored(origin_parameter(number) + static_cast<int>(k));
+  frame.rotation = parameters_.stored(rotation(number));
+  for (std::size_t k = 0; k < 6; ++k) frame.origin[k] = parameters_.stored(origin(number) + static_cast<int>(k));
   // Where the tool is now, in that system, with the words in place of what they name.
   const Joints machine = frame_.to_machine(at_);
   Joints wanted = frame.to_program(machine);
@@ -126,6 +118,7 @@ void NcInterpreter::set_system(int number, bool by_position) {
       wanted[k] = word;
     else
       frame.origin[k] = word;
+    if (k < 3) learn_zero(number, k, by_position);
   }
   if (by_position) {
     const Joints now = frame.to_machine(wanted);
@@ -134,7 +127,7 @@ void NcInterpreter::set_system(int number, bool by_position) {
   }
   for (std::size_t k = 0; k < 6; ++k) {
     if (!(std::abs(frame.origin[k]) <= kMaxAngle)) place_.fail("offsets are out of range");
-    parameters_.set(origin_parameter(number) + static_cast<int>(k), frame.origin[k]);
+    parameters_.set(origin(number) + static_cast<int>(k), frame.origin[k]);
   }
   if (number == modes_.system) use_frame(frame);
 }
@@ -143,35 +136,20 @@ void NcInterpreter::set_system(int number, bool by_position) {
 void NcInterpreter::shift_by_words(bool local) {
   if (!words_->has_axes()) place_.fail(local ? "G52 without axis words" : "G92 without axis words");
   NcFrame frame = frame_;
-  for (std::size_t k = 0; k < 6; ++k)
-    if (words_->has(kJointLetters[k]))
-      frame.shift[k] = local ? length_or_angle(k) : at_[k] + frame.shift[k] - length_or_angle(k);
+  for (std::size_t k = 0; k < 6; ++k) {
+    if (!words_->has(kJointLetters[k])) continue;
+    if (!local && stand_[k] == Stand::Machine && rows_->begun())
+      note("coordinates",
+           "G92 where " + axes_away() + " is at a position of the machine: what follows may lie elsewhere");
+    if (!local) stand_[k] = Stand::Given;
+    frame.shift[k] = local ? length_or_angle(k) : at_[k] + frame.shift[k] - length_or_angle(k);
+  }
   for (std::size_t k = 0; k < 6; ++k) {
     if (!(std::abs(frame.shift[k]) <= kMaxAngle)) place_.fail("offsets are out of range");
     parameters_.set(kShift + static_cast<int>(k), frame.shift[k]);
   }
   parameters_.set(kShifted, 1);
   use_frame(frame);
-}
-
-/// By the words' position to the position that the parameters hold; without words all axes go there at once.
-void NcInterpreter::go_home(int first_parameter) {
-  const bool some = words_->has_axes();
-  Joints machine = some ? Joints{} : frame_.to_machine(at_);
-  if (some) {
-    line_to(target(), true);
-    machine = frame_.to_machine(at_);
-  }
-  for (std::size_t k = 0; k < 6; ++k) {
-    const bool axis = rows_->machine().axes().find(kJointLetters[k]) != std::string_view::npos;
-    if (axis && (!some || words_->has(kJointLetters[k])))
-      machine[k] = parameters_.stored(first_parameter + static_cast<int>(k));
-  }
-  if (!home_noted_)
-    note("machine position",
-         "G28, G30 and G53 go to positions of the machine, here as if the work offset was 0: option parameters");
-  home_noted_ = true;
-  line_to(frame_.to_program(machine), true);
 }
 
 std::optional<double> NcInterpreter::predefined(int number) const {
@@ -181,6 +159,7 @@ std::optional<double> NcInterpreter::predefined(int number) const {
     if (number < 5420) return 0;
     const int k = number - 5420;
     if (k > 5) return 0;
+    if (stand_[static_cast<std::size_t>(k)] == Stand::Machine) check_stands_in_part("a position is asked for");
     return at_[static_cast<std::size_t>(k)] / (k < 3 ? modes_.unit : 1);
   }
   return std::nullopt;
@@ -191,10 +170,11 @@ std::optional<double> NcInterpreter::predefined(std::string_view name) const {
   const Modes& m = modes_;
   if (name.size() == 2) {
     const std::size_t k = std::string_view("xyzabc").find(name[1]);
+    if (k != std::string_view::npos && stand_[k] == Stand::Machine) check_stands_in_part("a position is asked for");
     if (k != std::string_view::npos) return at_[k] / (k < 3 ? m.unit : 1);
     return name[1] >= 'u' && name[1] <= 'w' ? std::optional(0.0) : std::nullopt;
   }
-  if (name == "_motion_mode") return motion_ < 0 ? 800 : motion_;
+  if (name == "_motion_mode") return motion_ < 0 || cancelled_ ? 800 : motion_;
   if (name == "_plane") return m.plane[2] == 2 ? 170 : m.plane[2] == 1 ? 180 : 190;
   if (name == "_coord_system") return m.system <= 6 ? 530 + 10 * m.system : 584 + m.system;
   if (name == "_metric") return truth(m.unit == 1);

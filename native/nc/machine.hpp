@@ -48,9 +48,11 @@ struct RotaryAxis {
 
 /// What reads the code.
 struct Control {
-  std::string language = "rs274";       ///< a name of languages() in nc/post.hpp
-  std::string tool_length = "G43";      ///< block that makes the tool's length count
-  std::string note;                     ///< for the header: how the control must be set
+  std::string language = "rs274";   ///< a name of languages() in nc/post.hpp
+  std::string tool_length = "G43";  ///< block that makes the tool's length count
+  std::string note;                 ///< for the header: how the control must be set
+  /// How rapids go: "straight"; "independent", each axis at its own rate until it is there; or "unknown".
+  std::string rapids = "unknown";
   bool inverse_time = false;            ///< G93 for blocks in which a rotary axis moves; otherwise always G94
   std::vector<std::string> start, end;  ///< blocks of the machine's own before and after everything, verbatim
 };

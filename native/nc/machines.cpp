@@ -1,5 +1,7 @@
 #include "nc/machines.hpp"
 
+#include <stdexcept>
+
 #include "nc/description.hpp"
 #include "nc/shipped_machines.hpp"
 
@@ -15,6 +17,21 @@ DescriptionShelf shelf() {
 
 std::vector<DescriptionEntry> machines() {
   return list_descriptions(shelf());
+}
+
+std::string machines_with(char axis) {
+  std::string out;
+  for (const DescriptionEntry& entry : machines()) {
+    OptionReader options({}, entry.name);
+    try {
+      const std::unique_ptr<Machine> machine = make_machine(entry.name, options);
+      if (machine->control().language != "rs274" || machine->axes().find(axis) == std::string_view::npos) continue;
+      out += (out.empty() ? "" : ", ") + entry.name;
+    } catch (const std::invalid_argument&) {
+      continue;  // a file of the user's own that cannot be read: whoever asks for it is told
+    }
+  }
+  return out;
 }
 
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace riffler {
 /// All machines, ours first, then every *.toml in the folders of RIFFLER_MACHINES (apart as in PATH) and in
 /// riffler/machines of the user's folder for settings; of a file that cannot be read the description says why.
 std::vector<DescriptionEntry> machines();
+
+/// The names of those with an axis of this letter that are written in RS-274, apart by commas.
+std::string machines_with(char axis);
 
 /// `name` is one of machines(), or the path of a .toml file. Options that the machine does not take stay in `options`.
 /// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.

@@ -57,6 +57,16 @@ std::optional<std::pair<double, double>> OptionReader::range(const std::string& 
   return std::pair((*value)[0], (*value)[1]);
 }
 
+std::optional<std::vector<double>> OptionReader::numbers(const std::string& name, std::size_t least, std::size_t most) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return std::nullopt;
+  const auto* value = std::get_if<std::vector<double>>(&*given);
+  if (!value || value->size() < least || value->size() > most ||
+      !std::all_of(value->begin(), value->end(), [](double x) { return std::isfinite(x); }))
+    refuse(name, std::to_string(least) + " to " + std::to_string(most) + " finite numbers");
+  return *value;
+}
+
 bool OptionReader::flag(const std::string& name, bool otherwise) {
   const std::optional<OptionValue> given = take(name);
   if (!given) return otherwise;

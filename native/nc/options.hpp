@@ -34,6 +34,9 @@ class OptionReader {
   /// Two finite numbers that grow, or nothing where they were not given.
   std::optional<std::pair<double, double>> range(const std::string& name);
 
+  /// A list of `least` to `most` finite numbers, or nothing where it was not given.
+  std::optional<std::vector<double>> numbers(const std::string& name, std::size_t least, std::size_t most);
+
   /// A finite number, three of them, true or false, or one of some words; what is given where it was not.
   double number(const std::string& name, double otherwise);
   Vec3 vector(const std::string& name, const Vec3& otherwise);

@@ -15,6 +15,19 @@
 
 namespace riffler {
 
+/// LinuxCNC's numbers of what the control keeps: X Y Z A B C from each of these on, for systems the rotation too.
+namespace nc_parameter {
+inline constexpr int kHome = 5161, kSecondHome = 5181;  // G28, G30
+inline constexpr int kShifted = 5210, kShift = 5211;    // G92: whether it holds, by what
+inline constexpr int kSystem = 5220;                    // in use: 1 for G54
+constexpr int origin(int system) {
+  return 5201 + 20 * system;
+}
+constexpr int rotation(int system) {
+  return 5210 + 20 * system;
+}
+}  // namespace nc_parameter
+
 /// The parameters that follow from the control's state: read only.
 class NcPredefined {
  public:

@@ -21,8 +21,9 @@ constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeader = 40, kRecordHeader = 20;
 /// Enough for deflate, few enough for every thread.
 constexpr std::size_t kChunkRows = 32768;
-constexpr std::uint32_t kNotes = 0x65746F6E, kTool = 0x6C6F6F74, kRows = 0x73776F72;  // "note", "tool", "rows"
-constexpr std::size_t kDoubles = 8;  // of a row: tip, axis, feed, spindle
+constexpr std::uint32_t kNotes = 0x65746F6E, kTool = 0x6C6F6F74, kRows = 0x73776F72,
+                        kVia = 0x20616976;  // "note", "tool", "rows", "via "
+constexpr std::size_t kDoubles = 8;         // of a row: tip, axis, feed, spindle
 
 double number_of(const Program& program, std::size_t row, std::size_t column) {
   const Pose& pose = program.poses()[row];
@@ -115,10 +116,18 @@ Bytes rows_record(const Program& program, std::size_t first, std::size_t count) 
     for (std::size_t k = 0; k < count; ++k) numbers[k] = static_cast<std::uint32_t>((*column)[first + k]);
     planes.column(numbers);
   }
-  std::vector<std::uint16_t> rapid(program.rapid().begin() + static_cast<std::ptrdiff_t>(first),
-                                   program.rapid().begin() + static_cast<std::ptrdiff_t>(first + count));
-  planes.column(rapid);
+  std::vector<std::uint16_t> flags(count);
+  for (std::size_t k = 0; k < count; ++k)
+    flags[k] = static_cast<std::uint16_t>(program.rapid()[first + k] | program.at_machine()[first + k] << 1);
+  planes.column(flags);
   return record(kRows, count, out);
+}
+
+Bytes via_record(std::size_t row, const std::vector<Pose>& via) {
+  Bytes out;
+  put_count(out, via.size());
+  for (const Pose& p : via) put(out, std::array{p.tip.x, p.tip.y, p.tip.z, p.axis.x, p.axis.y, p.axis.z});
+  return record(kVia, row, out);
 }
 
 // --- Reading ---
@@ -132,7 +141,7 @@ struct Record {
 struct Columns {
   std::array<std::vector<std::uint64_t>, kDoubles> doubles;
   std::vector<std::uint32_t> tool, line;
-  std::vector<std::uint16_t> rapid;
+  std::vector<std::uint16_t> flags;
 
   double number(std::size_t row, std::size_t column) const { return std::bit_cast<double>(doubles[column][row]); }
   Vec3 vector(std::size_t row, std::size_t first) const {
@@ -151,7 +160,8 @@ class Reader {
     program.provenance = notes(all[0]);
     take_notes(program);
     for (std::size_t k = 1; k <= tools_; ++k) add_tool(all[k], program.tools);
-    add_rows(std::span(all).subspan(1 + tools_), program, progress);
+    const std::size_t rows = 1 + tools_ + take_vias(std::span(all).subspan(1 + tools_));
+    add_rows(std::span(all).subspan(rows), program, progress);
     return program;
   }
 
@@ -191,7 +201,8 @@ class Reader {
                           head.subspan(kRecordHeader, length)};
       if (get<std::uint32_t>(head, 16) != checksum(head.first(16), record.payload))
         fail(at, "the record's checksum does not fit");
-      if (record.kind != (all.empty() ? kNotes : all.size() <= tools_ ? kTool : kRows))
+      const bool via = record.kind == kVia && all.size() > tools_ && all.back().kind != kRows;
+      if (!via && record.kind != (all.empty() ? kNotes : all.size() <= tools_ ? kTool : kRows))
         fail(at, "a record of another kind than expected");
       if (record.kind == kRows) {
         if (record.number == 0 || record.number > kChunkRows) fail(at + 4, "a record holds 1 to 32768 rows");
@@ -272,13 +283,33 @@ class Reader {
     tools.emplace(number, taken(record, &Reader::take_tool));
   }
 
+  /// Those at the beginning of `records`; how many.
+  std::size_t take_vias(std::span<const Record> records) {
+    std::size_t count = 0, last = 0;
+    for (const Record& record : records) {
+      if (record.kind != kVia) break;
+      if (record.number <= last || record.number >= rows_) fail(record.at + 4, "no row to lead to, or not in order");
+      vias_.emplace(record.number, taken(record, [&](ByteTaker& from) {
+                      auto out = std::make_shared<std::vector<Pose>>();
+                      for (auto k = from.number<std::uint32_t>(); k > 0; --k) {
+                        const auto n = from.number<std::array<double, 6>>();
+                        out->push_back(checked_pose({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}}, "via", record.number));
+                      }
+                      if (out->empty()) throw std::invalid_argument("a row without via poses");
+                      return std::shared_ptr<const std::vector<Pose>>(std::move(out));
+                    }));
+      last = record.number, ++count;
+    }
+    return count;
+  }
+
   Columns columns(const Record& record) const {
     PlaneReader planes(record.payload, record.at + kRecordHeader, name_);
     Columns out;
     for (auto& column : out.doubles) column = planes.column64(record.number);
     out.tool = planes.column32(record.number);
     out.line = planes.column32(record.number);
-    out.rapid = planes.column16(record.number);
+    out.flags = planes.column16(record.number);
     planes.finish();
     return out;
   }
@@ -303,13 +334,15 @@ class Reader {
   /// written by us.
   void add_rows(const Record& record, const Columns& columns, Program& program) const {
     for (std::size_t k = 0; k < record.number; ++k) {
-      if (columns.rapid[k] > 1) fail(record.at, "a row is neither rapid nor not");
+      if (columns.flags[k] > 3) fail(record.at, "a row has flags that are not known");
       const Move move{{columns.vector(k, 0), columns.vector(k, 3)},
                       columns.number(k, 6),
                       columns.number(k, 7),
                       static_cast<int>(columns.tool[k]),
                       static_cast<int>(columns.line[k]),
-                      columns.rapid[k] != 0};
+                      (columns.flags[k] & 1) != 0,
+                      (columns.flags[k] & 2) != 0,
+                      vias_.contains(program.size()) ? vias_.at(program.size()) : nullptr};
       try {
         program.append(move);
       } catch (const std::invalid_argument& e) {
@@ -325,6 +358,7 @@ class Reader {
   const std::string& name_;
   std::uint32_t tools_ = 0, notes_ = 0;
   std::uint64_t rows_ = 0;
+  std::map<std::size_t, std::shared_ptr<const std::vector<Pose>>> vias_;
 };
 
 }  // namespace
@@ -333,6 +367,7 @@ std::vector<std::uint8_t> to_bytes(const Program& program, const Progress& progr
   const Provenance noted = with_notes(program);
   std::vector<Bytes> records{notes_record(noted)};
   for (const auto& [number, tool] : program.tools) records.push_back(tool_record(number, tool));
+  for (const auto& [row, via] : program.via()) records.push_back(via_record(row, *via));
   const std::size_t before = records.size(), chunks = (program.size() + kChunkRows - 1) / kChunkRows;
   records.resize(before + chunks);
   parallel_for(

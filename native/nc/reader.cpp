@@ -22,9 +22,28 @@ bool is_apt(const ReadOptions& options) {
   return language == "apt";
 }
 
-constexpr const char* kOfReading[] = {"chord_tolerance", "axis_tolerance", "block_delete",
-                                      "header",          "unknown",        "subroutines",
-                                      "parameters",      "max_turns",      "cutter_compensation"};
+constexpr const char* kOfReading[] = {"chord_tolerance",
+                                      "axis_tolerance",
+                                      "block_delete",
+                                      "header",
+                                      "unknown",
+                                      "subroutines",
+                                      "parameters",
+                                      "max_turns",
+                                      "cutter_compensation",
+                                      "units",
+                                      "arc_tolerance",
+                                      "g54",
+                                      "g55",
+                                      "g56",
+                                      "g57",
+                                      "g58",
+                                      "g59",
+                                      "g59_1",
+                                      "g59_2",
+                                      "g59_3",
+                                      "g28",
+                                      "g30"};
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";

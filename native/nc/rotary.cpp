@@ -414,7 +414,8 @@ std::vector<bool> free_moves(const Program& program, std::optional<double> safe_
   };
   std::vector<bool> out(program.size());
   for (std::size_t row = 1; row < program.size(); ++row)
-    out[row] = program.tool()[row] != program.tool()[row - 1] || (program.rapid()[row] && safe(row - 1) && safe(row));
+    out[row] = program.tool()[row] != program.tool()[row - 1] || !program.moves_in_part(row) ||
+               (program.rapid()[row] && safe(row - 1) && safe(row));
   return out;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
@@ -40,7 +42,25 @@ Pose NcRows::pose(const Joints& joints) {
 }
 
 void NcRows::row(const Pose& pose, double feed, const NcRowWords& words) {
-  pending_.push_back({pose, feed, words.spindle, words.tool, words.line, words.rapid});
+  rows().push_back({pose, feed, words.spindle, words.tool, words.line, words.rapid});
+  away_ = holds_;
+}
+
+void NcRows::at_machine(const NcRowWords& words) {
+  if (!first_) return;
+  const double feed = words.rapid || words.inverse_time ? 0 : words.feed;
+  rows().push_back({last_, feed, words.spindle, words.tool, words.line, words.rapid, true});
+  away_ = true;
+}
+
+void NcRows::release(bool in_part) {
+  away_ = !held_.empty() && (!in_part || held_.back().at_machine);
+  for (Move& move : held_) {
+    move.at_machine = move.at_machine || !in_part;
+    pending_.push_back(std::move(move));
+  }
+  held_.clear();
+  holds_ = false;
 }
 
 void NcRows::check_limits(const Joints& joints) const {
@@ -60,24 +80,27 @@ double NcRows::feed_over(double way, const NcRowWords& words) const {
 }
 
 void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words) {
-  // From where the first move comes nobody knows: it is one row.
-  const bool known = first_.has_value();
+  // From where the first move comes nobody knows, nor from where one that leaves a position of the machine: one row.
+  const bool known = first_.has_value() && !away_;
   begin(from);
   const Joints to = in_part(end);
   check_limits(to);
   const Pose last = pose(to);
-  const bool splits = known && (machine_->joint_words() || (!words.rapid && axis_tolerance_));
-  const int parts = splits ? rotary_parts(to, !words.rapid) : 1;
-  const bool along_words = machine_->joint_words() && !words.inverse_time && !same_turns(at_, to);
-  double way = 0;
-  if (parts > 1)
-    for (int i = 1; i <= parts; ++i) way += glm::length(between(to, i, parts).tip - between(to, i - 1, parts).tip);
-  else if (words.inverse_time || along_words)
-    way = glm::length(last.tip - last_.tip);
-  double feed = feed_over(way, words);
-  if (along_words) feed = std::min(feed * way / way_of_words(at_, to), kMaxFeed);
-  for (int i = 1; i < parts; ++i) row(between(to, i, parts), feed, words);
+  std::vector<Pose> way;
+  if (known) way = poses_on_the_way(to, words);
+  const bool along_words = !away_ && machine_->joint_words() && !words.inverse_time && !same_turns(at_, to);
+  double length = 0;
+  Vec3 tip = last_.tip;
+  for (const Pose& p : way) length += glm::length(p.tip - std::exchange(tip, p.tip));
+  length += glm::length(last.tip - tip);
+  double feed = feed_over(length, words);
+  if (along_words) feed = std::min(feed * length / way_of_words(at_, to), kMaxFeed);
+  if (machine_->joint_words() || axis_tolerance_) {
+    for (const Pose& p : way) row(p, feed, words);
+    way.clear();
+  }
   row(last, feed, words);
+  if (!way.empty()) rows().back().via = std::make_shared<const std::vector<Pose>>(std::move(way));
   at_ = to, last_ = last;
 }
 
@@ -87,10 +110,64 @@ Pose NcRows::between(const Joints& to, int i, int parts) const {
   return machine_->pose(joints);
 }
 
-/// Equal parts after which each great circle keeps to the axis's true way, where that was asked, and each line to the
-/// tip's, where linear and rotary axes make it together.
-int NcRows::rotary_parts(const Joints& to, bool feeds) const {
+/// Where the machine's axes lead from the last row to `to` by another way than the straight one.
+std::vector<Pose> NcRows::poses_on_the_way(const Joints& to, const NcRowWords& words) const {
+  if (words.rapid && machine_->control().rapids == "independent") return dog_leg(to);
+  std::vector<Pose> out;
+  const int parts = rotary_parts(to);
+  if (parts > 1 && !machine_->joint_words() && !axis_tolerance_ && is_great_circle(to)) return out;
+  for (int i = 1; i < parts; ++i) out.push_back(between(to, i, parts));
+  return out;
+}
+
+/// Each axis goes at its own rate until it is there. Of rates that the machine does not say linear axes have one.
+std::vector<Pose> NcRows::dog_leg(const Joints& to) const {
+  double slowest = 0;  // of the linear rates that are known
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::isfinite(machine_->range(k).rate)) slowest = std::max(slowest, machine_->range(k).rate);
+  Joints minutes{};
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double rate = std::isfinite(machine_->range(k).rate) ? machine_->range(k).rate : slowest > 0 ? slowest : 1;
+    longest = std::max(longest, minutes[k] = std::abs(to[k] - at_[k]) / rate);
+  }
+  double turn = 0;  // rad
+  for (std::size_t k = 3; k < 6; ++k) {
+    const double degrees = std::abs(to[k] - at_[k]), rate = machine_->range(k).rate;
+    minutes[k] = degrees == 0 ? 0 : std::isfinite(rate) ? degrees / rate : std::max(longest, 1e-9);
+    turn += degrees * (std::numbers::pi / 180);
+  }
+  std::vector<double> ends(minutes.begin(), minutes.end());
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  // As in rotary_parts: so many that no part leaves its great circle.
+  const int parts = std::min(kMaxChords, 1 + static_cast<int>(turn / (2 * std::sqrt(axis_bound()))));
+  std::vector<Pose> out;
+  double before = 0;
+  for (const double end : ends) {
+    if (end == 0) continue;
+    for (int i = 1; i <= parts; ++i) {
+      const double now = i == parts ? end : before + (end - before) * i / parts;
+      Joints joints = to;
+      for (std::size_t k = 0; k < joints.size(); ++k)
+        if (now < minutes[k]) joints[k] = at_[k] + (to[k] - at_[k]) * (now / minutes[k]);
+      out.push_back(machine_->pose(joints));
+    }
+    before = end;
+  }
+  if (!out.empty()) out.pop_back();  // the end
+  return out;
+}
+
+/// Equal parts after which each great circle keeps to the axis's true way and each line to the tip's, where linear and
+/// rotary axes make it together.
+int NcRows::rotary_parts(const Joints& to) const {
   if (same_turns(at_, to)) return 1;
+  double turn = 0;  // rad
+  for (std::size_t k = 3; k < 6; ++k) turn += std::abs(to[k] - at_[k]) * (std::numbers::pi / 180);
+  // The axis's acceleration over the block is at most turn², on its own way as on the great circle: each leaves the
+  // chord at even speed by an eighth of it at most.
+  if (!machine_->joint_words() && turn * turn / 4 <= axis_bound()) return 1;
   for (int parts = 1; parts <= kMaxChords; parts *= 2) {
     bool good = true;
     for (int i = 0; i < parts && good; ++i) {
@@ -100,15 +177,24 @@ int NcRows::rotary_parts(const Joints& to, bool feeds) const {
       const Motion straight(a, b);
       for (int k = 1; k < 4 && good; ++k) {
         const Pose is = between(to, 4 * i + k, 4 * parts);
-        if (feeds && axis_tolerance_) good = glm::length(is.axis - straight.axis(k / 4.0)) <= *axis_tolerance_;
+        good = glm::length(is.axis - straight.axis(k / 4.0)) <= axis_bound();
         if (machine_->joint_words()) good = good && glm::length(is.tip - straight.tip(k / 4.0)) <= chord_tolerance_;
       }
     }
     // Two parts at least: a full turn begins and ends at the same axis.
-    if (good && (parts > 1 || std::abs(to[3] - at_[3]) + std::abs(to[4] - at_[4]) + std::abs(to[5] - at_[5]) < 90))
-      return parts;
+    if (good && (parts > 1 || turn < std::numbers::pi / 2)) return parts;
   }
   place_.fail("rotary axes turn too far in one block for chord_tolerance or axis_tolerance");
+}
+
+/// Whether the block's axis keeps to the great circle as it is: a C that turns about an upright tool.
+bool NcRows::is_great_circle(const Joints& to) const {
+  constexpr int kParts = 16;
+  const Motion straight(between(to, 0, kParts), between(to, kParts, kParts));
+  for (int k = 1; k < kParts; ++k)
+    if (glm::length(between(to, k, kParts).axis - straight.axis(static_cast<double>(k) / kParts)) > axis_bound())
+      return false;
+  return true;
 }
 
 void NcRows::arc(const Joints& from, const Joints& to, const Arc& arc, std::size_t u, std::size_t v,

@@ -27,7 +27,11 @@ struct NcRowWords {
 
 class NcRows {
  public:
-  /// Keeps `place`. `axis_tolerance`, rad: none leaves a feed move one row, where the tip's way allows it.
+  /// rad: where rotary axes that turn evenly leave the great circle by more, the poses on their way are kept.
+  static constexpr double kAxisBound = 0.002;
+
+  /// Keeps `place`. `axis_tolerance`, rad, makes rows of those poses. Without it a block is one row, with them as via
+  /// poses, where the tip's way allows it.
   NcRows(std::unique_ptr<Machine> machine, double chord_tolerance, std::optional<double> axis_tolerance,
          const NcPlace& place)
       : machine_(std::move(machine)),
@@ -53,6 +57,16 @@ class NcRows {
   void curve(const Joints& from, int parts, double length, const std::function<Joints(double)>& at,
              const NcRowWords& words);
 
+  /// A row at a position of the machine, whose place in the part is not known: the pose stays what it was. Before the
+  /// first row there is none: where that comes from nobody knows either.
+  void at_machine(const NcRowWords& words);
+  bool begun() const { return first_.has_value(); }
+  /// Rows that are made from now on wait until it is known whether where they are counts.
+  void hold() { holds_ = true; }
+  std::size_t held() const { return held_.size(); }
+  /// Those that wait: as they are, or at positions of the machine.
+  void release(bool in_part);
+
   /// The words that hold the same pose on `machine` with the same rotary axes; before the first row what they are.
   Joints change_machine(std::unique_ptr<Machine> machine, const Joints& at);
 
@@ -63,10 +77,15 @@ class NcRows {
   Joints in_part(const Joints& program) const;
   Pose pose(const Joints& joints);
   Pose between(const Joints& to, int i, int parts) const;
-  int rotary_parts(const Joints& to, bool feeds) const;
+  int rotary_parts(const Joints& to) const;
+  std::vector<Pose> poses_on_the_way(const Joints& to, const NcRowWords& words) const;
+  std::vector<Pose> dog_leg(const Joints& to) const;
+  bool is_great_circle(const Joints& to) const;
+  double axis_bound() const { return axis_tolerance_.value_or(kAxisBound); }
   double feed_over(double way, const NcRowWords& words) const;
   void check_limits(const Joints& joints) const;
   void row(const Pose& pose, double feed, const NcRowWords& words);
+  std::vector<Move>& rows() { return holds_ ? held_ : pending_; }
 
   std::unique_ptr<Machine> machine_;
   double chord_tolerance_;
@@ -74,11 +93,12 @@ class NcRows {
   const NcPlace& place_;
   NcFrame frame_;
   std::optional<NcFrame> first_;
-  bool as_first_ = true;
+  bool as_first_ = true, away_ = false;  // away: the last row is at a position of the machine
   // Where the last row is, in the first frame.
   Joints at_{};
   Pose last_{};
-  std::vector<Move> pending_;
+  std::vector<Move> pending_, held_;
+  bool holds_ = false;
 };
 
 }  // namespace riffler

@@ -5,6 +5,7 @@
 
 #include "nc/expression.hpp"
 #include "nc/limits.hpp"
+#include "nc/machines.hpp"
 
 namespace riffler {
 
@@ -50,16 +51,19 @@ constexpr CodeTable m_codes() {
   t.fill(kUnknown);
   using enum NcGroup;
   put(t, Stop, {0, 10, 20, 300, 600});
-  put(t, Spindle, {30, 40, 50, 190});
+  put(t, Spindle, {30, 40, 50, 130, 140, 190});
   put(t, ToolChange, {60, 610});
   put(t, Mist, {70});
   put(t, Flood, {80, 90});
   put(t, Override, {480, 490, 500, 510, 520, 530});
-  put(t, Signal, {620, 630, 640, 650, 660, 670, 680});
+  put(t, Signal, {290, 620, 630, 640, 650, 660, 670, 680});
   put(t, State, {700, 710, 720, 730});
   put(t, Subprogram, {980, 990});
   put(t, Kinematics, {4280, 4290, 4300});
   for (int code = 1000; code <= 1990; code += 10) put(t, User, {code});
+  // Functions of machines by Haas, Fanuc, Mazak and others: brakes of rotary axes, chip conveyors, nozzles, gears, air
+  // and coolant through the tool.
+  put(t, User, {100, 110, 310, 330, 340, 350, 400, 410, 420, 430, 440, 450, 830, 840, 880, 890});
   return t;
 }
 
@@ -113,7 +117,7 @@ void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
   if (!axis_bits_)
     for (const char letter : axes_) axis_bits_ |= bit(letter);
   given_ = used_ = groups_ = 0;
-  empty_ = true, skipped_g_ = skipped_m_ = lost_axes_ = false;
+  empty_ = true, skipped_ = skipped_g_ = lost_axes_ = false;
   codes_.fill(-1);
   while (const char c = cursor.peek()) {
     if (c == '#') {
@@ -130,9 +134,7 @@ void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
     if (c == 'G' || c == 'M') {
       add_code(c, value);
     } else if (!((kKnown | axis_bits_) & bit(c))) {
-      const std::string shown(1, c);
-      if (!skip_) place_.fail("unknown letter " + shown + (c <= 'C' ? ": the machine has no such axis" : "") + kAdvice);
-      skip_->push_back(shown);
+      skip_letter(c);
     } else {
       if (c == 'N') place_.fail("N must be first in its block");
       if (has(c)) place_.fail(std::string(1, c) + " twice in one block");
@@ -142,7 +144,7 @@ void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
     empty_ = false;
   }
   take_look_ahead();
-  if (skipped_g_ || skipped_m_) take_skipped_words();
+  if (skipped_) take_skipped_words();
 }
 
 /// Fanuc's G05 P10000, G05.1 Q1 and G08 P1 switch a control's look-ahead; LinuxCNC's G5 and G5.1 are splines, which
@@ -194,10 +196,27 @@ void NcWords::add_code(char letter, double value) {
   groups_ |= 1U << group;
 }
 
+/// Of an axis that the machine does not have the coordinate is lost.
+void NcWords::skip_letter(char letter) {
+  const std::string shown = std::string("letter ") + letter;
+  const bool rotary = letter <= 'C', linear = letter >= 'U' && letter <= 'W';
+  if (!skip_ && rotary) {
+    const std::string others = machines_with(letter);
+    place_.fail("unknown " + shown + ": the machine has no such axis" +
+                (others.empty() ? "; describe one that does" : "; these have: " + others));
+  }
+  if (!skip_ && linear)
+    place_.fail("unknown " + shown + ": second linear axes are not read; have the CAM system write X, Y and Z alone");
+  if (!skip_) place_.fail("unknown " + shown + kAdvice);
+  skip_->push_back(std::string(1, letter));
+  if (rotary || linear) lost_axes_ = true;
+}
+
 void NcWords::skip_code(char letter, const std::string& shown) {
   if (!skip_) place_.fail("unknown code " + shown + kAdvice);
   skip_->push_back(shown);
-  (letter == 'G' ? skipped_g_ : skipped_m_) = true;
+  skipped_ = true;
+  if (letter == 'G') skipped_g_ = true;
 }
 
 /// An unknown code takes with it the words that it may own: a G code the axis words, too, where the block names no
@@ -211,7 +230,7 @@ void NcWords::take_skipped_words() {
     return;
   }
   for (const char letter : kOwn) given_ &= ~bit(letter);
-  lost_axes_ = has_axes();
+  lost_axes_ = lost_axes_ || has_axes();
   given_ &= ~axis_bits_;
 }
 

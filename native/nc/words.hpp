@@ -75,7 +75,7 @@ class NcWords {
   }
   /// The same for a whole number from 0 to kMaxNumber.
   int whole(char letter);
-  /// Whether an unknown code took the block's axis words with it.
+  /// Whether an axis word was skipped: of an axis that the machine does not have, or with an unknown code.
   bool lost_axes() const { return lost_axes_; }
   /// Marks words as used that mean nothing for the tool's way.
   void pass_over(std::string_view letters);
@@ -89,6 +89,7 @@ class NcWords {
   static constexpr std::size_t kGroups = static_cast<std::size_t>(NcGroup::Off) + 1;
   static constexpr std::uint32_t bit(char letter) { return 1U << (letter - 'A'); }
   void add_code(char letter, double value);
+  void skip_letter(char letter);
   void skip_code(char letter, const std::string& shown);
   void take_look_ahead();
   void take_skipped_words();
@@ -100,7 +101,7 @@ class NcWords {
   std::vector<std::string>* skip_;
   std::uint32_t given_ = 0, used_ = 0, axis_bits_ = 0;
   std::uint32_t groups_ = 0;  // a bit for each with a code
-  bool empty_ = true, skipped_g_ = false, skipped_m_ = false, lost_axes_ = false;
+  bool empty_ = true, skipped_ = false, skipped_g_ = false, lost_axes_ = false;
   std::array<double, 26> values_{};
   std::array<std::int16_t, kGroups> codes_{};
 };

@@ -9,6 +9,7 @@
 #include "geom/directions.hpp"
 #include "geom/io.hpp"
 #include "nc/arc_fit.hpp"
+#include "nc/follow.hpp"
 #include "nc/header.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
@@ -60,12 +61,23 @@ class Writer {
   void by_poses() {
     begin();
     for (std::size_t row = 0; row < program_.size(); ++row) {
-      set_up(row);
+      const bool away = program_.at_machine()[row] != 0, rapid = program_.rapid()[row] != 0;
       const Pose& pose = program_.poses()[row];
-      check_range(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
-      post_->block({pose, {}, program_.rapid()[row] != 0, false, feed_of(row), 0, true});
+      if (row > 0 && away != away_ && pose.tip.z < whole_space().top) {
+        std::vector<Pose> out = way_out(pose, reach(row), whole_space());
+        if (!away) std::reverse(out.begin(), out.end());
+        for (const Pose& p : out) by_pose(row, p, away || rapid || p.tip.z >= whole_space().top);
+      }
+      set_up(row);
+      if (!away) by_pose(row, pose, rapid);
+      away_ = away;
     }
     post_->end();
+  }
+
+  void by_pose(std::size_t row, const Pose& pose, bool rapid) {
+    check_range(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
+    post_->block({pose, {}, rapid, false, rapid ? 0 : feed_of(row), 0, true});
   }
 
   void by_joints() {
@@ -87,6 +99,8 @@ class Writer {
 
   void move(const Waypoint& w, bool free, Subdivider& splitter) {
     const std::size_t row = w.row;
+    if (program_.at_machine()[row]) return stay_out(row, splitter);
+    if (away_) return come_back(w, splitter);
     if (w.rewound) return rewind(row, w.joints, splitter);
     // From where a new tool comes is not known: neither is how far the way is nor how long it takes.
     if (set_up(row)) stands_.reset();
@@ -105,6 +119,24 @@ class Writer {
     before_ = to;
   }
 
+  /// At a position of the machine, of which only the machine knows where it is: at safe height instead.
+  void stay_out(std::size_t row, Subdivider& splitter) {
+    if (!away_ && stands_) leave(row, *stands_, splitter);
+    set_up(row);
+    away_ = true;
+  }
+
+  void come_back(const Waypoint& w, Subdivider& splitter) {
+    set_up(w.row);
+    away_ = false;
+    const Pose& end = program_.poses()[w.row];
+    if (stands_)
+      arrive(w.row, end, w.joints, false, splitter);
+    else
+      block(w.row, w.joints, end, true);
+    before_ = end;
+  }
+
   const std::vector<Joints>& split(std::size_t row, Subdivider& splitter, const Pose& to, const Joints& joints,
                                    bool free) const {
     try {
@@ -119,11 +151,11 @@ class Writer {
   std::size_t run_end(const std::vector<Waypoint>& way, std::size_t first) const {
     const std::size_t row = way[first].row;
     std::size_t last = first;
-    if (!stands_ || program_.feed()[row] == 0) return first;
+    if (!stands_ || away_ || program_.feed()[row] == 0) return first;
     for (std::size_t k = first; k < way.size(); ++k) {
       const Waypoint& w = way[k];
       if (w.rewound || w.share < 1 || program_.feed()[w.row] != program_.feed()[row] || program_.rapid()[w.row] ||
-          program_.tool()[w.row] != *tool_ || program_.spindle()[w.row] != spindle_ ||
+          program_.tool()[w.row] != *tool_ || program_.spindle()[w.row] != spindle_ || program_.at_machine()[w.row] ||
           rotary_way(w.joints, *stands_) > 0)
         break;
       last = k;
@@ -185,30 +217,68 @@ class Writer {
     return change;
   }
 
-  /// Out along the axis, the rotary axes to `to` with the tip held, and back; the last stretch in feed.
+  /// Out of the material, the rotary axes to `to` with the tip held, and back.
   void rewind(std::size_t row, const Joints& to, Subdivider& splitter) {
     const Pose pose = before_;
-    constexpr double kGap = 1;  // mm that the tool comes back in feed
-    if (!space_) space_ = space();
-    const auto shape = program_.tools.find(program_.tool()[row]);
-    const Reach reach(shape == program_.tools.end() ? nullptr : &shape->second);
-    Space space = *space_;
-    space.top += reach.below_tip(lowest_axis(*stands_, to));
-    std::vector<Pose> out = way_out(pose, reach, space);
     report_.rewinds.push_back(row);
-    const auto go = [&](const Pose& end, const Joints& joints, bool rapid) {
-      for (const Joints& part : split(row, splitter, end, joints, true)) block(row, part, end, true, rapid);
-      before_ = end;
-    };
-    // The rotary axes rest, and a table that rests keeps straight what is straight.
-    const auto straight = [&](const Pose& end, bool rapid) { go(end, machine_->with_tip(*stands_, end.tip), rapid); };
-    for (const Pose& p : out) straight(p, true);
-    go(before_, machine_->with_tip(to, before_.tip), true);
-    out.pop_back();
-    for (std::size_t k = out.size(); k-- > 0;) straight(out[k], true);
+    leave(row, to, splitter);
+    arrive(row, pose, to, true, splitter);
+  }
+
+  /// Along the axis and up to safe height, the rotary axes at rest. `to`: where they will turn there.
+  void leave(std::size_t row, const Joints& to, Subdivider& splitter) {
+    const Space high = space(row, to);
+    if (before_.tip.z >= high.top) return;
+    for (const Pose& p : way_out(before_, reach(row), high)) straight(row, p, true, splitter);
+  }
+
+  /// At safe height, the tip held, the rotary axes to `to`; over `pose` and down to it: fast where the row is a rapid,
+  /// and where the tool was there before, but for the last stretch.
+  void arrive(std::size_t row, const Pose& pose, const Joints& to, bool was_there, Subdivider& splitter) {
+    constexpr double kGap = 1;  // mm that the tool comes back in feed
+    const bool rapid = program_.rapid()[row] != 0;
+    const Space high = space(row, to);
+    std::vector<Pose> in;
+    if (pose.tip.z < high.top) in = way_out(pose, reach(row), high);
+    if (const Joints turned = machine_->with_tip(to, before_.tip); turned != *stands_)
+      go(row, {before_.tip, pose.axis}, turned, true, splitter);
+    if (!in.empty() && in.back().tip == before_.tip) in.pop_back();
+    if (!in.empty()) {
+      straight(row, in.back(), true, splitter);
+      in.pop_back();
+    }
+    for (std::size_t k = in.size(); k-- > 0;) straight(row, in[k], was_there || rapid, splitter);
     const double apart = glm::length(before_.tip - pose.tip);
-    if (apart > kGap) straight({pose.tip + kGap / apart * (before_.tip - pose.tip), pose.axis}, true);
-    straight(pose, program_.rapid()[row] != 0);
+    if (was_there && apart > kGap)
+      straight(row, {pose.tip + kGap / apart * (before_.tip - pose.tip), pose.axis}, true, splitter);
+    straight(row, pose, rapid, splitter);
+  }
+
+  void go(std::size_t row, const Pose& end, const Joints& joints, bool rapid, Subdivider& splitter) {
+    for (const Joints& part : split(row, splitter, end, joints, true)) block(row, part, end, true, rapid);
+    before_ = end;
+  }
+
+  /// The rotary axes rest, and a table that rests keeps straight what is straight.
+  void straight(std::size_t row, const Pose& end, bool rapid, Subdivider& splitter) {
+    go(row, end, machine_->with_tip(*stands_, end.tip), rapid, splitter);
+  }
+
+  Reach reach(std::size_t row) const {
+    const auto shape = program_.tools.find(program_.tool()[row]);
+    return Reach(shape == program_.tools.end() ? nullptr : &shape->second);
+  }
+
+  const Space& whole_space() {
+    if (!space_) space_ = space_of_all();
+    return *space_;
+  }
+
+  /// High enough for what hangs below the tip while the rotary axes turn to `to`.
+  Space space(std::size_t row, const Joints& to) {
+    Space out = whole_space();
+    out.top += reach(row).below_tip(lowest_axis(*stands_, to));
+    return out;
   }
 
   /// The least z of the tool's axis while the rotary axes turn from one place to another.
@@ -221,7 +291,7 @@ class Writer {
     return lowest;
   }
 
-  Space space() const {
+  Space space_of_all() const {
     constexpr double kClearance = 10;
     Box3 box;
     double top = -std::numeric_limits<double>::infinity();
@@ -335,10 +405,10 @@ class Writer {
   std::unique_ptr<Post> post_;
   WriteReport report_;
 
-  std::optional<Joints> stands_;  // after the last block
-  Vec3 tip_{0};                   // there
-  Pose before_;                   // of the program, there
-  bool arcs_ = false;
+  std::optional<Joints> stands_;      // after the last block
+  Vec3 tip_{0};                       // there
+  Pose before_;                       // of the program, there
+  bool arcs_ = false, away_ = false;  // away: the last row is at a position of the machine
   std::optional<double> safe_height_;
   std::optional<Space> space_;
   std::optional<int> tool_;
@@ -349,7 +419,18 @@ class Writer {
 
 std::string to_nc(const Program& program, const WriteOptions& options, WriteReport* report) {
   WriteReport own;
-  return Writer(program, options).run(report ? *report : own);
+  WriteReport& written = report ? *report : own;
+  if (program.via().empty()) return Writer(program, options).run(written);
+  RowMap map;
+  const Program whole = followed(program, &map);
+  try {
+    std::string text = Writer(whole, options).run(written);
+    for (std::size_t& row : written.rewinds) row = map.original(row);
+    for (PolePassage& p : written.passages) p.first = map.original(p.first), p.last = map.original(p.last);
+    return text;
+  } catch (const RowError& e) {
+    throw RowError("poses", map.original(e.row()), "on the way there " + e.reason());
+  }
 }
 
 WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options) {

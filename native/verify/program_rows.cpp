@@ -12,7 +12,7 @@ namespace riffler {
 std::vector<StandingMove> standing_moves(const Program& program, std::int64_t first_row) {
   std::vector<StandingMove> out;
   for (std::size_t row = 1; row < program.size(); ++row)
-    if (program.spindle()[row] == 0 && !program.rapid()[row])
+    if (program.moves_in_part(row) && program.spindle()[row] == 0 && !program.rapid()[row])
       out.push_back({first_row + static_cast<std::int64_t>(row), program.poses()[row].tip});
   return out;
 }
@@ -56,6 +56,7 @@ void ProgramRows::close(const Chunk& chunk, double rapid_feed, const MachineChoi
   if (chunk.start) seconds_.push_back(0);
   for (std::size_t row = 1; row < chunk.program.size(); ++row) {
     seconds_.push_back(seconds_of(chunk.program.poses()[row - 1], chunk.program, row, rapid_feed));
+    if (!chunk.program.moves_in_part(row)) continue;
     if (chunk.tool[row] == kNoTool)
       without_tool_ = true;
     else

@@ -11,7 +11,7 @@ namespace riffler {
 void add_notes(VerifyReport& report, const std::vector<Note>& notes) {
   for (const Note& n : notes) {
     report.not_checked.push_back("line " + std::to_string(n.line) + ": " + n.message);
-    report.uncertain = report.uncertain || n.kind == "coordinates" || n.kind == "units";
+    report.uncertain = report.uncertain || n.kind == "coordinates" || n.kind == "work offset";
   }
 }
 

@@ -44,7 +44,7 @@ struct VerifyReport {
   Volume volume;                         ///< what is left
   std::shared_ptr<const Mesh> part;      ///< or null
   VerifyStats stats;
-  bool uncertain = false;  ///< coordinates were passed over: other moves may have been looked at
+  bool uncertain = false;  ///< coordinates were passed over or offsets assumed: other moves may have been looked at
 
   bool passed() const { return findings.empty() && !uncertain; }
 };

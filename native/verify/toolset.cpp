@@ -43,6 +43,7 @@ std::vector<std::uint32_t> Toolset::places(const Program& program, std::int64_t 
   std::vector<std::uint32_t> out(program.size(), kNoTool);
   std::map<int, std::uint32_t> known;
   for (std::size_t row = 1; row < program.size(); ++row) {
+    if (!program.moves_in_part(row)) continue;
     const int number = program.tool()[row];
     if (const auto at = known.find(number); at != known.end()) {
       out[row] = at->second;

@@ -19,9 +19,9 @@ class Toolset {
   /// `own` come before a program's tools of the same number.
   Toolset(std::map<int, Tool> own, double tolerance, double reach, double pitch);
 
-  /// Place of each row's tool in shapes(), kNoTool before a first tool is called. std::invalid_argument naming number,
-  /// row and line of a number without a shape; rapids before the first call (number 0) need none. `first_row` is the
-  /// number of the program's row 0.
+  /// Place of each row's tool in shapes(), kNoTool before a first tool is called and where no motion in the part ends.
+  /// std::invalid_argument naming number, row and line of a number without a shape; rapids before the first call
+  /// (number 0) need none. `first_row` is the number of the program's row 0.
   std::vector<std::uint32_t> places(const Program& program, std::int64_t first_row);
 
   const std::vector<ToolShapes>& shapes() const { return shapes_; }

@@ -173,7 +173,8 @@ double Verification::least_cut() const {
 
 VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& findings,
                                     const std::set<std::uint32_t>& tools, bool without_tool,
-                                    const std::vector<Finding>& faults, const Progress& progress) const {
+                                    const std::vector<Finding>& faults, const std::vector<Note>& notes,
+                                    const Progress& progress) const {
   VerifyReport report{{}, {}, {}, {}, stock_, part_, {}};
   for (std::size_t k = 0; k < slabs.size(); ++k)
     if (jobs_[k].fixture < 0) put_tiles(report.volume.grids()[jobs_[k].slab.grid], jobs_[k].slab, slabs[k].tiles);
@@ -196,10 +197,28 @@ VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& 
   if (fixtures_.empty()) report.not_checked.emplace_back("fixtures: none were given");
   for (std::string& sentence : tools_.not_described(tools)) report.not_checked.push_back(std::move(sentence));
   if (without_tool) report.not_checked.emplace_back("rapids before a tool is called: nothing is in the spindle yet");
+  add_notes(report, notes);
+  return report;
+}
+
+VerifyReport Verification::of_rows(VerifyReport report, const RowMap& map) {
+  if (map.empty()) return report;
+  const auto original = [&](std::int64_t row) {
+    return static_cast<std::int64_t>(map.original(static_cast<std::size_t>(row)));
+  };
+  for (Finding& f : report.findings) f.row = original(f.row), f.last_row = original(f.last_row);
+  report.removed = map.sums(report.removed), report.seconds = map.sums(report.seconds);
   return report;
 }
 
 VerifyReport Verification::run(const Program& program, const Progress& progress) {
+  if (program.via().empty()) return run_rows(program, progress);
+  RowMap map;
+  const Program whole = followed(program, &map);
+  return of_rows(run_rows(whole, progress), map);
+}
+
+VerifyReport Verification::run_rows(const Program& program, const Progress& progress) {
   check_path(program.poses());
   const std::size_t n = program.size();
   RunRows rows{program.poses(), tools_.places(program, 0), program.rapid()};
@@ -227,6 +246,7 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
   bool without_tool = false;
   for (std::size_t row = 1; row < n; ++row) {
     seconds[row] = seconds_of(program.poses()[row - 1], program, row, options_.rapid_feed);
+    if (!program.moves_in_part(row)) continue;
     if (rows.tool[row] == kNoTool)
       without_tool = true;
     else
@@ -237,8 +257,7 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
     if (auto fault = machine_fault(program, 0, *machine())) faults.push_back(std::move(*fault));
   FindingList findings;
   findings.add(std::move(events), program.tool(), program.line(), 0);
-  VerifyReport report = conclude(slabs, findings, tools, without_tool, faults, part(progress, 0.8, 1));
-  add_notes(report, program.notes);
+  VerifyReport report = conclude(slabs, findings, tools, without_tool, faults, program.notes, part(progress, 0.8, 1));
   report.removed = std::move(removed), report.seconds = std::move(seconds), report.stats = stats;
   memory_ = Memory{std::move(rows), std::move(slabs)};
   return report;
@@ -246,8 +265,9 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
 
 VerifyStream::VerifyStream(Verification& verification) : of_(verification), slabs_(verification.fresh()) {}
 
-void VerifyStream::add(const Program& program, const Progress& progress) {
-  if (program.empty()) return;
+void VerifyStream::add(const Program& given, const Progress& progress) {
+  if (given.empty()) return;
+  const Program& program = followed_.follow(given);
   const ProgramRows::Chunk chunk = rows_.open(program, of_.tools_);
   std::vector<double> removed(program.size());
   chunk.for_moves(of_.tools_.shapes(), of_.top_, progress, [&](const Moves& moves, const Progress& work) {
@@ -268,13 +288,14 @@ void VerifyStream::add(const Program& program, const Progress& progress) {
   findings_.add(std::move(events), program.tool(), program.line(), chunk.first_row);
   removed_.insert(removed_.end(), removed.begin() + (chunk.start ? 0 : 1), removed.end());
   rows_.close(chunk, of_.options_.rapid_feed, of_.machine());
+  followed_.taken();
 }
 
 VerifyReport VerifyStream::finish(const Progress& progress) {
-  VerifyReport report = of_.conclude(slabs_, findings_, rows_.tools(), rows_.without_tool(), rows_.faults(), progress);
-  add_notes(report, rows_.notes());
+  VerifyReport report =
+      of_.conclude(slabs_, findings_, rows_.tools(), rows_.without_tool(), rows_.faults(), rows_.notes(), progress);
   report.removed = std::move(removed_), report.seconds = rows_.take_seconds(), report.stats = stats_;
-  return report;
+  return Verification::of_rows(std::move(report), followed_.map());
 }
 
 }  // namespace riffler

@@ -11,6 +11,7 @@
 #include <set>
 #include <vector>
 
+#include "nc/follow.hpp"
 #include "nc/program.hpp"
 #include "verify/edit.hpp"
 #include "verify/findings.hpp"
@@ -45,7 +46,12 @@ class Verification {
   const std::vector<SlabJob>& jobs() const { return jobs_; }
   const Volume& stock() const { return stock_; }
 
+  /// A report on a followed program, as one on the program that it was made of.
+  static VerifyReport of_rows(VerifyReport report, const RowMap& map);
+
  private:
+  /// Of a program without via poses.
+  VerifyReport run_rows(const Program& program, const Progress& progress);
   friend class VerifyPlan;
   friend class VerifyStream;
   struct Memory {  // of the run before
@@ -63,7 +69,8 @@ class Verification {
   double least_cut() const;
   const MachineChoice* machine() const { return options_.machine ? &*options_.machine : nullptr; }
   VerifyReport conclude(std::vector<SlabState>& slabs, FindingList& findings, const std::set<std::uint32_t>& tools,
-                        bool without_tool, const std::vector<Finding>& faults, const Progress& progress) const;
+                        bool without_tool, const std::vector<Finding>& faults, const std::vector<Note>& notes,
+                        const Progress& progress) const;
 
   Volume stock_;
   std::shared_ptr<const Mesh> part_;
@@ -94,6 +101,7 @@ class VerifyStream {
   std::vector<double> removed_;
   ProgramRows rows_;
   VerifyStats stats_;
+  FollowedChunks followed_;
 };
 
 }  // namespace riffler

@@ -13,9 +13,10 @@ VerifyPlan::VerifyPlan(Verification& verification)
   for (SlabState& slab : slabs_) slab.snapshots.clear();
 }
 
-std::vector<VerifyPlan::Share> VerifyPlan::add(const Program& program, const Progress& progress) {
+std::vector<VerifyPlan::Share> VerifyPlan::add(const Program& given, const Progress& progress) {
   std::vector<Share> shares;
-  if (program.empty()) return shares;
+  if (given.empty()) return shares;
+  const Program& program = followed_.follow(given);
   const ProgramRows::Chunk chunk = rows_.open(program, of_.tools_);
   chunk.for_moves(of_.tools_.shapes(), of_.top_, progress, [&](const Moves& moves, const Progress& work) {
     std::vector<Share> some(slabs_.size());
@@ -44,6 +45,7 @@ std::vector<VerifyPlan::Share> VerifyPlan::add(const Program& program, const Pro
   tool_.insert(tool_.end(), program.tool().begin() + first, program.tool().end());
   line_.insert(line_.end(), program.line().begin() + first, program.line().end());
   rows_.close(chunk, of_.options_.rapid_feed, of_.machine());
+  followed_.taken();
   return shares;
 }
 
@@ -112,10 +114,10 @@ VerifyReport VerifyPlan::finish(const Progress& progress) {
     add_spindle(standing_, removed_, 0, of_.least_cut(), events);
     findings.add(std::move(events), tool_, line_, 0);
   }
-  VerifyReport report = of_.conclude(slabs_, findings, rows_.tools(), rows_.without_tool(), rows_.faults(), progress);
-  add_notes(report, rows_.notes());
+  VerifyReport report =
+      of_.conclude(slabs_, findings, rows_.tools(), rows_.without_tool(), rows_.faults(), rows_.notes(), progress);
   report.removed = std::move(removed_), report.seconds = rows_.take_seconds(), report.stats = stats_;
-  return report;
+  return Verification::of_rows(std::move(report), followed_.map());
 }
 
 }  // namespace riffler

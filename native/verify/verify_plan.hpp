@@ -48,6 +48,7 @@ class VerifyPlan {
   std::vector<std::int32_t> tool_, line_;
   std::vector<StandingMove> standing_;
   VerifyStats stats_;
+  FollowedChunks followed_;
 };
 
 }  // namespace riffler

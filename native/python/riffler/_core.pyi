@@ -554,7 +554,7 @@ class Note:
     @property
     def kind(self) -> str:
         """
-        "skipped", "coordinates" (skipped with axis words: what follows may be elsewhere), "units", "machine position", "tool length", "cutter compensation", "user code" or "end".
+        "skipped", "coordinates" (what follows may be elsewhere), "work offset", "units", "machine position", "rapid", "motion", "start", "tool length", "cutter compensation", "user code" or "end".
         """
     @property
     def line(self) -> int:
@@ -576,7 +576,8 @@ class Program:
     """
     Where the tool goes, how fast and with which tool; immutable.
 
-    One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate.
+    One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate, by way
+    of the poses in ``via`` where there are any.
     ``tools`` is a dict of the tools whose shape is known, by number; ``provenance`` a dict of strings that the header
     comment of the NC code repeats. Lengths in mm, feed in mm/min at the tip, spindle in rev/min.
     """
@@ -613,11 +614,13 @@ class Program:
         Reads NC code (RS-274 as LinuxCNC has it); ``machine`` is a name of machines(), or "apt" for an APT file.
 
         Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
-        given, feed blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row;
+        given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the
+        poses on its way are in ``via``;
         ``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
         is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
-        centre); ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's
-        parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
+        centre); ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
+        end may miss its circle; ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes
+        lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
         programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.
         """
     @staticmethod
@@ -628,11 +631,12 @@ class Program:
         """
     def __getstate__(self) -> bytes:
         ...
-    def __init__(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feed: typing.Any, rapid: typing.Any = False, tool: typing.Any = 1, line: typing.Any = 0, spindle: typing.Any = 0.0, tools: typing.Any = None, provenance: typing.Any = None, notes: collections.abc.Sequence[Note] = []) -> None:
+    def __init__(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feed: typing.Any, rapid: typing.Any = False, tool: typing.Any = 1, line: typing.Any = 0, spindle: typing.Any = 0.0, tools: typing.Any = None, provenance: typing.Any = None, notes: collections.abc.Sequence[Note] = [], at_machine: typing.Any = False, via: typing.Any = None) -> None:
         """
         From columns: poses (n, 6), everything else one value for all rows or (n,).
 
-        ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves.
+        ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves, ``at_machine`` with another pose
+        than the row before.
         """
     def __len__(self) -> int:
         ...
@@ -642,7 +646,11 @@ class Program:
         ...
     def cuts(self) -> list:
         """
-        For replay: a list of (tool number, poses (k, 6)), one per run of rows with one tool, rapids included.
+        For replay: a list of (tool number, poses (k, 6)), one per run of rows in the part with one tool, rapids and the poses of ``via`` included.
+        """
+    def followed(self) -> Program:
+        """
+        With the poses of ``via`` as rows of their own: between its rows the tool moves as the machine moves it.
         """
     def retimed(self, factor: typing.SupportsFloat) -> Program:
         """
@@ -691,6 +699,11 @@ class Program:
         would take).
         """
     @property
+    def at_machine(self) -> numpy.ndarray:
+        """
+        (n,) bool: rows that end at a position of the machine (G28, G30, G53) whose place in the part is not known. Their pose is that of the row before; the motions there and from there are neither cut nor compared.
+        """
+    @property
     def feed(self) -> numpy.ndarray:
         """
         (n,) mm/min at the tip; 0 for rapids.
@@ -734,6 +747,11 @@ class Program:
     def tools(self) -> dict:
         """
         dict: number to Tool, of the tools whose shape is known.
+        """
+    @property
+    def via(self) -> dict:
+        """
+        dict: row to (k, 6) poses on the way there, where rotary axes that turn evenly take the tool another way than the great circle: by more than 0.002 rad, in programs that were read without ``axis_tolerance``.
         """
 class Finding:
     """

@@ -172,5 +172,32 @@ TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
   EXPECT_EQ(p.provenance[1].second, "line 1: THREAD; line 3: INSERT M100");
 }
 
+std::string apt_error(const std::string& text) {
+  try {
+    read(text);
+  } catch (const FormatError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(AptReader, TakesACircleSeveralTimes) {
+  const std::string circle = "FROM/10,0,5\nFEDRAT/100\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10,0.06,0.5,8,0,TIMES,3\n";
+  const Program p = read(circle + "GOTO/10,0,0\n");
+  double way = 0;
+  for (std::size_t k = 2; k < p.size(); ++k) way += glm::length(p.poses()[k].tip - p.poses()[k - 1].tip);
+  EXPECT_NEAR(way, 3 * 20 * 3.14159265358979, 0.2);
+  EXPECT_NE(apt_error(circle + "GOTO/10,0,-3\n").find("several turns along its axis"), std::string::npos);
+  EXPECT_NE(apt_error("FROM/1,0,0\nCIRCLE/0,0,0,0,0,1,1,TIMES,x\n").find("TIMES needs a whole number"),
+            std::string::npos);
+}
+
+TEST(AptReader, DrillsDeepToThePointItself) {
+  const Program p = read("FROM/0,0,50\nCYCLE/DRILL,DEEP,RAPTO,3,FEDTO,0,MMPM,250\nGOTO/5,5,-8\nCYCLE/OFF\n");
+  std::vector<double> heights;
+  for (const Pose& pose : p.poses()) heights.push_back(pose.tip.z);
+  EXPECT_EQ(heights, (std::vector<double>{50, -5, -8, -5}));
+}
+
 }  // namespace
 }  // namespace riffler::apt_reader_test

@@ -32,7 +32,7 @@ void expect_same_moves(const Program& a, const Program& b, const std::string& wh
 }
 
 TEST(RealPrograms, FormsThatMoveNothingAreTaken) {
-  const std::string moves = "G0 X0 Y0 Z5\nG1 X10 F100\n";
+  const std::string moves = "G21 G0 X0 Y0 Z5\nG1 X10 F100\n";
   const Program plain = read_nc_text(moves);
   const std::string headers[] = {"G0 G17 G40 G49 G80 G90",
                                  "G00 G90 G80 G40 G69 G50 G15",
@@ -67,11 +67,11 @@ TEST(RealPrograms, FormsThatMoveNothingAreTaken) {
 }
 
 TEST(RealPrograms, WhatFollowsTheEndIsNotReadAndNoted) {
-  const Program p = read_nc_text("G0 X1\nM30\n(a comment)\nM30\nG0 X2\n%\nnonsense");
+  const Program p = read_nc_text("G21 G0 X1\nM30\n(a comment)\nM30\nG0 X2\n%\nnonsense");
   EXPECT_EQ(p.size(), 1U);
   ASSERT_EQ(p.notes.size(), 1U);
   EXPECT_EQ(p.notes[0], (Note{"end", 4, "what follows the end of the program is not read"}));
-  EXPECT_TRUE(read_nc_text("G0 X1\nM30\n(a comment)\n%\n").notes.empty());
+  EXPECT_TRUE(read_nc_text("G21 G0 X1\nM30\n(a comment)\n%\n").notes.empty());
 }
 
 TEST(RealPrograms, UnitsHaveTwoNames) {
@@ -84,21 +84,21 @@ TEST(RealPrograms, UnitsHaveTwoNames) {
 }
 
 TEST(RealPrograms, AnMCodeOwnsNoAxisWord) {
-  const Program p = read_nc_text("G0 X0 Y0\nY20 M88\nX5 M97 P3", "tcp", kSkip);
+  const Program p = read_nc_text("G21 G0 X0 Y0\nY20 M26\nX5 M97 P3", "tcp", kSkip);
   ASSERT_EQ(p.size(), 3U);
   EXPECT_EQ(p.poses()[2].tip, Vec3(5, 20, 0));
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"skipped", "skipped"}));
 }
 
 TEST(RealPrograms, CoordinatesThatWereSkippedAreNotedAsSuch) {
-  const Program p = read_nc_text("G0 X0\nG60 X9\nG60 G0 X3", "tcp", kSkip);
+  const Program p = read_nc_text("G21 G0 X0\nG60 X9\nG60 G0 X3", "tcp", kSkip);
   ASSERT_EQ(p.size(), 2U);
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"coordinates", "skipped"}));
   EXPECT_EQ(p.notes[0].line, 2);
 }
 
 TEST(RealPrograms, ThePathOfTheCentreIsReadUnderCompensationWhereItIsAskedFor) {
-  const std::string text = "G0 X0 Y0\nG1 G41 D1 X10 F100\nG40 Y5";
+  const std::string text = "G21 G0 X0 Y0 Z0\nG1 G41 D1 X10 F100\nG40 Y5";
   EXPECT_NE(nc_error(text).find("{'cutter_compensation': 'ignore'}"), std::string::npos);
   const Program p = read_nc_text(text, "tcp", {{"cutter_compensation", std::string("ignore")}});
   EXPECT_EQ(p.poses().back().tip, Vec3(10, 5, 0));
@@ -114,6 +114,37 @@ TEST(RealPrograms, WhatWouldMoveAllThatFollowsIsNeverSkipped) {
       EXPECT_EQ(said.find("skip"), said.npos) << said;
     }
   }
+}
+
+TEST(RealPrograms, CommentsMayHoldBrackets) {
+  EXPECT_EQ(read_nc_text("G21 (a (b) c) G0 X1 (TOOL (5MM))").poses()[0].tip.x, 1);
+  EXPECT_EQ(nc_error("G0 X1 (a (b)"), "line 1: unclosed comment [G0 X1 (a (b)]");
+}
+
+TEST(RealPrograms, AMotionBesideAHomeHoldsAfterIt) {
+  const Program p = read_nc_text("G21 G0 X1 Y2 Z3\nG0 G91 G28 Z0\nG90 X5\nZ4");
+  EXPECT_TRUE(p.at_machine()[2]);
+  EXPECT_EQ(p.poses().back().tip, Vec3(5, 2, 4));
+  EXPECT_NE(nc_error("G0 X1\nG2 G28 X0").find("two codes that both use axis words"), std::string::npos);
+}
+
+TEST(RealPrograms, TheMotionFromBeforeACycleHoldsAfterIt) {
+  const Program p = read_nc_text("G21 G0 X1 Y2 Z9\nG99 G81 X5 Z-3 R2 F100\nX7\nG80\nZ15");
+  EXPECT_EQ(p.poses().back().tip, Vec3(7, 2, 15));
+  EXPECT_TRUE(p.rapid().back());
+  EXPECT_EQ(kinds(p), std::vector<std::string>{"motion"});
+  EXPECT_EQ(read_nc_text("G21 G0 X1 Y2 Z9\nG82 X5 Z-3 R2 F100").size(), 4U) << "a dwell is only time";
+  EXPECT_EQ(nc_error("G80\nX1"), "line 2: axis words without a motion (G0, G1, G2, G3) [X1]");
+}
+
+TEST(RealPrograms, FunctionsOfTheMachineMoveNothing) {
+  for (const char* code : {"M10", "M31", "M41", "M88", "M83"}) {
+    const Program p = read_nc_text(std::string("G21 G0 X1 Y2 Z3\n") + code + "\nX5");
+    EXPECT_EQ(p.size(), 2U);
+    EXPECT_EQ(kinds(p), std::vector<std::string>{"user code"}) << code;
+  }
+  EXPECT_EQ(read_nc_text("G21 S500 M13\nG0 X1").spindle()[0], 500);
+  EXPECT_EQ(read_nc_text("G21 S500 M14\nG0 X1").spindle()[0], -500);
 }
 
 }  // namespace

@@ -83,19 +83,27 @@ def compare(program, calls, first):
     assert row == len(program), f"row {row} of {len(program)} is nobody's"
 
 
+def zeros(folder):
+    """A file of parameters as rs274 begins: all offsets and homes at the machine's zero."""
+    file = folder / "zero.var"
+    file.write_text("5220 1\n")
+    return str(file)
+
+
 def both(folder, text):
     """Both read it, or both refuse it: then what they say comes back."""
     file = folder / "p.ngc"
     file.write_text(text)
+    how = {"parameters": zeros(folder)}
     try:
         calls, first = linuxcnc.calls(linuxcnc.output(file, "-b"))
     except linuxcnc.RefusedError as refused:
         try:
-            riffler.Program.read(file)
+            riffler.Program.read(file, options=how)
         except riffler.FormatError as e:
             return str(e)
         raise AssertionError(f"LinuxCNC refuses this: {refused}") from None
-    compare(riffler.Program.read(file), calls, first)
+    compare(riffler.Program.read(file, options=how), calls, first)
     return ""
 
 
@@ -111,12 +119,12 @@ UNSOUND = """
 G1 X1 X2, G0 G1 X1, G17 G18, G0 X1 P3, G0 X1 R2, G0 X1 Q1, G0 X1 I1, G2 X1 Y1, G17 G2 X30 I1 J0,
 G17 G2 X1 Y1 I1 R1, G17 G2 I1 K1, G17 G3 X50 Y0 R1, G17 G2 I1 P0, G17 G90 G3 X#5420 Y#5421 R3, G93 G1 X1,
 G94|G93 G1 X1 F1|X2, G93 G1 X1 F1|G94 X3, G95 F.1 S0|G1 X1, G38.2 Z-5 K, G10 L2 P10 X1, G10 L2 X1, G10 L20 P1 R5,
-G92, G52, G91 G53 G0 X1, G53 X1 G2 I1, G80|G53 X1, G0 X1 G92 Y3, G17 G81 X1, G17 G80|G81 X1 Z-5, G17 G80|G81 R3 X1,
-G17 G81 X1 R1 Z2, G17 G90 G83 X1 R1 Z-1, G17 G90 G82 X1 R1 Z-1, G17 G90 G81 X1 R1 Z-1 L0, G17 G90 G81 X1 R1 Z-1 A5,
-G93 G81 X1 R1 Z-1 F1, G80 X1, G80|X1, G87 X1, M72, G4, F-1, S-1, T-1, T1.5, M62, M66, M68 Q1, G96, M3 M4,
+G92, G52, G91 G53 G0 X1, G53 X1 G2 I1, G0 X1 G92 Y3, G17 G81 X1, G17 G80|G81 X1 Z-5, G17 G80|G81 R3 X1,
+G17 G81 X1 R1 Z2, G17 G90 G83 X1 R1 Z-1, G17 G90 G81 X1 R1 Z-1 L0, G17 G90 G81 X1 R1 Z-1 A5,
+G93 G81 X1 R1 Z-1 F1, G80 X1, G87 X1, M72, G4, F-1, S-1, T-1, T1.5, M62, M66, M68 Q1, G96, M3 M4,
 G0 X[1/0], G0 XSQRT[-1], G0 X[ACOS[2]], G0 X[1, G0 X#0, G0 X#5602, G0 X#<never>, #5420 = 1, #<_x> = 1, G0 X1 #1,
 G0 X, G0 X1 N5, N5 / X2, G0 U, G5.7 X1, M97, G0 X1 =, o1 endwhile, o1 endif X, o1 if [0]|G0 X1, o999 call,
-o1 sub|o1 call|o1 endsub|o1 call, G0 X1 (, G0 X1 (a (b)), G0 X1 ), G0 X[2 ** ], G0 X[[-2] ** 0.5], G1 X1 F0,
+o1 sub|o1 call|o1 endsub|o1 call, G0 X1 (, G0 X1 ), G0 X[2 ** ], G0 X[[-2] ** 0.5], G1 X1 F0,
 G43 H1.5, G18 G5 X1 Y1 I1 J1 P1 Q1, G17 G91 G5 X1 Y1 I1 J1, G17 G5.1 X1 Y1, M61, M98, G33 Z1 K1, G76, @, G0 X1.2.3
 """
 
@@ -146,7 +154,8 @@ def test_demonstrations_without_switches_go_where_linuxcnc_takes_them(tmp_path, 
     file.write_text(text)
     calls, first = linuxcnc.calls(linuxcnc.output(file, "-b"))
     tilt = linuxcnc.FIVE_AXES[name][-2].upper()
-    program = riffler.Program.read(file, machine=linuxcnc.FIVE_AXES[name], options={"tcp": True})
+    how = {"tcp": True, "parameters": zeros(tmp_path)}
+    program = riffler.Program.read(file, machine=linuxcnc.FIVE_AXES[name], options=how)
     ends = np.array([first.program(call.end) for call in calls if np.abs(call.end - call.start).max() > 1e-3])
     axes = forward(ends, tilting_table(tilt, [0, 0, 0], [0, 0, 0]))[:, 3:]
     row = 0

@@ -77,17 +77,17 @@ def test_an_apt_file_is_a_program_like_any_other(tmp_path):
 
 def test_what_was_skipped_is_in_the_provenance(tmp_path):
     file = tmp_path / "p.ngc"
-    file.write_text("G0 X1\nG187 P1\nG0 X2 U5\nG28\n")
+    file.write_text("G21 G0 X1\nG187 P1\nG0 X2 U5\nG28\n")
     with pytest.raises(riffler.FormatError, match=r"line 2: unknown code G187: .*'unknown': 'skip'"):
         riffler.Program.read(file)
     program = riffler.Program.read(file, options={"unknown": "skip"})
-    assert program.provenance["skipped"] == "line 2: G187; line 3: U"
-    assert program.provenance["notes"].startswith("line 4: G28, G30 and G53 go to positions of the machine")
+    assert program.provenance["skipped"] == "line 2: G187; line 3: U was skipped, an axis of the program"
+    assert "line 4: G28 goes to a position of the machine" in program.provenance["notes"]
 
 
 def test_notes_stay_with_the_program(tmp_path):
     file = tmp_path / "p.ngc"
-    file.write_text("G0 X1\nG60 X9\nG187 P1\nG1 X2 F100\nM30\nX5\n")
+    file.write_text("G21 G0 X1 Y0 Z0\nG60 X9\nG187 P1\nG1 X2 F100\nM30\nX5\n")
     program = riffler.Program.read(file, options={"unknown": "skip"})
     said = [("coordinates", 2), ("skipped", 3), ("end", 6)]
     assert [(note.kind, note.line) for note in program.notes] == said

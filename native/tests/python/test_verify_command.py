@@ -72,6 +72,47 @@ def test_what_was_passed_over_is_said_and_skipped_coordinates_never_pass(folder,
     assert "line 11: G60 was skipped" in capsys.readouterr().err
 
 
+def test_positions_of_the_machine_are_neither_cut_nor_compared(folder, capsys):
+    """Zero on the table: what G28, G30 and G53 say would be inside of the stock as coordinates of the part."""
+    cut = "G0 X10 Y10\nG43 Z25 H1\nG1 Z19 F300\nX30\nG0 Z25\n"
+    frames = {
+        "fusion": f"G90 G94 G17\nG21\nG28 G91 Z0.\nG90\nT1 M6\nS5000 M3\nG54\n{cut}M5\nG28 G91 Z0.\nG28 X0. Y0.\nM30\n",
+        "haas": f"G21 G90\nT1 M6\nG0 G53 Z0\nG0 G54 G90\nS5000 M3\n{cut}G53 G0 Z0 M9\nG53 G0 X-10 Y0\nM30\n",
+        "home": f"G21 G90\nT1 M6\nS5000 M3\n{cut}G30\nX15 Y15\nG43 Z25 H1\nG1 Z19\nG0 Z25\nM30\n",
+    }
+    words = ["--stock", "40x20x20", "--origin", "0,0,0", "--pitch", "0.5", "--tool", "flat:4", "--machine", "3-axis"]
+    removed = {}
+    for name, text in frames.items():
+        (folder / f"{name}.ngc").write_text(text)
+        status, data = run(capsys, f"{name}.ngc", *words)
+        assert status == 0 and data["findings"] == [], name
+        assert sum("position of the machine" in sentence for sentence in data["not_checked"]) == 1, name
+        program = riffler.Program.read(f"{name}.ngc", machine="3-axis")
+        assert program.at_machine.any() and program.poses[:, 2].min() == 19
+        # Carving with the program takes what verification takes; posted again it does, too, and never comes lower.
+        carved = ["carve", *words, "--program", f"{name}.ngc", "--out", "left.rvol", "--json"]
+        assert main(carved) == 0
+        said = capsys.readouterr()
+        data = json.loads(said.out)
+        assert data["moves_at_machine"] > 0 and "position of the machine" in said.err
+        removed[name] = data["removed"]
+        assert main(["post", f"{name}.ngc", "--machine", "3-axis", "--post", "3-axis", "--out", "again.ngc"]) == 0
+        capsys.readouterr()
+        again = riffler.Program.read("again.ngc", machine="3-axis")
+        assert again.poses[:, 2].min() == 19 and not again.at_machine.any()
+        status, data = run(capsys, "again.ngc", *words)
+        assert status == 0 and data["findings"] == []
+    assert removed["fusion"] == removed["haas"] < removed["home"]
+    # A program whose offsets differ by an unknown distance does not pass; where the option says it, it does.
+    two = f"G21 G90\nT1 M6\nS5000 M3\n{cut}G55\nX5 Y5\nG43 Z25 H1\nG1 Z19\nG0 Z25\nM30\n"
+    (folder / "two.ngc").write_text(two)
+    status, data = run(capsys, "two.ngc", *words)
+    assert status == 1 and not data["findings"] and any("G55" in sentence for sentence in data["not_checked"])
+    given = ["--machine-option", "g54=0,0,0", "--machine-option", "g55=2,0,0"]
+    status, data = run(capsys, "two.ngc", *words, *given)
+    assert status == 0 and not any("G55" in sentence for sentence in data["not_checked"])
+
+
 def test_parts_fixtures_and_holders_are_checked(folder, capsys):
     status, data = run(capsys, "good.ngc", *WORDS, "--part", "part.stl", "--fixture", "clamp.stl")
     assert status == 1 and [f["kind"] for f in data["findings"]] == ["fixture"] and data["findings"][0]["line"] == 6

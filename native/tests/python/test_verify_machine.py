@@ -67,3 +67,48 @@ def test_the_reader_names_the_line_at_which_an_axis_would_leave_its_limits(tmp_p
     assert len(riffler.Program.read(file, machine="linuxcnc-xyzac", options=table)) >= 12
     with pytest.raises(riffler.FormatError, match=r"p.ngc, line \d+: A would stand at -?3[0-9.]+, beyond the limits"):
         riffler.Program.read(file, machine="linuxcnc-xyzac", options=TABLE)
+
+
+def test_a_swing_of_the_rotary_axes_is_the_machines(tmp_path):
+    """A table that turns half way round takes the leaning holder round the side, where the clamp is, not over the top."""
+    file = tmp_path / "swing.ngc"
+    tool = riffler.Tool.ball(4, 20).with_shank([(20, 2, 40, 2)]).with_holder([(40, 15, 90, 15)])
+    block = riffler.Volume.block([-10, -10, -20], [10, 10, 0], 0.5)
+    seen = {}
+    for side in (-1, 1):
+        clamp = riffler.Volume.block([-10, 35 * side - 8, 30], [10, 35 * side + 8, 55], 0.5)
+        for code in ("G1", "G0"):
+            file.write_text(f"G21 G90 T1 M6\nS1000 M3\nG1 X0 Y0 Z5 B45 C0 F500\n{code} C180\nX1 Y0\n")
+            program = riffler.Program.read(file, machine="head-table")
+            assert len(program) == 3 and list(program.via) == [1]
+            report = riffler.verify(program, block, None, [clamp], tools={1: tool}, machine="head-table")
+            hits = [f for f in report.findings if f.kind == "fixture"]
+            seen[side, code] = bool(hits)
+            if hits:
+                assert (hits[0].row, hits[0].line, hits[0].member) == (1, 4, "holder")
+            assert len(report.removed) == len(report.seconds) == 3
+            # In chunks, followed, and read with rows for the swing, it is the same.
+            chunks = [riffler.Program(program.poses[:2], program.feed[:2], program.rapid[:2], 1, program.line[:2],
+                                      spindle=1000, via=program.via), program.trimmed(1, 3)]  # fmt: skip
+            again = riffler.verify(chunks, block, None, [clamp], tools={1: tool}, machine="head-table")
+            assert [(f.kind, f.row, f.value) for f in again.findings] == [
+                (f.kind, f.row, f.value) for f in report.findings
+            ]
+            whole = riffler.verify(program.followed(), block, None, [clamp], tools={1: tool})
+            assert [f.kind for f in whole.findings] == [f.kind for f in report.findings]
+    assert seen[-1, "G1"] == seen[-1, "G0"] != seen[1, "G1"] == seen[1, "G0"]
+
+
+def test_rapids_that_are_dog_legs_meet_what_straight_ones_pass(tmp_path):
+    file = tmp_path / "rapid.ngc"
+    file.write_text("G21 G90 T1 M6\nS1000 M3\nG0 X-10 Y5 Z20\nX50 Y40 Z20\nG1 Z19 F100\n")
+    block = riffler.Volume.block([0, 0, 0], [40, 30, 10], 0.5)
+    post = riffler.Volume.block([22, 36, 0], [28, 44, 30], 0.5)
+    tools = {1: riffler.Tool.flat(6, 40)}
+    straight = riffler.Program.read(file, machine="3-axis")
+    report = riffler.verify(straight, block, None, [post], tools=tools)
+    assert report.findings == [] and any("option rapids" in sentence for sentence in report.not_checked)
+    legs = riffler.Program.read(file, machine="3-axis", options={"rapids": "independent"})
+    report = riffler.verify(legs, block, None, [post], tools=tools)
+    assert [(f.kind, f.row) for f in report.findings] == [("fixture", 1)]
+    assert not any("option rapids" in sentence for sentence in report.not_checked)

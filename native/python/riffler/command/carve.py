@@ -31,6 +31,7 @@ from .console import Console, number, times
 from .shapes import from_mesh, rays, write_left
 
 HELP = "carve stock with an NC program"
+AWAY = -1  # the number of no tool: of a move that begins or ends at a position of the machine
 __doc__ += "\n" + tools.FORMS
 
 
@@ -50,16 +51,16 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     wanted = [tools.parse(text) for text in arguments.tool]
     with console.step("program"):
         how = machine_options(arguments.machine_option, "--machine-option")
-        program = read_program(Path(arguments.program), arguments.machine, how, console)
+        program = read_program(Path(arguments.program), arguments.machine, how, console).followed()
         poses = np.asarray(program.poses)
-        called = np.asarray(program.tool)
+        called = called_in_part(program)
         rapid = np.asarray(program.rapid)[1:]
     if len(poses) < 2:
         raise ValueError(f"{Path(arguments.program).name}: no moves to carve")
     # A cutter whose length is not named is long enough to reach out of the stock wherever it is.
     volume = stock(arguments, console)
     reach = float(np.linalg.norm(volume.upper - volume.lower))
-    by_number = tools.assign(wanted, called[1:], reach)
+    by_number = tools.assign(wanted, called[1:][called[1:] != AWAY], reach)
     before = volume.volume
     removed = carve(volume, poses, called, by_number, tolerance, console)
     after = volume.volume
@@ -72,7 +73,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "directions": volume.directions,
         "rays": rays(volume),
         "moves": len(removed),
-        "moves_without_tool": sum(last - first for first, last, n in tools.runs(called) if n not in by_number),
+        "moves_without_tool": sum(last - first for first, last, n in tools.runs(called) if n not in (*by_number, AWAY)),
+        "moves_at_machine": int((called[1:] == AWAY).sum()),
         "tools": {str(n): tool.to_dict() for n, tool in by_number.items()},
         "volume_before": before,
         "volume": after,
@@ -84,6 +86,12 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     }
     console.result(data, f"{out.name} written", table(data))
     return 0
+
+
+def called_in_part(program: Program) -> np.ndarray:
+    """(n,) the rows' tool numbers; AWAY where the motion there begins or ends at a position of the machine."""
+    away = np.asarray(program.at_machine)
+    return np.where(np.append(False, away[1:] | away[:-1]), AWAY, program.tool)
 
 
 def is_saved(path: Path) -> bool:

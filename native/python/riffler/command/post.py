@@ -147,6 +147,7 @@ def changed(program: Program, arguments: argparse.Namespace) -> Program:
     return Program(
         program.poses, feed, rapid, program.tool, program.line, spindle,
         tools=known, provenance=program.provenance, notes=program.notes,
+        at_machine=program.at_machine, via=program.via,
     )  # fmt: skip
 
 
