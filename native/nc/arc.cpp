@@ -58,23 +58,23 @@ int Arc::chords(double tolerance) const {
   return std::max(1, static_cast<int>(std::min(1e9, std::ceil(std::abs(sweep) / step))));
 }
 
-Arc arc_about(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise) {
+Arc arc_about(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise, double miss) {
   const Arc arc = between(from, to, centre, clockwise);
-  if (std::abs(arc.r1 - arc.r0) > kArcMiss) fail_miss(std::abs(arc.r1 - arc.r0));
+  if (std::abs(arc.r1 - arc.r0) > miss) fail_miss(std::abs(arc.r1 - arc.r0));
   if (!(arc.r0 > 0 && arc.r1 > 0)) throw std::invalid_argument("an arc of radius 0");
   if (!(std::min(arc.r0, arc.r1) >= kLeastRadius))
     throw std::invalid_argument("an arc about its centre with a radius below 0.00127 mm");
   return arc;
 }
 
-Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwise) {
+Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwise, double miss) {
   const double r = std::abs(radius);
   const Vec2 chord = to - from;
   const double length = glm::length(chord);
   if (!(r > 0)) throw std::invalid_argument("an arc of radius 0");
   if (length < kFullCircle) throw std::invalid_argument("a full circle by R has no centre");
   // On the circle about the nearest centre that passes through the start, the end misses by what the chord is too long.
-  if (length - 2 * r > kRadiusMiss) fail_miss(length - 2 * r);
+  if (length - 2 * r > miss) fail_miss(length - 2 * r);
   const double height = std::sqrt(std::max(0.0, (r - length / 2) * (r + length / 2)));
   // Seen along the chord the centre of the shorter arc is on the right for a clockwise one, on the left otherwise.
   const double side = (clockwise == (radius > 0)) ? -1 : 1;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,5 +20,8 @@ std::vector<DescriptionEntry> machines();
 /// `name` is one of machines(), or the path of a .toml file. Options that the machine does not take stay in `options`.
 /// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options);
+
+/// The names of machines() whose control reads `language`, apart by commas.
+std::string machines_of_language(std::string_view language);
 
 }  // namespace riffler

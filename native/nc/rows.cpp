@@ -41,6 +41,14 @@ Pose NcRows::pose(const Joints& joints) {
 
 void NcRows::row(const Pose& pose, double feed, const NcRowWords& words) {
   pending_.push_back({pose, feed, words.spindle, words.tool, words.line, words.rapid});
+  away_ = false;
+}
+
+void NcRows::at_machine(const NcRowWords& words) {
+  if (!first_) return;
+  const double feed = words.rapid || words.inverse_time ? 0 : words.feed;
+  pending_.push_back({last_, feed, words.spindle, words.tool, words.line, words.rapid});
+  away_ = true;
 }
 
 void NcRows::check_limits(const Joints& joints) const {
@@ -60,15 +68,15 @@ double NcRows::feed_over(double way, const NcRowWords& words) const {
 }
 
 void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words) {
-  // From where the first move comes nobody knows: it is one row.
-  const bool known = first_.has_value();
+  // From where the first move comes nobody knows, nor from where one that leaves a position of the machine: one row.
+  const bool known = first_.has_value() && !away_;
   begin(from);
   const Joints to = in_part(end);
   check_limits(to);
   const Pose last = pose(to);
   const bool splits = known && (machine_->joint_words() || (!words.rapid && axis_tolerance_));
   const int parts = splits ? rotary_parts(to, !words.rapid) : 1;
-  const bool along_words = machine_->joint_words() && !words.inverse_time && !same_turns(at_, to);
+  const bool along_words = !away_ && machine_->joint_words() && !words.inverse_time && !same_turns(at_, to);
   double way = 0;
   if (parts > 1)
     for (int i = 1; i <= parts; ++i) way += glm::length(between(to, i, parts).tip - between(to, i - 1, parts).tip);
@@ -79,6 +87,13 @@ void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words
   for (int i = 1; i < parts; ++i) row(between(to, i, parts), feed, words);
   row(last, feed, words);
   at_ = to, last_ = last;
+}
+
+void NcRows::line_to_pose(const Joints& from, const Joints& to, const Pose& pose, const NcRowWords& words) {
+  begin(from);
+  check_limits(in_part(to));
+  row(pose, words.rapid ? 0 : words.feed, words);
+  at_ = in_part(to), last_ = pose;
 }
 
 Pose NcRows::between(const Joints& to, int i, int parts) const {

@@ -53,6 +53,14 @@ class NcRows {
   void curve(const Joints& from, int parts, double length, const std::function<Joints(double)>& at,
              const NcRowWords& words);
 
+  /// A row at a position of the machine, whose place in the part is not known: the pose stays what it was. Before the
+  /// first row there is none: where that comes from nobody knows either.
+  void at_machine(const NcRowWords& words);
+  bool begun() const { return first_.has_value(); }
+
+  /// One row at `pose`, which `to` holds: the tool's axis is given as such.
+  void line_to_pose(const Joints& from, const Joints& to, const Pose& pose, const NcRowWords& words);
+
   /// The words that hold the same pose on `machine` with the same rotary axes; before the first row what they are.
   Joints change_machine(std::unique_ptr<Machine> machine, const Joints& at);
 
@@ -74,7 +82,7 @@ class NcRows {
   const NcPlace& place_;
   NcFrame frame_;
   std::optional<NcFrame> first_;
-  bool as_first_ = true;
+  bool as_first_ = true, away_ = false;  // away: the last row is at a position of the machine
   // Where the last row is, in the first frame.
   Joints at_{};
   Pose last_{};
