@@ -25,7 +25,8 @@ class Hole {
   void run(int number) {
     if (number == 1) return old_pecking();
     const double depth = length(201, "its depth");
-    if (depth > 0) place_.fail(std::string("Q201, the depth of cycle ") + std::to_string(number) + ", must be negative");
+    if (depth > 0)
+      place_.fail(std::string("Q201, the depth of cycle ") + std::to_string(number) + ", must be negative");
     if (depth == 0) return;  // so on the control: the cycle is not executed
     surface_ = length(203, "the coordinate of the surface");
     clear_ = surface_ + length(200, "the set-up clearance");
@@ -198,23 +199,40 @@ class Hole {
     return speed;
   }
 
-  /// With a floating holder (206) by its feed, rigid (207) by its pitch; out with the spindle reversed.
+  /// With a floating holder (206) by its feed, rigid (207, 209) by its pitch; out with the spindle reversed.
   void tap(int number) {
     double f = 0, sense = 1;
     if (number == 206) {
       f = drilling_feed();
     } else {
       const double pitch = length(239, "the pitch");
-      if (!(setting_.speed > 0)) place_.fail("cycle 207 without a spindle speed S: its feed is pitch times speed");
+      if (!(setting_.speed > 0))
+        place_.fail("a rigid tapping cycle without a spindle speed S: its feed is pitch times speed");
       f = std::abs(pitch) * setting_.speed, sense = pitch < 0 ? -1 : 1;
     }
     if (!(f > 0 && f <= kMaxFeed)) place_.fail("the feed of the tapping cycle is 0 or out of range");
-    spindle_ = sense * setting_.speed;
+    const double in = sense * setting_.speed;
+    if (number == 209) break_tap(f, in);
+    spindle_ = in;
     stroke(bottom_, f);
-    spindle_ = -sense * setting_.speed;
+    spindle_ = -in;
     stroke(clear_, f);
-    spindle_ = sense * setting_.speed;
+    spindle_ = in;
     leave();
+  }
+
+  /// Out by some pitches, or altogether, every Q257.
+  void break_tap(double feed, double in) {
+    const double every = length(257, "the depth of a chip break");
+    const double back = values_.needed(256, "the way of a chip break") * std::abs(length(239, "the pitch"));
+    if (every <= 0) return;
+    if (!((surface_ - bottom_) / every <= kMaxHoleStrokes)) place_.fail("Q257 is too small: too many chip breaks");
+    for (double to = surface_ - every; to > bottom_ + kRest; to -= every) {
+      spindle_ = in;
+      stroke(to, feed);
+      spindle_ = -in;
+      stroke(back > 0 ? std::min(to + back, clear_) : clear_, feed);
+    }
   }
 
   /// Cycle 1: from where the tool stands, the set-up clearance above the surface.
@@ -251,7 +269,7 @@ class Hole {
 }  // namespace
 
 bool is_heidenhain_hole(int number) {
-  constexpr int kHoles[] = {1, 200, 201, 203, 205, 206, 207, 241};
+  constexpr int kHoles[] = {1, 200, 201, 203, 205, 206, 207, 209, 241};
   return std::ranges::find(kHoles, number) != std::end(kHoles);
 }
 

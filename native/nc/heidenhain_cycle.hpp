@@ -31,7 +31,7 @@ struct HeidenhainStroke {
   std::optional<double> spindle;  ///< rev/min, > 0 clockwise; none: as it turns
 };
 
-/// Whether the cycle is a hole that is read: 1, 200, 201, 203, 205, 206, 207, 241.
+/// Whether the cycle is a hole that is read: 1, 200, 201, 203, 205, 206, 207, 209, 241.
 bool is_heidenhain_hole(int number);
 
 /// Calls `move` for every stroke of cycle `number`. FormatError for parameters that are missing or out of range, and

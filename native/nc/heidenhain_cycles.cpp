@@ -8,6 +8,7 @@
 #include "geom/math.hpp"
 #include "nc/heidenhain_interpreter.hpp"
 #include "nc/limits.hpp"
+#include "nc/number_text.hpp"
 
 namespace riffler {
 
@@ -38,7 +39,8 @@ void HeidenhainInterpreter::define_cycle(HeidenhainCursor& cursor) {
   if (number == 247) return use_preset();
   if (is_one_of(number, kTuningCycles)) {
     if (user_codes_.insert(10'000 + number).second)
-      note("user code", std::string("cycle ") + std::to_string(number) + " is the machine's own tuning: taken to move nothing");
+      note("user code",
+           std::string("cycle ") + std::to_string(number) + " is the machine's own tuning: taken to move nothing");
     return;
   }
   if (is_one_of(number, kQuietCycles)) return;
@@ -72,7 +74,8 @@ void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& c
       while (cursor.peek() != '\0' && !cursor.at_number() && cursor.peek() != '+' && cursor.peek() != '-' &&
              cursor.peek() != 'Q')
         cursor.take();
-      old_cycle_[static_cast<std::size_t>(part) - 1] = values_.value(cursor, std::string("CYCL DEF 1.") + std::to_string(part));
+      old_cycle_[static_cast<std::size_t>(part) - 1] =
+          values_.value(cursor, std::string("CYCL DEF 1.") + std::to_string(part));
       return;
     case 8:
     case 11:
@@ -170,7 +173,7 @@ void HeidenhainInterpreter::call_cycle() {
   if (cycle_ == 0) place_.fail("a call without a cycle: CYCL DEF before it");
   if (!is_heidenhain_hole(cycle_) && cycle_ != 208)
     place_.fail(std::string("cycle ") + std::to_string(cycle_) +
-                " is not read (1, 200, 201, 203, 205, 206, 207, 208 and 241 are): have the CAM system write its moves");
+                " is not read (1, 200, 201, 203, 205 to 209 and 241 are): have the CAM system write its moves");
   if (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine || (cycle_ == 1 && stand_[2] == Stand::Machine))
     place_.fail("a cycle while " + axes_away() + " is at a position of the machine: move into the part first");
   if (!is_upright()) fail_tilted();
@@ -209,7 +212,9 @@ void HeidenhainInterpreter::bore() {
   if (!(pitch > 0)) place_.fail("Q334, the infeed, must be positive");
   if (radius < -1e-9) place_.fail("the tool is larger than the bore of cycle 208");
   if (user_codes_.insert(10'208).second)
-    note("bore milling", "cycle 208: a helix from the side of +X; where the control begins it is not in the program");
+    note("bore milling",
+         "cycle 208: a helix from the side of +X with the radius of the tool in comments or TOOL DEF, " +
+             number_text(found->second) + " mm; where the control begins it is not in the program");
   const double spindle = turning_ * speed_;
   const NcRowWords rapid{true, 0, false, spindle, tool_, place_.line};
   const NcRowWords cut{false, feed, false, spindle, tool_, place_.line};

@@ -109,7 +109,8 @@ void HeidenhainInterpreter::function(HeidenhainCursor& cursor) {
       if (cursor.peek() == 'Q') values_.set(values_.name(cursor), std::nullopt);
       return;
     default:
-      place_.fail(std::string("FN ") + std::to_string(number) + " is not read: it acts on the control's own data; take it out");
+      place_.fail(std::string("FN ") + std::to_string(number) +
+                  " is not read: it acts on the control's own data; take it out");
   }
 }
 

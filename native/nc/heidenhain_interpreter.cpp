@@ -223,7 +223,8 @@ Provenance HeidenhainInterpreter::provenance() const {
     return text;
   };
   if (const std::string skipped = list(true); !skipped.empty())
-    out.emplace_back("skipped", skipped + (more_skipped_ ? std::string("; and ") + std::to_string(more_skipped_) + " more" : ""));
+    out.emplace_back("skipped",
+                     skipped + (more_skipped_ ? std::string("; and ") + std::to_string(more_skipped_) + " more" : ""));
   if (const std::string others = list(false); !others.empty()) out.emplace_back("notes", others);
   return out;
 }

@@ -47,7 +47,12 @@ void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
     if (cursor.peek() == axis)
       place_.fail(std::string("the tool axis ") + axis + " is not read: Z is; have the post write TOOL CALL n Z");
   cursor.take_if('Z');
-  if (tool) tool_ = *tool, turning_ = 0;
+  if (tool) {
+    tool_ = *tool, turning_ = 0;
+    const HeidenhainBlock& block = (*text_)[next_ - 1];
+    const double diameter = block.diameter > 0 ? block.diameter : text_->diameter(tool_);
+    if (diameter > 0) tool_radii_.emplace(tool_, diameter / 2 * unit_);
+  }
   while (cursor.peek() != '\0') {
     if (cursor.take_if('S')) {
       speed_ = values_.value(cursor, "S");

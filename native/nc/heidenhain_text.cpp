@@ -1,7 +1,9 @@
 #include "nc/heidenhain_text.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
 #include "nc/heidenhain_cursor.hpp"
 #include "nc/limits.hpp"
@@ -60,14 +62,41 @@ HeidenhainText::HeidenhainText(std::string_view text, NcPlace& place) {
       more = without_blanks(line).ends_with('~');
       block.text = {block.text.data(), static_cast<std::size_t>(line.data() + line.size() - block.text.data())};
     }
-    if (is_comment(block.text)) continue;
+    if (is_comment(block.text)) {
+      read_comment(block.text);
+      continue;
+    }
     add(block, place);
     HeidenhainCursor cursor(block.text, place);
     if (cursor.take_word("END PGM")) break;
   }
 }
 
-void HeidenhainText::add(const HeidenhainBlock& block, NcPlace& place) {
+/// A tool's diameter, as CAM systems write it above TOOL CALL or, behind the tool's number, into a list.
+void HeidenhainText::read_comment(std::string_view text) {
+  std::size_t at = text.find("D=");
+  std::size_t number = at + 2;
+  if (at == text.npos) at = text.find("DM="), number = at + 3;
+  if (at == text.npos || (at > 0 && NcCursor::is_letter(text[at - 1]))) return;
+  if (text.substr(number).starts_with('+')) ++number;
+  double diameter = 0;
+  std::from_chars(text.data() + number, text.data() + text.size(), diameter);
+  if (!(diameter > 0 && diameter <= kMaxLength)) return;
+  diameter_ = diameter_ == 0 || diameter_ == diameter ? diameter : -1;
+  int tool = 0;
+  const std::size_t hash = text.find('#');
+  if (hash < at && std::from_chars(text.data() + hash + 1, text.data() + at, tool).ec == std::errc())
+    diameters_.emplace(tool, diameter);
+}
+
+double HeidenhainText::diameter(int tool) const {
+  const auto found = diameters_.find(tool);
+  return found == diameters_.end() ? 0 : found->second;
+}
+
+void HeidenhainText::add(HeidenhainBlock block, NcPlace& place) {
+  block.diameter = std::max(diameter_, 0.0);
+  diameter_ = 0;
   HeidenhainCursor cursor(block.text, place);
   if (cursor.take_word("LBL")) {
     std::string name;

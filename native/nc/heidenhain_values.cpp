@@ -75,7 +75,9 @@ std::optional<double> HeidenhainValues::get(int key) const {
 double HeidenhainValues::needed(int number, std::string_view what) const {
   if (!has(number)) place_.fail(std::string("Q") + std::to_string(number) + ", " + std::string(what) + ", is missing");
   const std::optional<double> value = get(number);
-  if (!value) place_.fail(std::string("Q") + std::to_string(number) + ", " + std::string(what) + ", is known to the control only");
+  if (!value)
+    place_.fail(std::string("Q") + std::to_string(number) + ", " + std::string(what) +
+                ", is known to the control only");
   return *value;
 }
 

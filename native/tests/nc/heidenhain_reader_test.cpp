@@ -97,8 +97,8 @@ void expect_holds(const Program& p, const Program& q, const std::string& what) {
   std::size_t at = 0;
   for (std::size_t row = 0; row < p.size(); ++row, ++at) {
     const Pose& wanted = p.poses()[row];
-    while (at < q.size() && (glm::length(q.poses()[at].tip - wanted.tip) > 1e-5 ||
-                             glm::length(q.poses()[at].axis - wanted.axis) > 2e-7))
+    while (at < q.size() &&
+           (glm::length(q.poses()[at].tip - wanted.tip) > 1e-5 || glm::length(q.poses()[at].axis - wanted.axis) > 2e-7))
       ++at;
     ASSERT_LT(at, q.size()) << what << ", row " << row;
     EXPECT_EQ(q.tool()[at], p.tool()[row]) << what << ", row " << row;
@@ -129,10 +129,12 @@ TEST(HeidenhainReader, KnowsForWhichMachineTheCodeIs) {
   Program p;
   p.append({{{0, 0, 5}, {0, 0.6, 0.8}}, 0, 0, 1, 0, true});
   const std::string text = to_nc(p, {"heidenhain-bc", 0.01, 0.00175, {}});
-  EXPECT_EQ(test::nc_error(text, "heidenhain").substr(0, 57), "line 2: written for machine heidenhain-bc, not heidenhain");
-  EXPECT_EQ(test::nc_error(text, "tcp"),
-            "line 1: a Heidenhain conversational program (BEGIN PGM), and the machine's control reads another language; "
-            "machines that read heidenhain: heidenhain, heidenhain-bc");
+  EXPECT_EQ(test::nc_error(text, "heidenhain").substr(0, 57),
+            "line 2: written for machine heidenhain-bc, not heidenhain");
+  EXPECT_EQ(
+      test::nc_error(text, "tcp"),
+      "line 1: a Heidenhain conversational program (BEGIN PGM), and the machine's control reads another language; "
+      "machines that read heidenhain: heidenhain, heidenhain-bc");
   EXPECT_EQ(test::nc_error(text, "apt").substr(0, 40), "line 1: a Heidenhain conversational prog");
   const std::string other = test::nc_error("G0 X1\nM2\n", "heidenhain");
   EXPECT_TRUE(other.starts_with("line 1: not a Heidenhain conversational program")) << other;
@@ -145,15 +147,9 @@ TEST(HeidenhainReader, LabelsAreCalledAndRepeated) {
   const Program p = read(
       "L X0 Y0 Z0 FMAX\nCALL LBL 1\nCALL LBL \"ROW\"\nLBL 7\nL IX+1 F100\nCALL LBL 7 REP 2/2\nL Z9 FMAX\nM30\n"
       "LBL 1\nL IY+1 F100\nLBL 0\nLBL \"ROW\"\nCALL LBL 1\nLBL 9\nL IZ+1 F100\nCALL LBL 9 REP1\nLBL 0");
-  EXPECT_EQ(tips(p), (std::vector<Vec3>{{0, 0, 0},
-                                        {0, 1, 0},
-                                        {0, 2, 0},
-                                        {0, 2, 1},
-                                        {0, 2, 2},
-                                        {1, 2, 2},
-                                        {2, 2, 2},
-                                        {3, 2, 2},
-                                        {3, 2, 9}}));
+  EXPECT_EQ(tips(p),
+            (std::vector<Vec3>{
+                {0, 0, 0}, {0, 1, 0}, {0, 2, 0}, {0, 2, 1}, {0, 2, 2}, {1, 2, 2}, {2, 2, 2}, {3, 2, 2}, {3, 2, 9}}));
   EXPECT_EQ(tips(read("LBL 1\nL IX1 FMAX\nCALL LBL 1 REP 0")).size(), 1U);
   EXPECT_EQ(error("CALL LBL 5"), "line 2: there is no LBL 5 [CALL LBL 5]");
   EXPECT_EQ(error("LBL 1\nLBL 1"), "line 3: LBL 1 is set twice [LBL 1]");
@@ -201,7 +197,8 @@ TEST(HeidenhainReader, DatumShiftsAndRotationsMoveWhatFollows) {
   expect_near(p.poses()[4].tip, {10, 7, 0}, 1e-12);
   expect_near(p.poses()[5].tip, {0, 7, 0}, 1e-12);
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"work offset"}));
-  EXPECT_EQ(error("CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 #3").substr(0, 50), "line 3: cycle 7 with a line of the datum table is ");
+  EXPECT_EQ(error("CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 #3").substr(0, 50),
+            "line 3: cycle 7 with a line of the datum table is ");
   EXPECT_EQ(error("CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X").substr(0, 40), "line 3: cycle 8 (mirroring) is not read:");
 }
 
@@ -218,17 +215,21 @@ TEST(HeidenhainReader, TiltedPlanesLieWhereTheirAnglesSay) {
     const char* plane;
     double a, b, c;
   };
-  for (const auto& [plane, a, b, c] : {Case{"SPATIAL SPA+90 SPB+0 SPC+180", 90, 0, 180}, {"SPATIAL SPA20 SPB0 SPC55", 20, 0, 55},
-                                       {"SPATIAL SPA-90 SPB+0 SPC-90", -90, 0, -90}, {"SPATIAL SPA+0 SPB+0 SPC+20", 0, 0, 20},
+  for (const auto& [plane, a, b, c] : {Case{"SPATIAL SPA+90 SPB+0 SPC+180", 90, 0, 180},
+                                       {"SPATIAL SPA20 SPB0 SPC55", 20, 0, 55},
+                                       {"SPATIAL SPA-90 SPB+0 SPC-90", -90, 0, -90},
+                                       {"SPATIAL SPA+0 SPB+0 SPC+20", 0, 0, 20},
                                        {"SPATIAL SPA+12.5 SPB-33 SPC+170", 12.5, -33, 170},
                                        {"VECTOR BX1 BY0 BZ0 NX0 NY-1 NZ0", 90, 0, 0}})
     for (const std::string machine : {"heidenhain", "heidenhain-bc"})
-      for (const std::string how : {"TURN FMAX SEQ+ TABLE ROT", "MOVE DIST 5 F2000 SEQ- COORD ROT", "STAY SEQ- TABLE ROT"}) {
+      for (const std::string how :
+           {"TURN FMAX SEQ+ TABLE ROT", "MOVE DIST 5 F2000 SEQ- COORD ROT", "STAY SEQ- TABLE ROT"}) {
         const std::string letter = machine == "heidenhain" ? "A+Q120" : "B+Q121";
-        const Program p = read("CYCL DEF 7.0 D\nCYCL DEF 7.1 X+1\nCYCL DEF 7.2 Y+2\nCYCL DEF 7.3 Z+3\nL X0 Y0 Z9 FMAX\nPLANE " +
-                                   std::string(plane) + " " + how + "\nL " + letter +
-                                   " C+Q122 R0 FMAX M126\nL X+5 Y-6 Z+70 FMAX\nL Z-2 F300\nL IY+1\nPLANE RESET STAY\n",
-                               {}, machine);
+        const Program p =
+            read("CYCL DEF 7.0 D\nCYCL DEF 7.1 X+1\nCYCL DEF 7.2 Y+2\nCYCL DEF 7.3 Z+3\nL X0 Y0 Z9 FMAX\nPLANE " +
+                     std::string(plane) + " " + how + "\nL " + letter +
+                     " C+Q122 R0 FMAX M126\nL X+5 Y-6 Z+70 FMAX\nL Z-2 F300\nL IY+1\nPLANE RESET STAY\n",
+                 {}, machine);
         const std::string what = machine + ' ' + plane + ' ' + how;
         const std::size_t last = p.size() - 1;
         const Vec3 normal = turned_by({0, 0, 1}, a, b, c);
@@ -249,7 +250,8 @@ TEST(HeidenhainReader, TakesTheAnglesOfAxesThatThePostPrints) {
   }
   EXPECT_EQ(error(begin + "L A-80 C0" + end).substr(0, 70),
             "line 5: the rotary axes stand at A-80 C0, the tilted plane asks for A-");
-  EXPECT_EQ(error(begin + "L X0 Y0 Z10 FMAX\nL Z-1 F100").substr(0, 44), "line 4: the rotary axes stand at A0 C0, the ");
+  EXPECT_EQ(error(begin + "L X0 Y0 Z10 FMAX\nL Z-1 F100").substr(0, 44),
+            "line 4: the rotary axes stand at A0 C0, the ");
   EXPECT_EQ(error("L A30 FMAX\nL X0 Y0 Z0 F100").substr(0, 64),
             "line 3: a feed move with the rotary axes at A30 C0, without M128");
   EXPECT_EQ(error("L X0 Y0 Z0 FMAX\nL X5 A30 F100").substr(0, 48), "line 3: a feed move in which rotary axes turn wi");
@@ -263,7 +265,8 @@ TEST(HeidenhainReader, TakesTheAnglesOfAxesThatThePostPrints) {
 TEST(HeidenhainReader, TheControlKeepsTheTip) {
   const Program p = read(
       "L X0 Y0 Z50 FMAX\nM128 F1000\nL X1 Y2 Z3 A30 C90 F500\nL A45\nL Z4\nM129\nL A0 C0 FMAX\nL X0 Y0 Z0 FMAX\n"
-      "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL A10 FMAX\nFUNCTION RESET TCPM\nFUNCTION TCPM F CONT AXIS SPAT PATHCTRL "
+      "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL A10 FMAX\nL A0 FMAX\nFUNCTION RESET TCPM\nFUNCTION TCPM F CONT AXIS SPAT "
+      "PATHCTRL "
       "VECTOR\nL A0 B+30 C0 F100\nL X5");
   const double s = std::sqrt(0.5);
   EXPECT_EQ(p.poses()[1].tip, Vec3(1, 2, 3));
@@ -275,7 +278,8 @@ TEST(HeidenhainReader, TheControlKeepsTheTip) {
   expect_near(last.axis, {0.5, 0, std::sqrt(0.75)}, 1e-12, "angles in space");
   EXPECT_EQ(last.tip.x, 5);
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"machine position"}));
-  const Program v = read("M128\nL X0 Y0 Z0 FMAX\nLN X1 Y0 Z0 NX0 NY0 NZ1 TX+0.6 TY+0 TZ+0.8 F500\nL Z5\nLN X2 NX0 NY0 NZ1\n");
+  const Program v =
+      read("M128\nL X0 Y0 Z0 FMAX\nLN X1 Y0 Z0 NX0 NY0 NZ1 TX+0.6 TY+0 TZ+0.8 F500\nL Z5\nLN X2 NX0 NY0 NZ1\n");
   expect_near(v.poses()[1].axis, {0.6, 0, 0.8}, 1e-15);
   EXPECT_EQ(v.poses()[2].axis, v.poses()[1].axis) << "kept to the bit";
   EXPECT_EQ(v.poses()[3].tip, Vec3(2, 0, 5));
@@ -310,14 +314,32 @@ TEST(HeidenhainReader, PositionsOfTheMachineKeepThePose) {
 
 TEST(HeidenhainReader, PassesOverWhatMovesNothing) {
   const std::string plain = "L X0 Y0 Z5 FMAX\nL X10 F100";
-  for (const std::string quiet :
-       {"M8", "M25\nM55 M57", "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.01\nCYCL DEF 32.2 HSC-MODE:0 TA0.5",
-        "CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 2", "CYCLE DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5", "STOP M6",
-        "STOP", "FN 15: PRINT Q1/Q2", "FUNCTION MODE MILL", "CYCL DEF 392 ATC ~\n  Q240=0 ;MODE ~\n  Q241=1",
-        "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 180", "QS1 = \"NAME\"", "M126", "M127", "L R0", "L M9",
-        "M120 LA 20", "M103 F0.5", "M94 C", "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 1", "FUNCTION RESET TCPM",
-        "PLANE RESET STAY", "CYCL DEF 252 POCKET ~\n Q215=0", "; text ~\n over two lines", "BLK FORM CYLINDER Z R50 L10",
-        "CYCL DEF 19.0 PLANE\nCYCL DEF 19.1"})
+  for (const std::string quiet : {"M8",
+                                  "M25\nM55 M57",
+                                  "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.01\nCYCL DEF 32.2 HSC-MODE:0 TA0.5",
+                                  "CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 2",
+                                  "CYCLE DEF 9.0 DWELL TIME\nCYCLE DEF 9.1 5",
+                                  "STOP M6",
+                                  "STOP",
+                                  "FN 15: PRINT Q1/Q2",
+                                  "FUNCTION MODE MILL",
+                                  "CYCL DEF 392 ATC ~\n  Q240=0 ;MODE ~\n  Q241=1",
+                                  "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 180",
+                                  "QS1 = \"NAME\"",
+                                  "M126",
+                                  "M127",
+                                  "L R0",
+                                  "L M9",
+                                  "M120 LA 20",
+                                  "M103 F0.5",
+                                  "M94 C",
+                                  "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 1",
+                                  "FUNCTION RESET TCPM",
+                                  "PLANE RESET STAY",
+                                  "CYCL DEF 252 POCKET ~\n Q215=0",
+                                  "; text ~\n over two lines",
+                                  "BLK FORM CYLINDER Z R50 L10",
+                                  "CYCL DEF 19.0 PLANE\nCYCL DEF 19.1"})
     EXPECT_EQ(tips(read(quiet + "\n" + plain)), tips(read(plain))) << quiet;
   EXPECT_EQ(tips(read("/L X7 FMAX\n" + plain, {{"block_delete", true}})), tips(read(plain)));
   EXPECT_EQ(tips(read("/5 L X7 Y7 Z7 FMAX\n" + plain)).size(), 3U) << "the control passes over them only when told";
@@ -350,14 +372,15 @@ TEST(HeidenhainReader, RefusesWhatItDoesNotRead) {
       {"CYCL DEF 221 PATTERN", "line 2: cycle 221 is not read"},
       {"CYCL DEF 301 OWN", "line 2: cycle 301 is the machine builder's own"},
       {"CYCL DEF 12.0 PGM CALL", "line 2: cycle 12 calls another program"},
-      {"L X1 FMAX ~", "line 3: unexpected"},
+      {"L X1 FMAX ~", "line 2: unexpected 'END'"},
       {"L X0 Y0 FMAX\nCYCL CALL", "line 3: a call without a cycle"},
   };
   for (const auto& [blocks, wanted] : cases) {
     const std::string is = error(blocks);
     EXPECT_TRUE(is.starts_with(wanted)) << blocks << ": " << is;
   }
-  for (const std::string moves : {"APPR LT X1", "TCH PROBE 427", "SEL PGM \"A\"", "FC DR+ R5", "PLANE POINTS", "CYCL DEF 221 X"})
+  for (const std::string moves :
+       {"APPR LT X1", "TCH PROBE 427", "SEL PGM \"A\"", "FC DR+ R5", "PLANE POINTS", "CYCL DEF 221 X"})
     EXPECT_NE(error(moves, {{"unknown", std::string("skip")}}), "no error") << moves;
   const Program p = read("L X1 Y0 Z0 RL F100\nL X2 R0", {{"cutter_compensation", std::string("ignore")}});
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"cutter compensation"}));
