@@ -38,7 +38,7 @@ void HeidenhainInterpreter::define_cycle(HeidenhainCursor& cursor) {
   take_parameters(cursor);
   if (number == 247) return use_preset();
   if (is_one_of(number, kTuningCycles)) {
-    if (user_codes_.insert(10'000 + number).second)
+    if (noted_.insert(10'000 + number).second)
       note("user code",
            std::string("cycle ") + std::to_string(number) + " is the machine's own tuning: taken to move nothing");
     return;
@@ -211,7 +211,7 @@ void HeidenhainInterpreter::bore() {
   if (!(feed > 0 && feed <= kMaxFeed)) place_.fail("Q206, the feed, is 0 or out of range");
   if (!(pitch > 0)) place_.fail("Q334, the infeed, must be positive");
   if (radius < -1e-9) place_.fail("the tool is larger than the bore of cycle 208");
-  if (user_codes_.insert(10'208).second)
+  if (noted_.insert(10'208).second)
     note("bore milling",
          "cycle 208: a helix from the side of +X with the radius of the tool in comments or TOOL DEF, " +
              number_text(found->second) + " mm; where the control begins it is not in the program");

@@ -88,6 +88,7 @@ class HeidenhainInterpreter {
   void end_codes(const HeidenhainWords& words);
   bool is_user_code(int code) const;
   void take_feed(const HeidenhainWords& words);
+  void take_speed(double speed);
   void compensate(char compensation);
   void keep_tip(bool on);
   NcRowWords row_words(bool rapid);
@@ -174,7 +175,7 @@ class HeidenhainInterpreter {
   double speed_ = 0;
   int turning_ = 0, tool_ = 0;  // 1 clockwise
   std::map<int, double> tool_radii_;
-  std::set<int> user_codes_;
+  std::set<int> noted_;  // M functions, cycles (10 000 and up) and tools (negative) that were noted
   std::optional<double> preset_;
 
   HeidenhainFrame frame_;

@@ -35,7 +35,8 @@ void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
   if (cursor.peek() == '"') {
     const std::string name = cursor.quoted();
     tool = text_->tool_number(name);
-    note("tool", std::string("tool ") + std::to_string(*tool) + " is called by its name, " + name);
+    if (noted_.insert(-*tool).second)
+      note("tool", std::string("tool ") + std::to_string(*tool) + " is called by its name, " + name);
   } else if (cursor.at_number() || cursor.peek() == 'Q') {
     const double number = values_.value(cursor, "TOOL CALL");
     if (!(number >= 0 && number <= kMaxNumber)) place_.fail("the tool's number is out of range");
@@ -55,8 +56,7 @@ void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
   }
   while (cursor.peek() != '\0') {
     if (cursor.take_if('S')) {
-      speed_ = values_.value(cursor, "S");
-      if (!(speed_ >= 0 && speed_ <= kMaxSpindle)) place_.fail("S is negative or out of range");
+      take_speed(values_.value(cursor, "S"));
     } else if (cursor.take_word("DL") || cursor.take_word("DR2") || cursor.take_word("DR")) {
       cursor.take_if(':');
       if (values_.value(cursor, "DL, DR") != 0)
@@ -129,7 +129,7 @@ void HeidenhainInterpreter::begin_codes(const HeidenhainWords& words) {
     for (const RefusedCode& refused : kRefusedCodes)
       if (refused.code == code) place_.fail(refused.why);
     if (is_user_code(code)) {
-      if (user_codes_.insert(code).second)
+      if (noted_.insert(code).second)
         note("user code", std::string("M") + std::to_string(code) + " is the machine's own: taken to move nothing");
     } else if (code == 3 || code == 13) {
       turning_ = 1;
@@ -139,7 +139,7 @@ void HeidenhainInterpreter::begin_codes(const HeidenhainWords& words) {
       shortest_ = true;
     } else if (code == 128) {
       keep_tip(true);
-    } else if (code == 103 && user_codes_.insert(code).second) {
+    } else if (code == 103 && noted_.insert(code).second) {
       note("feed", "M103 slows plunging down: its feeds are taken for those of F");
     } else if (code == 136 || code == 137) {
       if (per_turn_ != (code == 136)) feed_ = 0;
@@ -167,6 +167,7 @@ void HeidenhainInterpreter::end_codes(const HeidenhainWords& words) {
 }
 
 void HeidenhainInterpreter::take_feed(const HeidenhainWords& words) {
+  if (words.speed) take_speed(*words.speed);
   if (words.feed == HeidenhainFeed::Auto) {
     feed_ = call_feed_, per_turn_ = auto_per_turn_;
   } else if (words.feed == HeidenhainFeed::PerTurn) {
@@ -177,6 +178,11 @@ void HeidenhainInterpreter::take_feed(const HeidenhainWords& words) {
     return;
   }
   if (!(feed_ >= 0 && feed_ <= kMaxFeed)) place_.fail("F is negative or out of range");
+}
+
+void HeidenhainInterpreter::take_speed(double speed) {
+  if (!(speed >= 0 && speed <= kMaxSpindle)) place_.fail("S is negative or out of range");
+  speed_ = speed;
 }
 
 void HeidenhainInterpreter::compensate(char compensation) {

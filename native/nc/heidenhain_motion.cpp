@@ -35,12 +35,14 @@ void HeidenhainInterpreter::lose_place() {
 
 /// The one way in which a row comes to be whose place in the part depends on the machine.
 void HeidenhainInterpreter::leave_part(const NcRowWords& words) {
-  if (!position_noted_)
+  // Before the first row nothing comes of it: from where that comes is not known anyway.
+  const bool begun = rows_->begun();
+  if (begun && !position_noted_)
     note("machine position",
          "a position of the machine (M91, M92, M140 MB MAX, or rotary axes that turn without M128): where it is in the "
          "part is not in the program; the moves there, and from there to the next position in the part, are not those "
          "of the machine");
-  position_noted_ = true;
+  position_noted_ |= begun;
   check_no_corner();
   leaving_.reset();
   rows_->at_machine(words);
@@ -244,8 +246,9 @@ void HeidenhainInterpreter::to_machine(const HeidenhainWords& words) {
 void HeidenhainInterpreter::retract(const HeidenhainRetraction& retraction, double feed) {
   if (!retraction.given) return;
   const NcRowWords row{feed == 0, feed, false, turning_ * speed_, tool_, place_.line};
-  const bool along_z = is_upright();
-  if (retraction.to_limit && along_z && !keeps_tip_)
+  const Vec3 axis = rows_->machine().pose(rotary_).axis;
+  const bool along_z = glm::length(axis - frame_.normal()) < 1e-9;
+  if (retraction.to_limit && along_z)
     stand_[2] = Stand::Machine;
   else if (retraction.to_limit)
     lose_place();
@@ -255,7 +258,7 @@ void HeidenhainInterpreter::retract(const HeidenhainRetraction& retraction, doub
   if (along_z)
     to.z += by;
   else
-    to = frame_.from_part(frame_.to_part(at_) + by * rows_->machine().pose(in_part(at_, rotary_)).axis);
+    to = frame_.from_part(frame_.to_part(at_) + by * axis);
   move_to(to, rotary_, row);
 }
 

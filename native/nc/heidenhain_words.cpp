@@ -67,6 +67,11 @@ void HeidenhainWords::take_word(HeidenhainCursor& cursor, HeidenhainValues& valu
   if (c == 'R') return take_radius(cursor, values);
   if (c == 'F') return read_feed(cursor, values);
   if (c == 'M') return take_code(cursor, values);
+  if (c == 'S') {
+    cursor.take();
+    speed = values.value(cursor, "S");
+    return;
+  }
   if ((kinds_ & Length) && (cursor.at_number() || c == 'Q')) {
     length = values.value(cursor, "the length");
     return;

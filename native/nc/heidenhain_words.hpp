@@ -57,8 +57,9 @@ class HeidenhainWords {
   HeidenhainFeed feed = HeidenhainFeed::Unchanged;
   double feed_number = 0;
   HeidenhainRetraction retraction;
-  std::vector<int> codes;     ///< M functions in their order
-  std::vector<char> reduced;  ///< axes after M94
+  std::optional<double> speed;  ///< S, which stands in TOOL CALL mostly
+  std::vector<int> codes;       ///< M functions in their order
+  std::vector<char> reduced;    ///< axes after M94
 
   bool has_linear() const { return axes[0].given || axes[1].given || axes[2].given; }
   bool has_rotary() const { return axes[3].given || axes[4].given || axes[5].given; }

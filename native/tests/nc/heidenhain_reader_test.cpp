@@ -265,7 +265,8 @@ TEST(HeidenhainReader, TakesTheAnglesOfAxesThatThePostPrints) {
 TEST(HeidenhainReader, TheControlKeepsTheTip) {
   const Program p = read(
       "L X0 Y0 Z50 FMAX\nM128 F1000\nL X1 Y2 Z3 A30 C90 F500\nL A45\nL Z4\nM129\nL A0 C0 FMAX\nL X0 Y0 Z0 FMAX\n"
-      "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL A10 FMAX\nL A0 FMAX\nFUNCTION RESET TCPM\nFUNCTION TCPM F CONT AXIS SPAT "
+      "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL A10 FMAX\nL A0 FMAX\nFUNCTION RESET TCPM\nFUNCTION TCPM F CONT "
+      "AXIS SPAT "
       "PATHCTRL "
       "VECTOR\nL A0 B+30 C0 F100\nL X5");
   const double s = std::sqrt(0.5);
