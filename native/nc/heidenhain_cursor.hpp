@@ -35,6 +35,9 @@ class HeidenhainCursor {
   double number(std::string_view what);
   /// Takes the text between quotes, as it is; the opening quote comes next.
   std::string quoted();
+  void skip_line() {
+    while (at_ != end_ && *at_ != '\n') ++at_;
+  }
   /// What is left, as it is, without taking it.
   std::string_view rest() const { return {at_, static_cast<std::size_t>(end_ - at_)}; }
 

@@ -27,9 +27,9 @@ HeidenhainBlock block_of(std::string_view line, int number) {
   return block;
 }
 
-/// Comments, and the headings by which the control shows a program's structure.
+/// Comments, the headings by which the control shows a program's structure, and comments as G code has them.
 bool is_comment(std::string_view text) {
-  return text.empty() || text[0] == ';' || text[0] == '*';
+  return text.empty() || text[0] == ';' || text[0] == '*' || text[0] == '(';
 }
 
 }  // namespace

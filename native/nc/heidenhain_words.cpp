@@ -39,6 +39,7 @@ void HeidenhainWords::take_word(HeidenhainCursor& cursor, HeidenhainValues& valu
     cursor.take();
     return take_coordinate(axes[joint_index(c)], cursor, values, name, false);
   }
+  if (c == '(') return cursor.skip_line();  // a comment as G code has them
   if (c == 'I') {
     if (next(Polar, "IPR")) return take_coordinate(radius, cursor, values, "IPR", true);
     if (next(Polar, "IPA")) return take_coordinate(angle, cursor, values, "IPA", true);

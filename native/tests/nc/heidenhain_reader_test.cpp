@@ -337,6 +337,8 @@ TEST(HeidenhainReader, PassesOverWhatMovesNothing) {
                                   "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 1",
                                   "FUNCTION RESET TCPM",
                                   "PLANE RESET STAY",
+                                  "(A NOTE)",
+                                  "L M8 (COOLANT)",
                                   "CYCL DEF 252 POCKET ~\n Q215=0",
                                   "; text ~\n over two lines",
                                   "BLK FORM CYLINDER Z R50 L10",
