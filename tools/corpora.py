@@ -2,8 +2,8 @@
 
 tools/corpora.py FOLDER [--reasons N]
 
-Each folder in FOLDER is a corpus. A file of APT statements, or one that begins with BEGIN PGM, is read as such; others for
-the first machine that has their axes. No options are given.
+Each folder in FOLDER is a corpus. Files of APT statements, and those with BEGIN PGM, are read as such; others for the
+first machine that has their axes. No options are given.
 """
 
 from __future__ import annotations

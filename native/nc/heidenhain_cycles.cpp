@@ -143,6 +143,12 @@ void HeidenhainInterpreter::shift_datum(HeidenhainCursor& cursor) {
   use_frame(frame);
 }
 
+void HeidenhainInterpreter::reset_datum() {
+  HeidenhainFrame frame = frame_;
+  frame.shift = frame.plane_shift = Vec3(0);
+  use_frame(frame);
+}
+
 void HeidenhainInterpreter::rotate(HeidenhainCursor& cursor) {
   const bool incremental = cursor.take_word("IROT");
   if (!incremental && !cursor.take_word("ROT")) cursor.fail_unexpected();
@@ -164,8 +170,9 @@ void HeidenhainInterpreter::use_preset() {
   else if (*preset_ != preset)
     note("work offset", "preset " + shown + ": how far it is from the one before is not in the program, taken for 0");
   preset_ = preset;
+  reset_datum();
   HeidenhainFrame frame = frame_;
-  frame.shift = frame.plane_shift = Vec3(0), frame.rotation = 0;
+  frame.rotation = 0;
   use_frame(frame);
 }
 

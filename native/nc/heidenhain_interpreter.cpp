@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t kMaxNotesOfKind = 20;
 
 /// Statements that would move the tool, or what follows, and are not read.
-constexpr std::string_view kMovingStatements[] = {
-    "APPR", "DEP", "FPOL",  "FL",      "FLT",     "FC",   "FCT",    "FSELECT",  "SPL",     "TCH", "CTP",
-    "SEL",  "PGM", "TRANS", "PATTERN", "CONTOUR", "GOTO", "MIRROR", "POLARKIN", "TABDATA", "CALL"};
+constexpr std::string_view kMovingStatements[] = {"APPR",    "DEP",  "FPOL",   "FL",       "FLT",    "FC",    "FCT",
+                                                  "FSELECT", "SPL",  "TCH",    "SEL",      "PGM",    "TRANS", "PATTERN",
+                                                  "CONTOUR", "GOTO", "MIRROR", "POLARKIN", "TABDATA"};
 
 }  // namespace
 
@@ -173,6 +173,13 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
     control_function(cursor);
   } else if (word == "PLANE") {
     plane(cursor);
+  } else if (word == "TRANS" && cursor.take_word("DATUM")) {
+    if (cursor.take_word("RESET"))
+      reset_datum();
+    else if (cursor.take_word("AXIS"))
+      shift_datum(cursor);
+    else
+      place_.fail("TRANS DATUM is read with AXIS and RESET: what the datum table has is known to the control only");
   } else if (word == "BEGIN") {
     place_.fail("BEGIN PGM within a program: give each program a file of its own");
   } else {

@@ -98,6 +98,7 @@ class HeidenhainInterpreter {
   void define_old(int number, int part, HeidenhainCursor& cursor);
   void take_parameters(HeidenhainCursor& cursor);
   void shift_datum(HeidenhainCursor& cursor);
+  void reset_datum();
   void rotate(HeidenhainCursor& cursor);
   void use_preset();
   void call_cycle();

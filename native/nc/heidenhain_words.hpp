@@ -51,9 +51,9 @@ class HeidenhainWords {
   std::array<HeidenhainCoordinate, 3> normal, tool;  ///< NX NY NZ, TX TY TZ
   HeidenhainCoordinate radius, angle;                ///< PR, PA
   std::optional<double> arc_radius;                  ///< R of CR, RND
-  std::optional<bool> clockwise;                     ///< DR−
-  std::optional<double> length;                      ///< CHF
-  char compensation = 0;                             ///< '0', 'L', 'R', or '±' as 'P' (R+, R−); 0: none
+  std::optional<bool> clockwise;                     ///< DR− is, DR+ is not
+  std::optional<double> length;                      ///< of CHF, and of RND without R
+  char compensation = 0;                             ///< '0', 'L', 'R', 'P' for R+ and R−; 0: none
   HeidenhainFeed feed = HeidenhainFeed::Unchanged;
   double feed_number = 0;
   HeidenhainRetraction retraction;

@@ -197,6 +197,9 @@ TEST(HeidenhainReader, DatumShiftsAndRotationsMoveWhatFollows) {
   expect_near(p.poses()[4].tip, {10, 7, 0}, 1e-12);
   expect_near(p.poses()[5].tip, {0, 7, 0}, 1e-12);
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"work offset"}));
+  EXPECT_EQ(read("TRANS DATUM AXIS X+5 IY+2\nL X1 Y1 Z0 FMAX\nTRANS DATUM RESET\nL X1 FMAX").poses()[0].tip,
+            Vec3(6, 3, 0));
+  EXPECT_EQ(read("TRANS DATUM AXIS X+5\nL X1 Y1 Z0 FMAX\nTRANS DATUM RESET\nL X1 FMAX").poses()[1].tip, Vec3(1, 1, 0));
   EXPECT_EQ(error("CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 #3").substr(0, 50),
             "line 3: cycle 7 with a line of the datum table is ");
   EXPECT_EQ(error("CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X").substr(0, 40), "line 3: cycle 8 (mirroring) is not read:");
