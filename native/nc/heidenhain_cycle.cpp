@@ -24,6 +24,7 @@ class Hole {
 
   void run(int number) {
     if (number == 1) return old_pecking();
+    if (number == 2) return old_tapping();
     const double depth = length(201, "its depth");
     if (depth > 0)
       place_.fail(std::string("Q201, the depth of cycle ") + std::to_string(number) + ", must be negative");
@@ -39,6 +40,8 @@ class Hole {
         return drill();
       case 201:
         return ream();
+      case 202:
+        return bore();
       case 203:
         return drill_with_breaks();
       case 205:
@@ -86,7 +89,7 @@ class Hole {
     return step;
   }
 
-  void stroke(double height, double feed) { move_({height, feed, spindle_}); }
+  void stroke(double height, double feed) { move_({height, feed, spindle_, aside_}); }
   void rapid(double height) { stroke(height, 0); }
   void leave() {
     if (level_ > clear_) rapid(level_);
@@ -108,6 +111,26 @@ class Hole {
     stroke(bottom_, f);
     stroke(clear_, retraction_feed(f));
     leave();
+  }
+
+  /// Out with the spindle at rest and the edge off the wall, to the side that Q214 names.
+  void bore() {
+    const double f = drilling_feed(), out = retraction_feed(f);
+    const double side = values_.has(214) ? values_.needed(214, "the direction of disengaging") : 0;
+    const double off = length_or(357, "the clearance to the side", 0.2 * setting_.unit);
+    if (!(side == 0 || side == 1 || side == 2 || side == 3 || side == 4))
+      place_.fail("Q214, the direction of disengaging, must be 0 to 4");
+    stroke(bottom_, f);
+    spindle_ = 0;
+    if (side > 0) {
+      const double by = side < 3 ? -off : off;
+      aside_ = side == 1 || side == 3 ? Vec2(by, 0) : Vec2(0, by);
+      stroke(bottom_, f);
+    }
+    stroke(clear_, out);
+    leave();
+    aside_ = Vec2(0), spindle_.reset();
+    if (side > 0) rapid(level_);
   }
 
   /// Steps that get smaller by Q212 down to Q205.
@@ -235,6 +258,20 @@ class Hole {
     }
   }
 
+  /// Cycle 2, with a floating holder: from where the tool stands, the set-up clearance above the surface.
+  void old_tapping() {
+    for (const std::size_t k : {0U, 1U, 3U})
+      if (!setting_.old[k]) place_.fail(std::string("cycle 2 without its part 2.") + std::to_string(k + 1));
+    const double start = setting_.height, f = *setting_.old[3] * setting_.feed_unit;
+    const double bottom = start - std::abs(*setting_.old[0]) * setting_.unit + *setting_.old[1] * setting_.unit;
+    if (*setting_.old[1] > 0) place_.fail("the depth of cycle 2 must be negative");
+    if (!(f > 0 && f <= kMaxFeed && std::abs(bottom) <= kMaxLength)) place_.fail("a number of cycle 2 is out of range");
+    if (*setting_.old[1] == 0) return;
+    stroke(bottom, f);
+    spindle_ = -setting_.speed;
+    stroke(start, f);
+  }
+
   /// Cycle 1: from where the tool stands, the set-up clearance above the surface.
   void old_pecking() {
     for (const std::size_t k : {0U, 1U, 2U, 4U})
@@ -264,12 +301,13 @@ class Hole {
   const std::function<void(const HeidenhainStroke&)>& move_;
   double surface_ = 0, clear_ = 0, level_ = 0, bottom_ = 0;
   std::optional<double> spindle_;
+  Vec2 aside_{0};
 };
 
 }  // namespace
 
 bool is_heidenhain_hole(int number) {
-  constexpr int kHoles[] = {1, 200, 201, 203, 205, 206, 207, 209, 241};
+  constexpr int kHoles[] = {1, 2, 200, 201, 202, 203, 205, 206, 207, 209, 241};
   return std::ranges::find(kHoles, number) != std::end(kHoles);
 }
 

@@ -21,6 +21,10 @@ constexpr int kTuningCycles[] = {332, 392};
 /// Cycles that act where they are defined, on what follows or at once.
 constexpr int kActingCycles[] = {8, 11, 12, 26, 220, 221};
 
+/// That the cycles of holes take.
+constexpr int kHoleParameters[] = {200, 201, 202, 203, 204, 205, 206, 208, 212, 213, 214, 239, 253,
+                                   256, 257, 258, 259, 334, 335, 339, 351, 357, 379, 426, 427, 428};
+
 bool is_one_of(int number, std::span<const int> numbers) {
   return std::ranges::find(numbers, number) != numbers.end();
 }
@@ -35,6 +39,8 @@ void HeidenhainInterpreter::define_cycle(HeidenhainCursor& cursor) {
   if (cursor.peek() == '.' && cursor.at_number()) part = static_cast<int>(std::lround(cursor.number("CYCL DEF") * 10));
   if (number < 200 && part == 0 && number != 7 && number != 10 && number != 19) calls_everywhere_ = false;
   if (number < 200) return define_old(number, part, cursor);
+  // What another cycle left would stand for what this one does not name.
+  for (const int parameter : kHoleParameters) values_.forget(parameter);
   take_parameters(cursor);
   if (number == 247) return use_preset();
   if (is_one_of(number, kTuningCycles)) {
@@ -67,15 +73,15 @@ void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& c
     case 19:
       return part == 1 ? old_plane(cursor) : void();
     case 1:
-      cycle_ = 1;
+    case 2:
+      cycle_ = number;
       if (part == 0) return old_cycle_.fill(std::nullopt);
-      if (part > 5) place_.fail("cycle 1 has the parts 1.0 to 1.5");
+      if (part > 5) place_.fail(name + " has no such part");
       // A name before the number, which differs from language to language and may touch it.
       while (cursor.peek() != '\0' && !cursor.at_number() && cursor.peek() != '+' && cursor.peek() != '-' &&
              cursor.peek() != 'Q')
         cursor.take();
-      old_cycle_[static_cast<std::size_t>(part) - 1] =
-          values_.value(cursor, std::string("CYCL DEF 1.") + std::to_string(part));
+      old_cycle_[static_cast<std::size_t>(part) - 1] = values_.value(cursor, "CYCL DEF");
       return;
     case 8:
     case 11:
@@ -180,17 +186,18 @@ void HeidenhainInterpreter::call_cycle() {
   if (cycle_ == 0) place_.fail("a call without a cycle: CYCL DEF before it");
   if (!is_heidenhain_hole(cycle_) && cycle_ != 208)
     place_.fail(std::string("cycle ") + std::to_string(cycle_) +
-                " is not read (1, 200, 201, 203, 205 to 209 and 241 are): have the CAM system write its moves");
-  if (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine || (cycle_ == 1 && stand_[2] == Stand::Machine))
+                " is not read (1, 2, 200 to 203, 205 to 209 and 241 are): have the CAM system write its moves");
+  if (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine || (cycle_ < 200 && stand_[2] == Stand::Machine))
     place_.fail("a cycle while " + axes_away() + " is at a position of the machine: move into the part first");
   if (!is_upright()) fail_tilted();
   if (cycle_ == 208) return bore();
   const HeidenhainCycleSetting setting{unit_, feed_unit_, speed_, at_.z, old_cycle_};
+  const Vec3 hole = at_;
   heidenhain_hole(cycle_, setting, values_, place_, [&](const HeidenhainStroke& stroke) {
     NcRowWords words{stroke.feed == 0, stroke.feed, false, stroke.spindle.value_or(turning_ * speed_), tool_,
                      place_.line};
     stand_[2] = Stand::Given;
-    move_to({at_.x, at_.y, stroke.height}, rotary_, words);
+    move_to({hole.x + stroke.aside.x, hole.y + stroke.aside.y, stroke.height}, rotary_, words);
     if (rows_->pending().size() > kMaxRows) place_.fail("more rows than can be held");
   });
   leaving_.reset();

@@ -26,6 +26,7 @@ class HeidenhainValues {
   std::optional<double> get(int key) const;
   /// The value of Q`number`; FormatError saying `what` it is for where it has none that is known.
   double needed(int number, std::string_view what) const;
+  void forget(int key) { values_.erase(key); }
   bool has(int number) const { return values_.contains(number); }
 
   /// A number or a parameter, after a sign or none: the value of a word, `what` in messages. FormatError where it has

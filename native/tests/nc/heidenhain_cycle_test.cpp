@@ -91,6 +91,22 @@ TEST(HeidenhainCycle, TurnsTheSpindleBackWhenItTaps) {
   EXPECT_EQ(lip.spindle(), (std::vector<double>{1000, 1000, -50, 1790, -50, -50}));
 }
 
+TEST(HeidenhainCycle, BoresAndKeepsOffTheWall) {
+  expect_strokes(read("CYCL DEF 202 BORING" + kHole + "Q208=400 ~\n Q214=0\nCYCL CALL"),
+                 {{3, 0}, {-9, 150}, {3, 400}, {6, 0}}, "where it stays on the wall");
+  const Program p = read("CYCL DEF 202 BORING" + kHole + "Q208=400 ~\n Q214=4\nCYCL CALL");
+  std::vector<Vec3> tips;
+  for (const Pose& pose : p.poses()) tips.push_back(pose.tip);
+  EXPECT_EQ(tips,
+            (std::vector<Vec3>{{1, 2, 30}, {1, 2, 3}, {1, 2, -9}, {1, 2.2, -9}, {1, 2.2, 3}, {1, 2.2, 6}, {1, 2, 6}}));
+  EXPECT_EQ(p.spindle(), (std::vector<double>{1000, 1000, 1000, 0, 0, 0, 1000}));
+  const Program old = read(
+      "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 AVST 10\nCYCL DEF 2.2 DEPTH -20\nCYCL DEF 2.3 DWELL 1\nCYCL DEF 2.4 "
+      "F100\nCYCL CALL");
+  expect_strokes(old, {{0, 100}, {30, 100}}, "2");
+  EXPECT_EQ(old.spindle(), (std::vector<double>{1000, 1000, -1000}));
+}
+
 TEST(HeidenhainCycle, IsCalledWhereThePositionsSay) {
   const Program p =
       read("CYCL DEF 200 D" + kHole +
@@ -136,6 +152,8 @@ TEST(HeidenhainCycle, RefusesWhatDoesNotFit) {
       {"CYCL DEF 200 D" + kHole + "Q202=0.00001\nCYCL CALL", "Q202 is too small: too many pecks"},
       {"CYCL DEF 251 POCKET ~\n Q215=0\nCYCL CALL", "cycle 251 is not read"},
       {"CYCL DEF 200 D" + kHole + "Q202=1\nCYCL CALL POS X1", "CYCL CALL POS and PAT are not read"},
+      {"CYCL DEF 200 D" + kHole + "Q202=5\nCYCL DEF 201 D ~\n Q201=-3\nCYCL CALL",
+       "Q203, the coordinate of the surface, is missing"},
       {"CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 DIST 2\nL M99", "cycle 1 without its part 1.2"},
       {"CYCL DEF 200 D" + kHole + "Q202=5\nL X5 FMAX M91\nCYCL CALL",
        "a cycle while X is at a position of the machine"},
