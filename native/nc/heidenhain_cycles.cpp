@@ -37,7 +37,6 @@ void HeidenhainInterpreter::define_cycle(HeidenhainCursor& cursor) {
   const int number = static_cast<int>(given);
   int part = static_cast<int>(std::lround((given - number) * 10));
   if (cursor.peek() == '.' && cursor.at_number()) part = static_cast<int>(std::lround(cursor.number("CYCL DEF") * 10));
-  if (number < 200 && part == 0 && number != 7 && number != 10 && number != 19) calls_everywhere_ = false;
   if (number < 200) return define_old(number, part, cursor);
   // What another cycle left would stand for what this one does not name.
   for (const int parameter : kHoleParameters) values_.forget(parameter);
@@ -59,7 +58,7 @@ void HeidenhainInterpreter::define_cycle(HeidenhainCursor& cursor) {
                   "nothing");
     return note("skipped", std::string("CYCL DEF ") + std::to_string(number));
   }
-  cycle_ = number;
+  cycle_ = number, calls_everywhere_ = false;
 }
 
 /// Cycles below 200 come in parts, each a block.
@@ -74,7 +73,7 @@ void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& c
       return part == 1 ? old_plane(cursor) : void();
     case 1:
     case 2:
-      cycle_ = number;
+      cycle_ = number, calls_everywhere_ = false;
       if (part == 0) return old_cycle_.fill(std::nullopt);
       if (part > 5) place_.fail(name + " has no such part");
       // A name before the number, which differs from language to language and may touch it.
@@ -93,7 +92,7 @@ void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& c
     case 12:
       place_.fail("cycle 12 calls another program, which is not read: paste it in as a label (LBL), and call that");
     default:
-      if (!is_one_of(number, kQuietCycles)) cycle_ = number;
+      if (!is_one_of(number, kQuietCycles)) cycle_ = number, calls_everywhere_ = false;
   }
 }
 

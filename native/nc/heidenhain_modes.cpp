@@ -89,7 +89,7 @@ void HeidenhainInterpreter::define_tool(HeidenhainCursor& cursor) {
 void HeidenhainInterpreter::control_function(HeidenhainCursor& cursor) {
   if (cursor.take_word("RESET TCPM")) return keep_tip(false);
   if (!cursor.take_word("TCPM")) {
-    for (const std::string_view nothing : {"MODE MILL", "DWELL", "FEED", "S-PULSE", "RESET"})
+    for (const std::string_view nothing : {"MODE MILL", "DWELL", "FEED", "S-PULSE", "COUNT", "RESET"})
       if (cursor.take_word(nothing)) return;
     place_.fail("this FUNCTION is not read: it would move the tool or what follows; FUNCTION TCPM is");
   }

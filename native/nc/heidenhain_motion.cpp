@@ -170,6 +170,8 @@ void HeidenhainInterpreter::move_to(const Vec3& to, const Joints& rotary, const 
   check_length(to), check_no_corner();
   const Vec3 from = at_;
   if (!moves_in_part(words)) {
+    // With the rotary axes elsewhere every word moves the tip along all axes of the part.
+    if (!keeps_tip_ && !is_upright()) lose_place();
     leave_part(words);
   } else if (along_vectors_ && rotary != rotary_) {
     const Joints joints = in_part(to, rotary);

@@ -116,6 +116,10 @@ TEST(HeidenhainCycle, IsCalledWhereThePositionsSay) {
   for (const Pose& pose : p.poses())
     if (pose.tip.z == -9) x.push_back(pose.tip.x);
   EXPECT_EQ(x, (std::vector<double>{10, 30, 30, 40}));
+  EXPECT_EQ(
+      read("CYCL DEF 200 D" + kHole + "Q202=20\nL X5 FMAX M89\nCYCL DEF 201 D" + kHole + "Q208=9\nL X6 FMAX").size(),
+      6U)
+      << "another cycle ends M89";
   EXPECT_EQ(p.feed()[3], 80) << "AUTO is the feed of TOOL CALL";
   // In a tilted plane along its normal, and from a position of the machine.
   const Program tilted =

@@ -310,6 +310,12 @@ TEST(HeidenhainReader, PositionsOfTheMachineKeepThePose) {
       << "until X Y Z are known again";
   EXPECT_EQ(p.feed().back(), 500);
   EXPECT_EQ(kinds(p), (std::vector<std::string>{"machine position"}));
+  // Off the tilted plane a coordinate of the machine is none of the part, also when the plane holds again.
+  const Program off = read(
+      "PLANE SPATIAL SPA+90 SPB+0 SPC+0 TURN FMAX\nL X0 Y0 Z9 FMAX\nPLANE RESET STAY\nL Z50 FMAX\nPLANE SPATIAL SPA+90 "
+      "SPB+0 SPC+0 TURN FMAX\nL X3 FMAX\nL Y4 FMAX\nL Z5 FMAX");
+  for (std::size_t row = 1; row < 4; ++row) expect_near(off.poses()[row].tip, {0, -9, 0}, 1e-12);
+  expect_near(off.poses()[4].tip, {3, -5, 4}, 1e-12);
   const Program q = read("L X0 Y0 Z5 FMAX\nL Z-100 FMAX M92\nL X10 F100");
   EXPECT_EQ(q.poses().back().tip, Vec3(0, 0, 5));
   EXPECT_EQ(kinds(q), (std::vector<std::string>{"machine position", "coordinates"}));
