@@ -1,5 +1,6 @@
 #include "nc/header.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "nc/machines.hpp"
@@ -8,7 +9,14 @@ namespace riffler {
 
 namespace {
 
-constexpr std::string_view kBegin = "(Riffler ", kPost = ", post ";
+constexpr std::string_view kBegin = "Riffler ", kPost = ", post ";
+
+/// The text of a line that is a comment, in brackets or, behind a block's number, after a semicolon.
+std::string_view comment_of(std::string_view line) {
+  if (line.starts_with('(') && line.ends_with(')')) return line.substr(1, line.size() - 2);
+  line.remove_prefix(std::min(line.find_first_not_of("0123456789 "), line.size()));
+  return line.starts_with("; ") ? line.substr(2) : std::string_view();
+}
 
 /// Whether `name` is a machine that we know whose words any tip-centred machine takes alike.
 bool is_upright(const std::string& name) {
@@ -22,16 +30,18 @@ bool is_upright(const std::string& name) {
 }
 
 void check_name(const NcPlace& place, const Machine& machine) {
-  const std::size_t at = place.text.rfind(kPost);
-  if (at == place.text.npos || !place.text.ends_with(')')) return;
-  const std::string name(place.text.substr(at + kPost.size(), place.text.size() - at - kPost.size() - 1));
+  const std::string_view comment = comment_of(place.text);
+  const std::size_t at = comment.rfind(kPost);
+  if (at == comment.npos) return;
+  const std::string name(comment.substr(at + kPost.size()));
   if (name == machine.name() || (!machine.joint_words() && is_upright(name))) return;
   place.fail("written for machine " + name + ", not " + machine.name() + ": read it with machine " + name +
              ", or with options {'header': 'ignore'}");
 }
 
 void check_words(const NcPlace& place, const Machine& machine) {
-  const bool joints = place.text.starts_with("(X Y Z: joints"), tip = place.text.starts_with("(X Y Z: tip");
+  const std::string_view comment = comment_of(place.text);
+  const bool joints = comment.starts_with("X Y Z: joints"), tip = comment.starts_with("X Y Z: tip");
   if (!(machine.joint_words() ? tip : joints)) return;
   place.fail(std::string("X Y Z are ") + (tip ? "the tip's place" : "where the axes stand") +
              " here: read it with options {'tcp': " + (tip ? "True}" : "False}"));
@@ -46,7 +56,9 @@ std::string header_line(const Machine& machine) {
 void check_header(NcSource& source, const Machine& machine) {
   const NcSource::Mark start = source.mark();
   std::string_view line;
-  if (source.next(line) && line.starts_with(kBegin)) {
+  bool more = source.next(line);
+  if (more && line.ends_with("BEGIN PGM RIFFLER MM")) more = source.next(line);
+  if (more && comment_of(line).starts_with(kBegin)) {
     check_name({source.name(), source.line(), line}, machine);
     if (source.next(line)) check_words({source.name(), source.line(), line}, machine);
   }

@@ -39,4 +39,17 @@ std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& optio
   return std::make_unique<Machine>(describe_machine(found.toml, found.file, found.name, options));
 }
 
+std::string machines_of_language(std::string_view language) {
+  std::string out;
+  for (const DescriptionEntry& entry : machines()) {
+    try {
+      OptionReader none({}, entry.name);
+      if (make_machine(entry.name, none)->control().language == language) out += (out.empty() ? "" : ", ") + entry.name;
+    } catch (const std::exception&) {
+      // A description that cannot be read, or needs options, is not among those that are named.
+    }
+  }
+  return out;
+}
+
 }  // namespace riffler

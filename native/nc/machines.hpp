@@ -24,4 +24,7 @@ std::string machines_with(char axis);
 /// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options);
 
+/// The names of machines() whose control reads `language`, apart by commas.
+std::string machines_of_language(std::string_view language);
+
 }  // namespace riffler

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "geom/error.hpp"
 #include "geom/io.hpp"
 #include "nc/apt_reader.hpp"
+#include "nc/heidenhain_reader.hpp"
+#include "nc/heidenhain_text.hpp"
 #include "nc/interpreter.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
@@ -13,13 +16,10 @@ namespace riffler {
 
 namespace {
 
-/// Whether the machine's control reads APT; std::invalid_argument for machines whose code nobody reads here.
-bool is_apt(const ReadOptions& options) {
+/// Of the machine's control.
+std::string language_of(const ReadOptions& options) {
   OptionReader taken(options.options, "machine " + options.machine);
-  const std::string language = make_machine(options.machine, taken)->control().language;
-  if (language != "apt" && language != "rs274")
-    throw std::invalid_argument(taken.owner() + ": its language (" + language + ") is not read; rs274 and apt are");
-  return language == "apt";
+  return make_machine(options.machine, taken)->control().language;
 }
 
 constexpr const char* kOfReading[] = {"chord_tolerance",
@@ -44,6 +44,38 @@ constexpr const char* kOfReading[] = {"chord_tolerance",
                                       "g59_3",
                                       "g28",
                                       "g30"};
+/// FormatError where the text is in another language than the machine's control reads.
+void check_language(NcSource& source, const std::string& language) {
+  const bool conversational = begins_heidenhain(source);
+  if (conversational == (language == "heidenhain")) return;
+  const std::string other = conversational ? "heidenhain" : "rs274";
+  const std::string what = conversational
+                               ? "a Heidenhain conversational program (BEGIN PGM), and the machine's control "
+                                 "reads another language"
+                               : "not a Heidenhain conversational program, which the machine's control reads: "
+                                 "BEGIN PGM is not in its first block";
+  throw FormatError(source.name(), "line 1",
+                    what + "; machines that read " + other + ": " + machines_of_language(other));
+}
+
+/// A file of a language that is read as a whole.
+Program parse_whole(std::string_view text, const std::string& file, const ReadOptions& options,
+                    const std::string& language) {
+  NcSource source(text, file);
+  check_language(source, language);
+  return language == "apt" ? parse_apt(text, file, options) : parse_heidenhain(text, file, options);
+}
+
+Program read_whole(const std::filesystem::path& path, const ReadOptions& options, const std::string& language) {
+  const std::vector<std::uint8_t> bytes = read_file(path);
+  return parse_whole({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.filename().string(), options,
+                     language);
+}
+
+std::unique_ptr<NcSource> checked_source(std::unique_ptr<NcSource> source) {
+  check_language(*source, "rs274");
+  return source;
+}
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";
@@ -71,26 +103,26 @@ Options without_reading(Options options) {
 }
 
 Program parse_nc(std::string_view text, const std::string& file, const ReadOptions& options) {
-  if (is_apt(options)) return parse_apt(text, file, options);
-  NcInterpreter interpreter(std::make_unique<NcSource>(text, file), {}, options);
+  if (const std::string language = language_of(options); language != "rs274")
+    return parse_whole(text, file, options, language);
+  NcInterpreter interpreter(checked_source(std::make_unique<NcSource>(text, file)), {}, options);
   return read_all(interpreter);
 }
 
 Program read_nc(const std::filesystem::path& path, const ReadOptions& options) {
-  if (is_apt(options)) {
-    const std::vector<std::uint8_t> bytes = read_file(path);
-    return parse_apt({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.filename().string(), options);
-  }
-  NcInterpreter interpreter(std::make_unique<NcSource>(path), folder_of(path), options);
+  if (const std::string language = language_of(options); language != "rs274")
+    return read_whole(path, options, language);
+  NcInterpreter interpreter(checked_source(std::make_unique<NcSource>(path)), folder_of(path), options);
   return read_all(interpreter);
 }
 
 NcStream::NcStream(const std::filesystem::path& path, const ReadOptions& options, std::size_t rows) : rows_(rows) {
   if (rows < 2) throw std::invalid_argument("rows must be at least 2");
-  if (is_apt(options))
-    whole_ = read_nc(path, options);
+  if (const std::string language = language_of(options); language != "rs274")
+    whole_ = read_whole(path, options, language);
   else
-    interpreter_ = std::make_unique<NcInterpreter>(std::make_unique<NcSource>(path), folder_of(path), options);
+    interpreter_ =
+        std::make_unique<NcInterpreter>(checked_source(std::make_unique<NcSource>(path)), folder_of(path), options);
 }
 
 NcStream::NcStream(NcStream&&) noexcept = default;

@@ -53,7 +53,7 @@ class NcStream {
 
   std::unique_ptr<NcInterpreter> interpreter_;
   std::size_t rows_, taken_ = 0;
-  Program whole_;  // an APT file's rows
+  Program whole_;  // the rows of a language that is read as a whole
   std::unique_ptr<Move> last_;
 };
 

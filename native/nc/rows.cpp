@@ -104,6 +104,13 @@ void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words
   at_ = to, last_ = last;
 }
 
+void NcRows::line_to_pose(const Joints& from, const Joints& to, const Pose& pose, const NcRowWords& words) {
+  begin(from);
+  check_limits(in_part(to));
+  row(pose, words.rapid ? 0 : words.feed, words);
+  at_ = in_part(to), last_ = pose;
+}
+
 Pose NcRows::between(const Joints& to, int i, int parts) const {
   Joints joints;
   for (std::size_t k = 0; k < joints.size(); ++k) joints[k] = at_[k] + (to[k] - at_[k]) * i / parts;

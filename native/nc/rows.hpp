@@ -67,6 +67,9 @@ class NcRows {
   /// Those that wait: as they are, or at positions of the machine.
   void release(bool in_part);
 
+  /// One row at `pose`, which `to` holds: the tool's axis is given as such.
+  void line_to_pose(const Joints& from, const Joints& to, const Pose& pose, const NcRowWords& words);
+
   /// The words that hold the same pose on `machine` with the same rotary axes; before the first row what they are.
   Joints change_machine(std::unique_ptr<Machine> machine, const Joints& at);
 

@@ -14,6 +14,25 @@ namespace riffler::reader_fuzz_test {
 namespace {
 
 const std::string kSeeds[] = {
+    "0 BEGIN PGM A MM\n1 BLK FORM 0.1 Z X0 Y0 Z-9\nTOOL DEF 3 L+0 R+4\nTOOL CALL 3 Z S900 F80 DL+0\nL X1 Y2,5 Z30 R0 "
+    "FMAX M3\nL "
+    "IZ-9 F100 M8\nCC X+0 Y+0\nC X2 Y-1 DR-\nCP IPA+400 IZ-1 DR+\nLP PR+3 PA45\nCT X9 Y9\nCR X5 Y5 R+9 DR+\nL X20\nRND "
+    "R1\nL Y20\nCHF 2\nL X0\n* - MORE\nQ1 = 2 * ( 3 + SIN 30 ) ^ 2\nFN 9: IF +Q1 EQU +5 GOTO LBL 3\nLBL 1\nL "
+    "IX+Q1\nCALL LBL "
+    "1 REP 2/2\nLBL 3\nCALL LBL \"S\"\nL Z0 R0 FMAX M91\nM140 MB MAX\nL X0 Y0 Z9 FMAX\nM30\nLBL \"S\"\nFN 18: SYSREAD "
+    "Q9 = "
+    "ID1\nL IY+1\nLBL 0\nEND PGM A MM\n",
+    "BEGIN PGM B INCH\nTOOL CALL \"D5\" Z S500\nCYCL DEF 247 DATUM ~\n Q339=1 ;N\nCYCL DEF 7.0 D\nCYCL DEF 7.1 "
+    "X1\nCYCL DEF 7.2 "
+    "IY1\nPLANE SPATIAL SPA+90 SPB0 SPC180 TURN FMAX SEQ- TABLE ROT\nL X0 Y0 Z3 FMAX M13\nCYCL DEF 200 DRILL ~\n "
+    "Q200=.1 ~\n "
+    "Q201=-1 ~\n Q206=9 ~\n Q202=.4 ~\n Q203=0 ~\n Q204=1 ~\n Q334=.3 ~\n Q335=1\nL X1 FMAX M99\nCYCL CALL\nPLANE "
+    "RESET "
+    "STAY\nL A+Q120 C0 FMAX M126\nM128 F100\nL X0 Y0 Z1 A10 C20 F90\nLN X1 Y0 Z1 TX.6 TY0 TZ.8\nM129\nFUNCTION TCPM F "
+    "TCP AXIS "
+    "SPAT PATHCTRL AXIS\nL A1 B2\nFUNCTION RESET TCPM\nCYCL DEF 32.0 T\nCYCL DEF 32.1 T.01\nCYCL DEF 10.0 R\nCYCL DEF "
+    "10.1 "
+    "ROT+5\nSTOP\nEND PGM B INCH\n",
     "%\nO1 (SEED)\nN1 G21 G90 G94 G17 G40 G49 G80 G54\nT1 M6\nS8000 M3\nG43.4 H1\nG0 X10.00000 Y-20.5 Z30 A10.5 "
     "C-120.25\n"
     "G1 Z5 F600\nX20 A20\nX30.125 Y2 C-100\nG93 X40 F2.5\nX41 C-90 F3\nG94 G0 Z30 A0\nM5\nG49\nM30\n%\n",
@@ -72,10 +91,15 @@ TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
     try {
       // Coarse chords: a mutation may ask for an arc of kilometres.
       Options options{{"chord_tolerance", 0.1}};
-      const bool is_apt = seed + 1 == kSeedCount;
+      const bool is_apt = seed + 1 == kSeedCount, is_heidenhain = seed < 2;
       if (!is_apt) options["max_turns"] = 1000.0;
       if (random() % 4 == 0) options["unknown"] = std::string("skip");
-      p = parse_nc(text, "fuzz.ngc", {is_apt ? "apt" : random() % 4 ? "tcp" : "3-axis", options});
+      p = parse_nc(text, "fuzz.ngc",
+                   {is_apt          ? "apt"
+                    : is_heidenhain ? "heidenhain"
+                    : random() % 4  ? "tcp"
+                                    : "3-axis",
+                    options});
     } catch (const FormatError& e) {
       ++refused;
       ASSERT_EQ(std::string(e.what()).rfind("fuzz.ngc, line ", 0), 0U) << e.what();
@@ -98,9 +122,9 @@ TEST(ReaderFuzz, SurvivesBytesOfAnyKind) {
   for (int round = 0; round < 5'000; ++round) {
     std::string text(random() % 200, '\0');
     for (char& c : text) c = static_cast<char>(round % 2 ? random() : "GXYZ[]#<>=o1 23.-\nsubif"[random() % 23]);
-    for (const char* machine : {"tcp", "apt"}) {
+    for (const char* machine : {"tcp", "apt", "heidenhain"}) {
       try {
-        parse_nc(text, "fuzz.ngc", {machine, {}});
+        parse_nc((machine[0] == 'h' ? "BEGIN PGM F MM\n" : "") + text, "fuzz.ngc", {machine, {}});
       } catch (const FormatError&) {
       }
     }
@@ -114,13 +138,28 @@ TEST(ReaderFuzz, SurvivesWhatIsDeep) {
     return out;
   };
   for (const std::string& text :
-       {"G0 X" + many("[", 100'000), "G0 X" + many("#", 100'000) + "1", "G0 X" + many("-[", 100'000),
-        "G0 X" + many("SIN[", 100'000), many("G0", 100'000), many("o1 repeat [2]\n", 2000), many("o1 do\n", 2000),
-        "G0 X[1" + many("**1", 100'000) + "]", "G0 X[1" + many("+1*2**3", 50'000) + "]", many("o1 call\n", 50),
-        many("G0 X#1 #1=1\n", 20'000), std::string("o1 sub\no1 call\no1 call\no1 endsub\no1 call\n"),
-        many("(", 100'000)}) {
+       {"G0 X" + many("[", 100'000),
+        "G0 X" + many("#", 100'000) + "1",
+        "G0 X" + many("-[", 100'000),
+        "G0 X" + many("SIN[", 100'000),
+        many("G0", 100'000),
+        many("o1 repeat [2]\n", 2000),
+        many("o1 do\n", 2000),
+        "G0 X[1" + many("**1", 100'000) + "]",
+        "G0 X[1" + many("+1*2**3", 50'000) + "]",
+        many("o1 call\n", 50),
+        many("G0 X#1 #1=1\n", 20'000),
+        std::string("o1 sub\no1 call\no1 call\no1 endsub\no1 call\n"),
+        many("(", 100'000),
+        "BEGIN PGM A MM\nQ1 = " + many("(", 100'000),
+        "BEGIN PGM A MM\nQ1 = " + many("-", 100'000),
+        "BEGIN PGM A MM\nQ1 = " + many("SIN ", 100'000),
+        "BEGIN PGM A MM\nQ1 = 1" + many("+1^2", 50'000),
+        std::string("BEGIN PGM A MM\nLBL 1\nCALL LBL 1\n"),
+        "BEGIN PGM A MM\n" + many("Q1=1~\n", 50'000),
+        std::string("BEGIN PGM A MM\nL X0 Y0 Z0 FMAX\nLBL 1\nL IX1 FMAX\nCALL LBL 1 REP 99999999\n")}) {
     try {
-      parse_nc(text, "fuzz.ngc", {"tcp", {{"max_turns", 10'000.0}}});
+      parse_nc(text, "fuzz.ngc", {text.starts_with("BEGIN") ? "heidenhain" : "tcp", {{"max_turns", 10'000.0}}});
     } catch (const FormatError&) {
     }
   }

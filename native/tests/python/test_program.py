@@ -205,24 +205,27 @@ def test_tcp_blocks_hold_the_poses_and_the_way_between_them(tmp_path_factory, cl
             assert error < axis_tolerance + slack
 
 
+@pytest.mark.parametrize(
+    ("post", "options"), [("tcp", {}), ("heidenhain", {}), ("heidenhain-bc", {}), ("heidenhain", {"vectors": True})]
+)
 @FIXED
 @given(cl=path)
-def test_read_gives_back_what_was_written(tmp_path_factory, cl):
+def test_read_gives_back_what_was_written(tmp_path_factory, post, options, cl):
     if any(np.linalg.norm(a + b) < 1e-3 for a, b in zip(cl[:-1, 3:], cl[1:, 3:], strict=True)):
         return
     p = riffler.Program.from_cl(
         [cl, cl[::-1]], tools=[riffler.Tool.ball(6, 30), riffler.Tool.flat(6, 30)], feed=123.456, spindle=-999
     )
     file = tmp_path_factory.mktemp("nc") / "p.ngc"
-    p.write(file)
+    p.write(file, post=post, options=options)
     first = file.read_bytes()
-    q = riffler.Program.read(file, machine="tcp")
+    q = riffler.Program.read(file, machine=post, options=options)
     rows = rows_of(q.poses, p.poses)
     for name in ("feed", "rapid", "tool", "spindle"):
         np.testing.assert_array_equal(getattr(q, name)[rows], getattr(p, name))
     assert (q.line > 0).all() and (np.diff(q.line) > 0).all()
-    assert q.provenance == {"source": "p.ngc"}
-    p.write(file)
+    assert q.provenance == {"source": "p.ngc"} and not q.notes
+    p.write(file, post=post, options=options)
     assert file.read_bytes() == first
 
 
@@ -276,7 +279,7 @@ def test_programs_are_edited_into_new_ones(ball):
 
 
 def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball):
-    machines = "tcp linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain apt"
+    machines = "tcp linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc apt"
     assert list(riffler.machines()) == machines.split() and all(riffler.machines().values())
     p = riffler.Program.from_cl([spiral(3)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"

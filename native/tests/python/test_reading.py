@@ -47,6 +47,19 @@ def test_a_stream_says_what_is_wrong_when_it_gets_there(part):
         riffler.Program.stream(part, options={"rows": 5})
 
 
+def test_a_conversational_program_streams_too(tmp_path):
+    file = tmp_path / "part.h"
+    blocks = [f"{k} L X+{k % 97} Y-{k % 89},5 Z+{k % 3} F300" for k in range(5000)]
+    file.write_text("\r\n".join(["BEGIN PGM PART MM", "TOOL CALL 4 Z S900", *blocks, "M30", "END PGM PART MM"]))
+    whole = riffler.Program.read(file, machine="heidenhain")
+    assert len(whole) == 5000 and whole.poses[4999, 1] == -15.5
+    chunks = list(riffler.Program.stream(file, machine="heidenhain", rows=700))
+    parts = [chunk.poses[k > 0 :] for k, chunk in enumerate(chunks)]
+    np.testing.assert_array_equal(np.concatenate(parts), whole.poses)
+    with pytest.raises(riffler.FormatError, match=r"machines that read heidenhain: heidenhain, heidenhain-bc$"):
+        riffler.Program.stream(file)
+
+
 def test_streams_run_beside_each_other(part):
     sums = []
 
