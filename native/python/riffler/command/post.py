@@ -19,6 +19,7 @@ from . import tools
 from .arguments import MESHES, add_machine_option, finite, input_file, length, machine_options, output_file
 from .carve import read_program
 from .console import Console, number, times
+from .shapes import tell
 
 HELP = "write NC code for a machine"
 __doc__ += f"""
@@ -221,11 +222,13 @@ def lifted(
 ) -> list[np.ndarray]:
     part = input_file(arguments.part, MESHES)
     with console.step("locate") as progress:
-        mesh = Mesh.read(part)
+        mesh = Mesh.read(part)  # as it is: the plan knows it by its sum
         wanted = planned.part.get("sha256")
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
-        collider, found = Collider(mesh), []
+        solid: dict[str, Any] = {}
+        collider, found = Collider(mesh.oriented(solid)), []
+        tell(part.name, solid, console)
         for k, path in enumerate(paths):
             rows, report = plan.cutter_locations(path, tool, collider, tolerance=LIFTED)
             if not report.ok:
