@@ -67,7 +67,7 @@ Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Setting
   validate(part);
   if (part.empty()) throw std::invalid_argument("part: a mesh without triangles");
   std::optional<Mesh> storage;
-  data_ = std::make_unique<Data>(as_solid(part, storage), settings);
+  data_ = std::make_unique<Data>(as_solid(part, storage, Hollow::Kept), settings);
   data_->fixtures.reserve(fixtures.size());
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) {

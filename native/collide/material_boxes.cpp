@@ -34,8 +34,8 @@ class MaterialBoxes::Brick {
             if (!(low < high)) continue;
             Cell& c = cells_[place(i / rays_ - u, j / rays_ - v, m)];
             c.box.add({grid_.u(i) - 0.5 * h, grid_.v(j) - 0.5 * h, low});
-            c.box.add({grid_.u(i) - 0.5 * h + grid_.width_u(i), grid_.v(j) - 0.5 * h + grid_.width_v(j), high});
-            c.volume += grid_.area(i, j) * (high - low);
+            c.box.add({grid_.u(i) + 0.5 * h, grid_.v(j) + 0.5 * h, high});
+            c.volume += h * h * (high - low);
           }
         }
     full_ = spacing_ * spacing_ * spacing_ * (1 - 1e-9);

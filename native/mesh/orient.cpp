@@ -174,20 +174,20 @@ class Pieces {
 /// A piece that agrees with itself keeps its number of copies.
 class Decision {
  public:
-  Decision(const Pieces& pieces, Orientation& found) : pieces_(pieces), sign_(pieces.pieces().size(), 0) {
+  Decision(const Pieces& pieces, Hollow hollow, Orientation& found)
+      : pieces_(pieces), sign_(pieces.pieces().size(), 0) {
     const std::vector<Piece>& all = pieces.pieces();
     std::vector<int> shell(all.size(), -1);
     for (std::size_t p = 0; p < all.size(); ++p) {
       found.one_sided += all[p].one_sided;
-      if (all[p].one_sided || (all[p].agrees && all[p].net == 0)) continue;
+      if (!pieces.closed(p) || (all[p].agrees && all[p].net == 0)) continue;
       const int given = all[p].agrees ? (all[p].net > 0 ? 1 : -1) : (all[p].with >= all[p].against ? 1 : -1);
       if (!all[p].agrees) sign_[p] = given;
-      if (!pieces.closed(p)) continue;
       shell[p] = static_cast<int>(shells_.size());
       const bool tie = std::abs(all[p].with - all[p].against) <= 1e-9 * (all[p].with + all[p].against);
       shells_.push_back({p, given, !all[p].agrees && tie});
     }
-    if (!shells_.empty()) turn_shells(shell, found);
+    if (!shells_.empty()) turn_shells(shell, hollow, found);
   }
 
   int sign(std::size_t piece) const { return sign_[piece]; }
@@ -199,7 +199,7 @@ class Decision {
     bool tie;   // they are oriented half one way, half the other
   };
 
-  void turn_shells(const std::vector<int>& shell, Orientation& found) {
+  void turn_shells(const std::vector<int>& shell, Hollow hollow, Orientation& found) {
     std::vector<int> of(pieces_.mesh().triangles.size());
     std::vector<int> runs(of.size());
     for (std::size_t g = 0; g < of.size(); ++g) {
@@ -209,6 +209,10 @@ class Decision {
     std::vector<std::uint8_t> ties;
     for (const Shell& s : shells_) ties.push_back(s.tie);
     const std::vector<ShellSide> sides = shell_sides(pieces_.mesh(), of, runs, ties);
+    bool all = hollow == Hollow::Kept;
+    for (std::size_t k = 0; k < shells_.size(); ++k)
+      all = all && (sides[k].volume == 0 || (sides[k].turn && pieces_.pieces()[shells_[k].piece].agrees));
+    if (all) return;
     for (std::size_t k = 0; k < shells_.size(); ++k) {
       if (!sides[k].turn) continue;
       const Piece& piece = pieces_.pieces()[shells_[k].piece];
@@ -270,7 +274,7 @@ bool is_manifold(const EdgeTable& edges) {
 
 }  // namespace
 
-std::optional<Mesh> oriented(const Mesh& mesh, Orientation& found) {
+std::optional<Mesh> oriented(const Mesh& mesh, Orientation& found, Hollow hollow) {
   found = {};
   std::optional<Mesh> storage;
   const Mesh* joined = &mesh;
@@ -281,7 +285,7 @@ std::optional<Mesh> oriented(const Mesh& mesh, Orientation& found) {
   }
   const Groups groups = group(*joined, crowded);
   const Pieces pieces(*joined, groups);
-  const Decision decision(pieces, found);
+  const Decision decision(pieces, hollow, found);
   bool any = false;
   for (std::size_t p = 0; p < pieces.pieces().size(); ++p) any |= decision.sign(p) != 0;
   if (!any) return {};
@@ -290,9 +294,9 @@ std::optional<Mesh> oriented(const Mesh& mesh, Orientation& found) {
   return out;
 }
 
-const Mesh& as_solid(const Mesh& mesh, std::optional<Mesh>& storage) {
+const Mesh& as_solid(const Mesh& mesh, std::optional<Mesh>& storage, Hollow hollow) {
   Orientation found;
-  storage = oriented(mesh, found);
+  storage = oriented(mesh, found, hollow);
   return storage ? *storage : mesh;
 }
 

@@ -23,14 +23,16 @@ struct Orientation {
 /// those of `mesh`; those with equal coordinates, or within a few ulps where the surface ends, count as one.
 ///
 /// A piece is connected across edges that just two triangles share, equal triangles counted as one: over such edges the
-/// orientation is carried. In a piece that disagrees with itself the larger area wins, and a repeated triangle stands
-/// once; a closed one then faces outwards. Closed pieces nest: one that lies in another and is oriented the other way
-/// round is a cavity, and stays one. One that faces inwards where there is nothing to take away is turned. Open pieces
-/// that agree with themselves, and pieces with one side only, stay as they are. Triangles keep their places: one that
-/// is left out names a vertex three times. Linear time for closed outward meshes.
-std::optional<Mesh> oriented(const Mesh& mesh, Orientation& found);
+/// orientation is carried. In a closed piece that disagrees with itself the larger area wins, and a repeated triangle
+/// stands once. Closed pieces then face outwards, but for cavities: pieces that lie in another one and are oriented the
+/// other way round. Open pieces, and pieces with one side only, stay as they are. Triangles keep their places: one that
+/// is left out names a vertex three times. Linear time for closed outward meshes. `Hollow::Kept`: where all closed
+/// pieces would be turned as they are, they are not: that is room in endless material, of which planning finds the
+/// valleys.
+enum class Hollow { Turned, Kept };
+std::optional<Mesh> oriented(const Mesh& mesh, Orientation& found, Hollow hollow = Hollow::Turned);
 
 /// For takers of a solid: `mesh` itself, or what `oriented` made of it, kept in `storage`.
-const Mesh& as_solid(const Mesh& mesh, std::optional<Mesh>& storage);
+const Mesh& as_solid(const Mesh& mesh, std::optional<Mesh>& storage, Hollow hollow = Hollow::Turned);
 
 }  // namespace riffler

@@ -213,7 +213,7 @@ std::vector<ShellSide> shell_sides(const Mesh& mesh, std::span<const int> shell,
     Extent& e = shells[s];
     const Vec3 size = e.box.size();
     if (std::abs(e.volume) <= kFlat * std::pow(std::max({size.x, size.y, size.z}), 3)) e.volume = 0;
-    out[s].volume = std::abs(e.volume);
+    out[s].volume = std::abs(e.volume);  // 0 where it has none
     if (e.volume == 0) continue;
     (open_to_either[s] ? either : e.volume < 0 ? inwards : outwards) = true;
   }

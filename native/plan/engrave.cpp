@@ -137,7 +137,7 @@ std::vector<Engraved> engrave(const Mesh& part, const std::vector<std::vector<Ve
   validate(part);
   if (part.empty()) bad("a part without triangles");
   std::optional<Mesh> storage;
-  const Sheet sheet(as_solid(part, storage), options);
+  const Sheet sheet(as_solid(part, storage, Hollow::Kept), options);
   for (std::size_t k = 0; k < curves.size(); ++k) check(curves[k], "curve " + std::to_string(k), sheet, options.reach);
   const CutterSupport cutter(tool);
   std::vector<Engraved> out(curves.size());

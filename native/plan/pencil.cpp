@@ -195,7 +195,7 @@ PencilResult pencil(const Mesh& given, double radius, const PencilOptions& optio
   validate(given);
   if (given.empty()) throw std::invalid_argument("part: a mesh without triangles has no valleys");
   std::optional<Mesh> storage;
-  const Mesh& part = as_solid(given, storage);
+  const Mesh& part = as_solid(given, storage, Hollow::Kept);
   const double wide = radius + options.overthickness;
   const Scales scales(part, wide, options.tolerance);
   const RollingBall ball(part, wide, scales.touch);

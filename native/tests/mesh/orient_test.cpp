@@ -116,6 +116,16 @@ TEST(Orient, TurnsShellsOutwardsButNotCavities) {
   EXPECT_NEAR(volume(r.mesh), 2000, 1e-9);
 }
 
+TEST(Orient, KeepsRoomInEndlessMaterialWhereThatIsAsked) {
+  Orientation found;
+  const Mesh apart = box({20, 0, 0}, {30, 10, 10});
+  EXPECT_FALSE(oriented(flipped(joined(kCube, apart)), found, Hollow::Kept));
+  EXPECT_FALSE(oriented(joined(flipped(kCube), box({2, 2, 2}, {8, 8, 8})), found, Hollow::Kept));
+  EXPECT_FALSE(found.changed());
+  EXPECT_TRUE(oriented(joined(flipped(kCube), apart), found, Hollow::Kept));
+  EXPECT_TRUE(oriented(flipped(turned(kCube, {4})), found, Hollow::Kept));
+}
+
 TEST(Orient, MendsACavityWhoseTrianglesDisagree) {
   const Mesh inner = box({2, 2, 2}, {8, 8, 8});
   for (const std::vector<int>& rows : {std::vector<int>{3}, {0, 2, 4, 6, 8, 10}, {0, 1, 2}}) {
@@ -176,14 +186,15 @@ TEST(Orient, EdgesOfManyTrianglesCarryNothing) {
   EXPECT_FALSE(orient(unwelded(wall)).any);
 }
 
-TEST(Orient, OpenPiecesStayAndAgree) {
+TEST(Orient, OpenPiecesStay) {
   Mesh cup = kCube;
   cup.triangles.erase(cup.triangles.begin() + 2, cup.triangles.begin() + 4);
   EXPECT_FALSE(orient(cup).any);
   EXPECT_FALSE(orient(flipped(cup)).any);
-  const Result r = orient(turned(cup, {5}));
+  EXPECT_FALSE(orient(turned(cup, {5})).any);
+  const Result r = orient(joined(turned(cup, {5}), turned(kCube, {3})));
   EXPECT_EQ(r.found.turned, 1U);
-  EXPECT_EQ(r.mesh.triangles[5], cup.triangles[5]);
+  EXPECT_EQ(r.mesh.triangles[5], turned(cup, {5}).triangles[5]);
 }
 
 TEST(Orient, SaysWhatHasOneSide) {

@@ -27,10 +27,11 @@ def from_mesh(
     return volume
 
 
-def read_solid(path: Path, console: Console) -> Mesh:
-    """A mesh file as the surface of a solid; prints on stderr what was turned."""
+def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
+    """A mesh file, as it is: plans know a part by its sum. Prints what is turned where it is taken as a solid."""
     report: dict[str, Any] = {}
-    mesh = Mesh.read(path).oriented(report)
+    mesh = Mesh.read(path)
+    mesh.oriented(report, hollow=hollow)
     tell(path.name, report, console)
     return mesh
 

@@ -27,7 +27,7 @@ from .arguments import (
 from .carve import add_stock, is_saved, read_program, stock
 from .console import Console, number, times
 from .deviation_map import LEGEND, write_map
-from .shapes import from_mesh, read_solid, to_mesh, write_mesh, write_volume
+from .shapes import from_mesh, read_part, to_mesh, write_mesh, write_volume
 
 HELP = "check an NC program by simulation"
 MAPS = (".ply",)
@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = with_holders(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
     with console.step("read"):
-        part = None if arguments.part is None else read_solid(input_file(arguments.part, MESHES), console)
+        part = None if arguments.part is None else read_part(input_file(arguments.part, MESHES), console)
     fixtures = [fixture(name, volume.pitch, console) for name in arguments.fixture]
     with console.step("verify") as progress:
         machine = {"machine": arguments.machine, "machine_options": how} if arguments.machine else {}

@@ -8,17 +8,16 @@ from ..mesh_notes import notes_on
 def analyse(mesh):
     """A report on a part: ``mesh.audit()`` and what follows from it.
 
-    The audit is that of ``mesh.oriented()``, as which plans take the part, and its counts of what was turned are there,
-    too. Adds to the audit's counts: ``triangles``, ``area`` (mm²), ``bounds`` ((2, 3) mm), ``closed`` (no open and no
-    non-manifold edges), ``degenerate_share`` (of the triangles), ``outward`` (True where the normals point out of the
-    material, False where they point in; None for open parts, where the volume's sign says nothing), ``units`` (what the
-    size suggests: "mm", "inch", "m" or "micrometre") and ``warnings``, a list of sentences. ValueError without
-    triangles.
+    The audit is that of ``mesh.oriented(hollow=True)``, as which plans take the part; its counts of what was turned are
+    there, too. Adds to the audit's counts: ``triangles``, ``area`` (mm²), ``bounds`` ((2, 3) mm), ``closed`` (no open
+    and no non-manifold edges), ``degenerate_share`` (of the triangles), ``outward`` (True where the normals point out
+    of the material, False where they point in; None for open parts, where the volume's sign says nothing), ``units``
+    (what the size suggests: "mm", "inch", "m" or "micrometre") and ``warnings``, a list of sentences. ValueError
+    without triangles.
     """
     bounds = mesh.bounds
     repairs = {}
-    report = mesh.oriented(repairs).audit()
-    given = mesh.volume
+    report = mesh.oriented(repairs, hollow=True).audit()
     count = len(mesh.triangles)
     size = float(np.max(bounds[1] - bounds[0]))
     closed = report["open_edges"] == 0 and report["nonmanifold_edges"] == 0
@@ -28,7 +27,7 @@ def analyse(mesh):
         bounds=bounds,
         closed=closed,
         degenerate_share=report["degenerate"] / count,
-        outward=bool(given > 0) if closed and report["volume"] != 0 else None,
+        outward=bool(report["volume"] > 0) if closed and report["volume"] != 0 else None,
         **repairs,
         units=_units_of(size),
     )
@@ -52,6 +51,8 @@ def _warnings(report, size):
             f"the part is not closed: {report['open_edges']} open and "
             f"{report['nonmanifold_edges']} non-manifold edges; paths end at open ones"
         )
+    if report["outward"] is False:
+        yield "the normals point into the material: valleys are looked for on the wrong side"
     if report["degenerate"]:
         yield f"{report['degenerate']} of {report['triangles']} triangles have no area; they are used as lines"
     if report["units"] != "mm":
