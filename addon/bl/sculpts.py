@@ -82,7 +82,7 @@ def take_looks(ob, other):
 def commit(mesh, content, mm_per_unit, token=""):
     """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles."""
     _must_be_fillable(mesh)
-    surface = content.volume.to_mesh()  # whatever can fail comes before the first change
+    surface = content.volume.to_mesh(report={})  # whatever can fail comes before the first change
     store.write(mesh, content, token)
     _show_whole(mesh, content, surface, mm_per_unit)
     return len(surface.triangles)
@@ -143,7 +143,7 @@ def refill(mesh, mm_per_unit):
     """Shows the stored volume again: after the mesh was edited, or the scene's units were changed."""
     _must_be_fillable(mesh)
     content = store.content(mesh)
-    _show_whole(mesh, content, content.volume.to_mesh(), mm_per_unit)
+    _show_whole(mesh, content, content.volume.to_mesh(report={}), mm_per_unit)
 
 
 @contextmanager

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from riffler import tasks
+from riffler.mesh_notes import notes_on
 
 from ..bl import forms, masks, parts, sculpts, units
 from ..core import estimate
@@ -200,10 +201,11 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         ob = bpy.data.objects[self._object]
         for modifier in [m for m in ob.modifiers if m.show_viewport]:
             ob.modifiers.remove(modifier)
-        open_edges = self._report.get("open_edges", 0)
-        level = {"WARNING"} if open_edges else {"INFO"}
+        open_edges, mended = self._report.get("open_edges", 0), notes_on(self._report)
+        level = {"WARNING"} if open_edges or mended else {"INFO"}
         note = f", {names.format_count(open_edges)} open edges were closed" if open_edges else ""
         note += f"; {len(before.cuts)} cuts are not in the NC code any more" if before.cuts else ""
+        note += "".join(f"; {text}" for text in mended)
         self.report(level, f"{names.format_volume(volume.volume)} of material{note}")
         return {"FINISHED"}
 

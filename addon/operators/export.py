@@ -73,16 +73,20 @@ class ExportSurface(FileWork):
 
         def write(surface):
             if not len(surface.triangles):
-                raise ValueError("the sculpt has no material left")
+                raise ValueError(self._thin["lost_note"] or "the sculpt has no material left")
             surface = placed(surface, matrix)
             self._done = _said(surface)
             return self.job(surface, path, name)
 
+        self._thin = {}
         # a copy: who sculpts meanwhile goes on
-        return AfterJob(tasks.to_mesh(live.content(ob).volume.copy()), write, self.in_background)
+        return AfterJob(tasks.to_mesh(live.content(ob).volume.copy(), report=self._thin), write, self.in_background)
 
     def finish(self, context, job):
-        self.report({"INFO"}, f"{bpy.path.basename(self.filepath)}: {self._done}")
+        name = bpy.path.basename(self.filepath)
+        if note := self._thin.get("lost_note"):
+            self.report({"WARNING"}, f"{name}: {note}")
+        self.report({"INFO"}, f"{name}: {self._done}")
         return {"FINISHED"}
 
 

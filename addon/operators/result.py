@@ -30,7 +30,7 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
         iterations, tolerance = self.iterations, units.clean(self.tolerance)
 
         def first(_):
-            return tasks.to_mesh(content.volume)
+            return tasks.to_mesh(content.volume, report=self._thin)
 
         def smooth(mesh):
             self._exact = mesh
@@ -49,7 +49,7 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
             self._there = distance
             return tasks.deviation(self._exact, self._made)
 
-        self._exact = None
+        self._exact, self._thin = None, {}
         changes = [smooth] * (iterations > 0) + [decimate] * (tolerance > 0)
         return ChainJob(first, *changes, there, back) if changes else ChainJob(first)
 
@@ -57,7 +57,9 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
         changed = self._exact is not None
         mesh = self._made if changed else job.result
         if not len(mesh.triangles):
-            raise ValueError("the sculpt has no material left")
+            raise ValueError(self._thin["lost_note"] or "the sculpt has no material left")
+        if note := self._thin["lost_note"]:
+            self.report({"WARNING"}, note)
         error = max(np.abs(self._there).max(), np.abs(job.result).max()) if changed else 0.0
         sculpt = bpy.data.objects[self._object]
         scale = sculpts.shown_mm_per_unit(sculpt.data)

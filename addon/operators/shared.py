@@ -3,6 +3,7 @@
 import json
 
 import bpy
+from riffler.mesh_notes import notes_on
 
 from ..bl import sculpts
 from ..core.problems import said
@@ -93,6 +94,14 @@ def tell_modifiers(operator, ob):
             {"WARNING"},
             f"{ob.name} has modifiers: what is made is the volume, without them. Take Edits takes them over first",
         )
+
+
+def tell_turned(operator, name, mesh):
+    """A warning where a mesh that is taken as a solid has triangles that are turned for it."""
+    found = {}
+    mesh.oriented(found)
+    for note in notes_on(found):
+        operator.report({"WARNING"}, f"{name}: {note}")
 
 
 def tell_all(operator, done, notes, wrong=False):

@@ -7,6 +7,7 @@ import numpy as np
 import riffler
 from mathutils import Matrix
 from riffler import tasks
+from riffler.mesh_notes import notes_on
 
 from .. import properties
 from ..bl import live, meshes, parts, sculpts, store, units
@@ -80,6 +81,10 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
             if sculpts.is_sculpt(source):
                 sculpts.take_looks(ob, source)
             source.hide_set(True)
+        if not len(ob.data.polygons):
+            thin = {}
+            volume.to_mesh(report=thin)
+            self.report({"WARNING"}, f"{ob.name}: {thin['lost_note']}")
         size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
         triangles = names.format_count(len(ob.data.polygons))
         self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles} triangles")
@@ -90,11 +95,15 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         return bpy.data.objects.get(self._new.source) if self._new.source else None
 
     def _check(self, source, volume):
+        found = self._new.found
         if volume.volume <= 0:
-            raise ValueError(f"{source.name} has no volume at this pitch: close it, or take a finer one")
-        if self._new.found.get("open_edges"):
-            count = names.format_count(self._new.found["open_edges"])
+            why = found.get("lost_note") or "it has no volume at this pitch: close it, or take a finer one"
+            raise ValueError(f"{source.name}: {why}")
+        if found.get("open_edges"):
+            count = names.format_count(found["open_edges"])
             self.report({"WARNING"}, f"{source.name} is not closed: {count} open edges were closed as well as could be")
+        for note in notes_on(found):
+            self.report({"WARNING"}, f"{source.name}: {note}")
 
     # ------------------------------------------------------------------ (what it becomes, the job that makes it)
     def _block(self, context):

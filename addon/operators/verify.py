@@ -46,7 +46,10 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
 
     def begin(self, context):
         setup = programs.take(context, self)
-        self._part, part, fixtures = _around(context, setup)
+        self._part, part, held = _around(context, setup)
+        for name, mesh in [(self._part, part), *held] if part is not None else held:
+            shared.tell_turned(self, name, mesh)
+        fixtures = [mesh for _, mesh in held]
         self._setup = setup
         limits = {"gouge_tolerance": units.clean(self.gouge), "rest_tolerance": units.clean(self.rest) or None}
         if part is None:
@@ -153,11 +156,11 @@ def _clear(context):
 
 
 def _around(context, setup):
-    """The part's name, the part and the fixtures in the stock's frame; no part where none is set."""
+    """The part's name, the part and the fixtures with their names, in the stock's frame; no part where none is set."""
     plan_ob = context.scene.objects.get(setup.plan) if setup.plan else plan_store.active(context)
     ob = surroundings.part_of(context.scene, plan_ob)
     to_stock = np.linalg.inv(setup.to_world)
-    held = [_fixture(context, f, to_stock) for f in parts.fixtures(context.scene.riffler.plan, ob)]
+    held = [(f.name, _fixture(context, f, to_stock)) for f in parts.fixtures(context.scene.riffler.plan, ob)]
     if ob is None:
         return "", None, held
     return ob.name, _moved(parts.in_world(context, ob), to_stock), held

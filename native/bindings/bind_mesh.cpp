@@ -10,6 +10,7 @@
 #include "mesh/closest.hpp"
 #include "mesh/decimate.hpp"
 #include "mesh/io.hpp"
+#include "mesh/orient.hpp"
 #include "mesh/scan.hpp"
 #include "mesh/smooth.hpp"
 #include "mesh/weld.hpp"
@@ -162,6 +163,21 @@ auto deviation_array(const MeshPtr& mesh, const MeshPtr& other, bool with_sign, 
   return long_call(progress, work, [](std::vector<double>&& distances) { return take<double>(std::move(distances)); });
 }
 
+MeshPtr oriented_mesh(const MeshPtr& mesh, std::optional<py::dict> report, bool hollow) {
+  Orientation found;
+  std::optional<Mesh> better;
+  {
+    const NoGil no_gil;
+    better = oriented(*mesh, found, hollow ? Hollow::Kept : Hollow::Turned);
+  }
+  if (report) {
+    py::dict& d = *report;
+    d["turned"] = found.turned, d["turned_shells"] = found.turned_shells;
+    d["left_out"] = found.left_out, d["one_sided"] = found.one_sided;
+  }
+  return better ? std::make_shared<Mesh>(*std::move(better)) : mesh;
+}
+
 std::string repr(const Mesh& mesh) {
   return "<riffler.Mesh: " + std::to_string(mesh.vertices.size()) + " vertices, " +
          std::to_string(mesh.triangles.size()) + " triangles>";
@@ -220,6 +236,18 @@ do vertices on borders.)");
       "deviation", &deviation_array, "other"_a.none(false), py::kw_only(), "signed"_a = false,
       "progress"_a = py::none(),
       R"((n,) float64: how far (mm) each vertex is from the surface of `other`; with signed=True negative inside.)");
+  mesh.def("oriented", &oriented_mesh, "report"_a = py::none(), py::kw_only(), "hollow"_a = false,
+           R"(This mesh as the surface of a solid: the mesh itself, or one in which triangles are turned.
+
+What takes a mesh as a solid (Volume.from_mesh, Collider, verify, plan.pencil, plan.engrave, deviation with signs) does
+this by itself. In closed pieces orientation is carried over edges that two triangles share, the larger area decides, and
+they then face outwards, but for cavities: pieces within another that are oriented the other way round. Open pieces, and
+pieces with one side only, stay as they are. ``hollow``: leave closed pieces that all face inwards, as
+plans and Collider do: room in endless material.
+
+``report``: a dict that is filled with ``turned`` triangles; ``turned_shells``, closed pieces that faced inwards as a
+whole; ``left_out``, repeated triangles that tear the surface open, which name one vertex three times in the result;
+``one_sided``, pieces like a Möbius strip.)");
   mesh.def("__repr__", &repr);
   mesh.def("__copy__", [](const MeshPtr& self) { return self; });
   mesh.def("__deepcopy__", [](const MeshPtr& self, const py::dict&) { return self; }, "memo"_a);

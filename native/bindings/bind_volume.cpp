@@ -1,6 +1,7 @@
 // riffler.Volume
 #include <optional>
 
+#include "bindings/lost.hpp"
 #include "bindings/task.hpp"
 #include "bindings/volume_class.hpp"
 #include "dexel/boolean.hpp"
@@ -42,6 +43,7 @@ void fill(py::dict& d, const MeshReport& r) {
   d["triangles"] = r.triangles, d["degenerate"] = r.degenerate, d["duplicates"] = r.duplicates;
   d["open_edges"] = r.open_edges, d["nonmanifold_edges"] = r.nonmanifold_edges;
   d["inconsistent_edges"] = r.inconsistent_edges, d["openings"] = r.openings;
+  d["turned"] = r.turned, d["left_out"] = r.left_out, d["one_sided"] = r.one_sided;
   d["flipped_shells"] = r.flipped_shells, d["inside_out"] = r.inside_out, d["overlap"] = r.overlap;
   d["doubtful_rays"] = r.doubtful_rays;
 }
@@ -49,24 +51,38 @@ void fill(py::dict& d, const MeshReport& r) {
 auto volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch, const std::string& directions,
                       const py::object& lower, const py::object& upper, const py::object& progress,
                       std::optional<py::dict> report) {
-  using Reported = std::pair<std::shared_ptr<SharedVolume>, MeshReport>;
+  struct Made {
+    std::shared_ptr<SharedVolume> volume;
+    MeshReport report;
+    Lost lost;
+  };
   const Frame frame{box_around(*mesh, lower, upper), pitch, directions};
   const auto work = [mesh, frame, reports = report.has_value()](const Progress& listener) {
-    Reported out;
-    out.first = share(from_mesh(*mesh, frame, listener, reports ? &out.second : nullptr));
+    Made out;
+    MissedMaterial missed;
+    Volume volume = from_mesh(*mesh, frame, listener, reports ? &out.report : nullptr, &missed);
+    out.lost = lost_in(volume, missed);
+    out.volume = share(std::move(volume));
     return out;
   };
-  return long_call(progress, work, [report](Reported&& found) mutable {
-    if (report) fill(*report, found.second);
-    return found.first;
+  return long_call(progress, work, [report](Made&& found) mutable {
+    if (report) fill(*report, found.report);
+    tell(found.lost, report);
+    return found.volume;
   });
 }
 
-auto volume_to_mesh(SharedVolume& self, const py::object& progress) {
+auto volume_to_mesh(SharedVolume& self, const py::object& progress, std::optional<py::dict> report) {
+  using Made = std::pair<std::shared_ptr<Mesh>, Lost>;
   const auto work = [state = Reading(self).volume.snapshot()](const Progress& listener) {
-    return std::make_shared<Mesh>(to_mesh(state, listener));
+    Made out{std::make_shared<Mesh>(to_mesh(state, listener)), {}};
+    out.second = lost_by_meshing(state, out.first->triangles.size());
+    return out;
   };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, [report](Made&& made) mutable {
+    tell(made.second, report);
+    return made.first;
+  });
 }
 
 const Grid& grid_of(const Volume& volume, const std::string& direction) {
@@ -241,14 +257,18 @@ normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h
                   R"(The points whose absolute generalized winding number in ``mesh`` exceeds 1/2.
 
 Covers the mesh's box, or ``lower`` to ``upper`` (clipping what lies outside). Inside-out, overlapping, touching and open
-parts are fine; a mesh without volume is a ValueError.
+parts are fine, as are triangles that face the other way than their neighbours and repeated ones (Mesh.oriented); a mesh
+without volume is a ValueError.
 
 ``report``: a dict that is filled with what was wrong with the mesh, all 0 but ``triangles`` for one that is closed and
 well oriented: ``degenerate`` and ``duplicates``, triangles; ``open_edges`` of one triangle, ``nonmanifold_edges`` of
-three or more, ``inconsistent_edges`` of two that run it in the same direction; ``openings``, walks along which the
-surface ends; ``flipped_shells`` that face into the material; of the volume, the shares ``inside_out``, where the
+three or more, ``inconsistent_edges`` of two that run it in the same direction; ``turned`` triangles, turned to agree with
+their neighbours, ``left_out``, repeated ones that tear the surface open, ``one_sided`` pieces, like a Möbius strip;
+``openings``, walks along which the surface ends; ``flipped_shells`` that face into the material; of the volume, the shares ``inside_out``, where the
 winding number is negative, and ``overlap``, where it is 2 or more; ``doubtful_rays``, the share of the rays with
-material that end within an opening instead of on the surface.)")
+material that end within an opening instead of on the surface; and with ``lost``, ``lost_box``, ``lost_pitch`` and
+``lost_note`` as by to_mesh(): what rays miss, or a mesh of the volume will lack. Without a report the note is a
+UserWarning.)")
       .def_static("from_bytes", &volume_from_bytes, py::arg("data"), py::arg("name") = "volume",
                   "The volume whose to_bytes() these are; ``name`` stands in messages.")
       .def_property_readonly("pitch", [](SharedVolume& v) { return v.volume.frame().pitch; })
@@ -257,7 +277,9 @@ material that end within an opening instead of on the surface.)")
       .def_property_readonly("upper", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.upper); })
       .def_property_readonly(
           "volume", [](SharedVolume& v) { return Reading(v).volume.volume(); },
-          "mm³: lengths of the z rays × h² (of the only rays, where there are no z rays).")
+          "mm³: lengths of the z rays × their areas (of the only rays, where there are no z rays). An area is h², but "
+          "for the "
+          "last rays, whose cells end with the box.")
       .def_property_readonly(
           "nbytes", [](SharedVolume& v) { return Reading(v).volume.nbytes(); },
           "Bytes held, shared tiles counted once.")
@@ -311,8 +333,12 @@ is, material and air. ValueError if its grid is another.)")
       .def_static("load", &load_volume, py::arg("path"), py::arg("progress") = py::none(),
                   "Reads a .rvol file; FormatError where it is damaged or not one.")
       .def("to_bytes", &volume_to_bytes, py::arg("progress") = py::none(), "The bytes of the .rvol file.")
-      .def("to_mesh", &volume_to_mesh, py::arg("progress") = py::none(),
-           "The surface: closed, outward, two-manifold, and still so in a binary STL.")
+      .def("to_mesh", &volume_to_mesh, py::arg("progress") = py::none(), py::arg("report") = py::none(),
+           R"(The surface: closed, outward, two-manifold, and still so in a binary STL.
+
+``report``: a dict that is filled with what is no part of it, since it is thinner than the pitch: ``lost`` (mm³),
+``lost_box``, where, as two corners, or None; ``lost_pitch`` (mm) that keeps it, or None; ``lost_note``, a sentence where
+there is more than crumbs, otherwise empty. Without a report that sentence is a UserWarning.)")
       .def(py::pickle([](SharedVolume& v) { return py::bytes(volume_to_bytes(v, py::none())); },
                       [](const py::bytes& b) { return volume_from_bytes(py::buffer(b), "pickle"); }))
       .def("stats", &stats, "Operation counters since the last call of stats().")

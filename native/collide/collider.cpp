@@ -12,6 +12,7 @@
 #include "collide/winding.hpp"
 #include "marching/to_mesh.hpp"
 #include "mesh/decimate.hpp"
+#include "mesh/orient.hpp"
 
 namespace riffler {
 
@@ -65,7 +66,8 @@ Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Setting
   check(settings, fixtures.size());
   validate(part);
   if (part.empty()) throw std::invalid_argument("part: a mesh without triangles");
-  data_ = std::make_unique<Data>(part, settings);
+  std::optional<Mesh> storage;
+  data_ = std::make_unique<Data>(as_solid(part, storage, Hollow::Kept), settings);
   data_->fixtures.reserve(fixtures.size());
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) {

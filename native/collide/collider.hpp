@@ -28,7 +28,8 @@ class Collider {
     double fixture_stiffness = 10;
     std::vector<double> stiffness_of_each{};  ///< fixture, in the place of that; or empty: all are alike
   };
-  /// Copies nothing of the volumes but pointers to their tiles. std::invalid_argument for an empty or invalid mesh, for
+  /// The part is a solid: its triangles are turned as mesh/orient.hpp says, room in endless material kept. Copies
+  /// nothing of the volumes but pointers to their tiles. std::invalid_argument for an empty or invalid mesh, for
   /// settings that are negative or not finite or as many as no fixtures are, and where a fixture has no mesh
   /// (marching/to_mesh.hpp), naming it. An empty fixture is nothing, and ignored.
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings);

@@ -1,12 +1,12 @@
 #include "dexel/boundary.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 
 #include "geom/each_once.hpp"
+#include "mesh/near_points.hpp"
 #include "mesh/weld.hpp"
 
 namespace riffler {
@@ -155,56 +155,14 @@ Boundary find_boundary(const Mesh& mesh) {
   return out;
 }
 
-namespace {
-
-/// Points in buckets of side `size`, each looked for among its neighbours.
-class Buckets {
- public:
-  Buckets(double size, std::size_t points) : size_(size), heads_(std::bit_ceil(2 * points + 1), -1) {
-    points_.reserve(points);
-  }
-
-  /// The first point within `size` of p; p itself, added, where there is none.
-  Vec3 find_or_add(const Vec3& p) {
-    const Vec3 cell = glm::floor(p / size_);
-    for (int k = 0; k < 27; ++k) {
-      const Vec3 near = cell + Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      for (int at = heads_[slot(near)]; at >= 0; at = points_[at].next)
-        if (points_[at].cell == near && glm::length(points_[at].p - p) <= size_) return points_[at].p;
-    }
-    int& head = heads_[slot(cell)];
-    points_.push_back({p, cell, head});
-    head = static_cast<int>(points_.size()) - 1;
-    return p;
-  }
-
- private:
-  struct Point {
-    Vec3 p, cell;
-    int next;
-  };
-  std::size_t slot(const Vec3& cell) const {
-    const Vec3 c = cell + 0.0;  // −0 becomes 0
-    std::uint64_t h = mix(std::bit_cast<std::uint64_t>(c.x));
-    h = mix(h + std::bit_cast<std::uint64_t>(c.y)), h = mix(h + std::bit_cast<std::uint64_t>(c.z));
-    return h & (heads_.size() - 1);
-  }
-
-  double size_;
-  std::vector<int> heads_;
-  std::vector<Point> points_;
-};
-
-}  // namespace
-
 std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, double tolerance) {
   std::vector<int> rim;
   for (const std::vector<int>& loop : boundary.loops) rim.insert(rim.end(), loop.begin(), loop.end());
   each_once(rim);
-  Buckets buckets(tolerance, rim.size());
+  NearPoints near(tolerance, rim.size());
   std::vector<std::pair<int, Vec3>> moved;
   for (const int k : rim)
-    if (const Vec3 p = buckets.find_or_add(mesh.vertices[k]); p != mesh.vertices[k]) moved.emplace_back(k, p);
+    if (const Vec3 p = near[near.find_or_add(mesh.vertices[k])]; p != mesh.vertices[k]) moved.emplace_back(k, p);
   if (moved.empty()) return {};
   Mesh joined = mesh;
   for (const auto& [k, p] : moved) joined.vertices[k] = p;

@@ -12,8 +12,9 @@ namespace riffler {
 
 namespace {
 
-constexpr int kLatticeBits = 30;     // of one cell, at most
-constexpr int kCoordinateBits = 50;  // of a whole coordinate: products of differences fit 128-bit integers
+constexpr int kLatticeBits = 30;         // of one cell, at most
+constexpr std::uint32_t kInserted = 32;  // crossings of a column up to which inserting them sorts fastest
+constexpr int kCoordinateBits = 50;      // of a whole coordinate: products of differences fit 128-bit integers
 __extension__ typedef __int128 Wide;
 
 /// ⌈x⌉ clamped to [0, n].
@@ -23,6 +24,23 @@ int ceiling(double x, int n) {
   const int k = static_cast<int>(x);
   return k + (x > k);
 }
+
+/// Where the rays at the upper side of a box stand, `extent` cells wide.
+struct Aside {
+  double ray = 0.5;  // the first one, cells from the box's lower side
+  double side = -1;  // the box's upper side, if a ray stands on it
+  double step = 0;
+
+  Aside(double extent, int rays, double lattice) : step(1 / lattice) {
+    const double beyond = rays - 0.5 - extent;  // of the last ray
+    if (rays == 1 && beyond >= 0)
+      ray = extent / 2;
+    else if (std::abs(beyond) < step)
+      side = rays - 1;
+  }
+  /// A place on that side goes just beyond it.
+  double operator()(double place) const { return place == side ? place + step : place; }
+};
 
 }  // namespace
 
@@ -40,14 +58,16 @@ Projection::Projection(const Mesh& mesh, const Grid& grid) : nu_(grid.nu()), nv_
   lattice_ = std::ldexp(1.0, std::min(kLatticeBits, kCoordinateBits - bits));
   slack_ = std::ldexp(reach, -48);
 
+  // The last rays may stand on the box's side, or, a lone one, beyond it. They are taken for what is within.
+  const Aside aside_u(grid.box().size().x / pitch, nu_, lattice_), aside_v(grid.box().size().y / pitch, nv_, lattice_);
   vertices_.resize(mesh.vertices.size());
   parallel_for(vertices_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     // Adding and taking away 1.5 · 2^52 rounds to integers, faster than a library call.
     constexpr double kRound = 6755399441055744.0;
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3 p = to_local(axis, mesh.vertices[k]);
-      const double u = (((p.x - u0) / pitch - 0.5) * lattice_ + kRound - kRound) / lattice_;
-      const double v = (((p.y - v0) / pitch - 0.5) * lattice_ + kRound - kRound) / lattice_;
+      const double u = aside_u((((p.x - u0) / pitch - aside_u.ray) * lattice_ + kRound - kRound) / lattice_);
+      const double v = aside_v((((p.y - v0) / pitch - aside_v.ray) * lattice_ + kRound - kRound) / lattice_);
       vertices_[k] = {u, v, p.z, ceiling(u, nu_), ceiling(v, nv_)};
     }
   });
@@ -128,6 +148,10 @@ void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::ve
       const Crossing a = sorted[from], b = sorted[from + 1];
       const bool swap = before(b, a);
       sorted[from + swap] = a, sorted[from + !swap] = b;
+      continue;
+    }
+    if (to - from > kInserted) {
+      std::sort(sorted.begin() + from, sorted.begin() + to, before);
       continue;
     }
     for (std::uint32_t i = from + 1; i < to; ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "dexel/boundary.hpp"
@@ -13,6 +14,7 @@
 #include "dexel/flatness.hpp"
 #include "dexel/openings.hpp"
 #include "geom/parallel.hpp"
+#include "mesh/orient.hpp"
 
 namespace riffler {
 
@@ -45,18 +47,24 @@ double most(const Vec3& v) {
 /// What the winding numbers of columns tell about a mesh.
 struct Tally {
   double inside = 0, overlap = 0, inside_out = 0;  // mm of rays
+  double enclosed = 0;                             // mm³: winding numbers × lengths × areas
   std::size_t rays = 0, doubtful = 0;
 
   void operator+=(const Tally& o) {
-    inside += o.inside, overlap += o.overlap, inside_out += o.inside_out;
+    inside += o.inside, overlap += o.overlap, inside_out += o.inside_out, enclosed += o.enclosed;
     rays += o.rays, doubtful += o.doubtful;
   }
 };
 
 /// The tally of all grids, and the triangles at which negative winding numbers begin or end.
 struct Findings {
+  explicit Findings(const Mesh& mesh) : flipped(mesh.triangles.size()) {}
+
   Tally tally;
   std::vector<std::uint8_t> flipped;
+
+  /// Of the rays' lengths within the material, 1 at most.
+  double share(double length) const { return tally.inside > 0 ? std::min(1.0, length / tally.inside) : 0; }
 };
 
 /// Fills one grid from the crossings of its columns.
@@ -67,6 +75,8 @@ class Filler {
 
   /// Entries of triangles in bands: the triangles tested.
   std::size_t triangles_tested() const { return bands_.size(); }
+  /// Whether some column has material where the winding number is negative.
+  bool negative() const { return negative_.load(std::memory_order_relaxed); }
   void run(const Progress& progress);
 
  private:
@@ -81,7 +91,7 @@ class Filler {
   void add_passages(int first, int last, BandCrossings& out) const;
   void fill(std::span<const Crossing> crossings, TileBuilder& builder) const;
   bool repair(int row, int column, std::span<const Crossing> crossings, std::vector<Crossing>& out) const;
-  void look(std::span<const Crossing> crossings, Tally& tally) const;
+  void look(std::span<const Crossing> crossings, double area, Tally& tally) const;
   void emit(End near, End far, TileBuilder& builder) const;
   PackedNormal normal(const End& end) const;
   double thinnest(const End& a, const End& b) const {
@@ -96,6 +106,7 @@ class Filler {
   std::vector<Passage> passages_;
   Bands bands_;
   Findings* findings_;
+  mutable std::atomic<bool> negative_{false};
 };
 
 Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress,
@@ -148,7 +159,7 @@ void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& bu
                                             scratch.sorted.data() + scratch.begin[column + 1]};
         if (!loops_.empty() && repair(row, j, crossings, scratch.repaired)) crossings = scratch.repaired;
         if (!crossings.empty()) fill(crossings, builder);
-        if (findings_ && !crossings.empty()) look(crossings, tally);
+        if (findings_ && !crossings.empty()) look(crossings, grid_.area(row, j), tally);
         builder.next_ray();
       }
       // Rays beyond the grid.
@@ -193,6 +204,7 @@ void Filler::fill(std::span<const Crossing> crossings, TileBuilder& builder) con
     } else if (sum == 0) {
       const End to{c.z, c.source, before > 0};
       if (!(to.z - from.z > thinnest(from, to))) continue;
+      if (before < 0) negative_.store(true, std::memory_order_relaxed);
       near = from, far = to, waiting = true;
     }
   }
@@ -200,7 +212,7 @@ void Filler::fill(std::span<const Crossing> crossings, TileBuilder& builder) con
 }
 
 /// Notes what a column tells about the mesh.
-void Filler::look(std::span<const Crossing> crossings, Tally& tally) const {
+void Filler::look(std::span<const Crossing> crossings, double area, Tally& tally) const {
   const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
   const double before = tally.inside;
   bool doubtful = false;
@@ -216,7 +228,7 @@ void Filler::look(std::span<const Crossing> crossings, Tally& tally) const {
     if (sum == 0 || k + 1 == crossings.size()) continue;
     const double length = std::min(upper, crossings[k + 1].z) - std::max(lower, c.z);
     if (!(length > grid_.pitch() * kThinnestOpening)) continue;
-    tally.inside += length;
+    tally.inside += length, tally.enclosed += sum * length * area;
     if (std::abs(sum) > 1) tally.overlap += length;
     if (sum < 0) tally.inside_out += length;
   }
@@ -314,8 +326,10 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
   return true;
 }
 
-void fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress,
+/// Fills all grids. Returns whether some column has material where the winding number is negative.
+bool fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress,
           Findings* findings = nullptr) {
+  bool negative = false;
   Stats stats;
   const double grids = static_cast<double>(result.grids().size());
   double done = 0;
@@ -324,9 +338,11 @@ void fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>&
     Filler filler(mesh, loops, grid, part(progress, done, middle), findings);
     filler.run(part(progress, middle, done += 1 / grids));
     stats.triangles_tested += filler.triangles_tested();
+    negative |= filler.negative();
   }
   result.touch();
   result.count(stats);
+  return negative;
 }
 
 /// What rounding of the mesh's coordinates may feign, mm³.
@@ -352,47 +368,122 @@ bool has_volume(const Mesh& mesh, const std::vector<std::vector<int>>& loops, co
   return most_volume(probe) > least;
 }
 
-void conclude(const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Findings& findings,
-              MeshReport& report) {
-  report.openings = loops.size();
+/// Share of a mesh's volume that rays may miss without a word: walls stand within half a pitch of their places.
+constexpr double kMissed = 0.1;
+
+bool holds(const Box3& outer, const Box3& inner) {
+  for (int k = 0; k < 3; ++k)
+    if (inner.lower[k] < outer.lower[k] || inner.upper[k] > outer.upper[k]) return false;
+  return true;
+}
+
+/// What the reference's rays miss of a closed mesh. Where they hold less than the mesh encloses it may also enclose
+/// something more than once, which only a second look tells.
+MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3& box) {
+  const double meant = volume(mesh);
+  if (!holds(result.frame().box, box) || !(meant > 0) || result.volume() >= (1 - kMissed) * meant) return {};
+  const char axis = "xyz"[static_cast<int>(result.reference().axis())];
+  Volume again(Frame{result.frame().box, result.frame().pitch, std::string(1, axis)});
+  Findings findings(mesh);
+  fill(again, mesh, {}, {}, &findings);
+  const double lost = meant - findings.tally.enclosed;
+  if (lost <= kMissed * meant) return {};
+  return {lost, 2 * meant / area(mesh), box};
+}
+
+/// A mesh on its way to a volume: as it was given, or repaired.
+class Solid {
+ public:
+  explicit Solid(const Mesh& given) : used_(&given), boundary_(find_boundary(given)) {
+    // With all edges paired the winding numbers are whole, and they tell whether a shell faces inwards.
+    if (!boundary_.empty()) orient();
+  }
+
+  const Mesh& mesh() const { return *used_; }
+  const std::vector<std::vector<int>>& loops() const { return boundary_.loops; }
+  const Orientation& orientation() const { return orientation_; }
+
+  /// Returns whether triangles were turned.
+  bool orient() {
+    if (asked_) return false;
+    asked_ = true;
+    std::optional<Mesh> better = oriented(*used_, orientation_);
+    if (!better) return false;
+    take(*std::move(better));
+    return true;
+  }
+
+  void join_cracks(double tolerance) {
+    if (boundary_.empty()) return;
+    if (std::optional<Mesh> better = riffler::join_cracks(*used_, boundary_, tolerance)) take(*std::move(better));
+  }
+
+ private:
+  void take(Mesh&& mesh) {
+    storage_ = std::move(mesh);
+    used_ = &storage_;
+    boundary_ = find_boundary(*used_);
+  }
+
+  Mesh storage_;
+  const Mesh* used_;
+  Boundary boundary_;
+  Orientation orientation_;
+  bool asked_ = false;
+};
+
+/// What the shells that were turned enclose, mm of rays in all grids.
+double turned_lengths(const Orientation& orientation, const Volume& volume) {
+  const double pitch = volume.frame().pitch;
+  return orientation.turned_volume / (pitch * pitch) * static_cast<double>(volume.grids().size());
+}
+
+void conclude(const Solid& solid, const Findings& findings, double inside_out, MeshReport& report) {
+  report.openings = solid.loops().size();
   const Tally& t = findings.tally;
-  if (t.inside > 0) report.overlap = t.overlap / t.inside, report.inside_out = t.inside_out / t.inside;
+  report.inside_out = inside_out, report.overlap = findings.share(t.overlap);
   if (t.rays > 0) report.doubtful_rays = static_cast<double>(t.doubtful) / static_cast<double>(t.rays);
-  if (t.inside_out > 0) report.flipped_shells = count_shells(mesh, findings.flipped);
+  const Orientation& o = solid.orientation();
+  report.turned = o.turned, report.left_out = o.left_out, report.one_sided = o.one_sided;
+  report.flipped_shells = o.turned_shells;
+  if (t.inside_out > 0) report.flipped_shells += count_shells(solid.mesh(), findings.flipped);
 }
 
 }  // namespace
 
-Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress, MeshReport* report) {
+Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress, MeshReport* report,
+                 MissedMaterial* missed) {
   validate(mesh);
   if (mesh.empty()) throw std::invalid_argument("the mesh has no triangles, so it has no volume");
   Volume result(frame);
   riffler::report(progress, 0);
-  Findings findings;
   if (report) {
     *report = {};
     count_defects(mesh, *report);
-    findings.flipped.resize(mesh.triangles.size());
     riffler::report(progress, kCounted);
   }
   const Progress rest = part(progress, report ? kCounted : 0, 1);
   const Box3 box = bounds(mesh);
-  Boundary boundary = find_boundary(mesh);
+  Solid solid(mesh);
   // Coordinates may have been rounded to single precision on their way here.
   const double rounding =
       std::max(std::ldexp(most(box.size()), -22), std::ldexp(std::max(most(box.lower), most(box.upper)), -24));
-  if (!boundary.empty() && is_flat(mesh, rounding))
+  if (!solid.loops().empty() && is_flat(mesh, rounding))
     throw std::invalid_argument("the mesh is a flat sheet: it has no volume");
-  std::optional<Mesh> joined;
-  if (!boundary.empty())
-    joined = join_cracks(mesh, boundary, std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
-  if (joined) boundary = find_boundary(*joined);
-  const Mesh* used = joined ? &*joined : &mesh;
-  const std::vector<std::vector<int>>& loops = boundary.loops;
-  fill(result, *used, loops, rest, report ? &findings : nullptr);
-  if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(*used, loops, box))
+  solid.join_cracks(std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
+  Findings findings(solid.mesh());
+  const bool negative = fill(result, solid.mesh(), solid.loops(), rest, report ? &findings : nullptr);
+  double inside_out = findings.share(findings.tally.inside_out + turned_lengths(solid.orientation(), result));
+  if (negative && solid.orient()) {
+    inside_out = findings.share(findings.tally.inside_out);
+    findings = Findings(solid.mesh());
+    result = Volume(frame);
+    fill(result, solid.mesh(), solid.loops(), part(progress, 0.999, 1), report ? &findings : nullptr);
+  }
+  if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(solid.mesh(), solid.loops(), box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
-  if (report) conclude(mesh, loops, findings, *report);
+  if (report) conclude(solid, findings, inside_out, *report);
+  if (missed) *missed = solid.loops().empty() ? missed_by_rays(result, solid.mesh(), box) : MissedMaterial{};
   riffler::report(progress, 1);
   return result;
 }

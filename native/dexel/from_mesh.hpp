@@ -14,6 +14,11 @@ namespace riffler {
 /// outside the box is clipped. Throws std::invalid_argument for a mesh that is invalid or has no volume. `report`,
 /// where it is given, is filled with what was wrong with the mesh; shares are of what lies within the box, all
 /// directions.
-Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress = {}, MeshReport* report = nullptr);
+/// Triangles are turned, and repeated ones left out, as mesh/orient.hpp says; shells of a closed mesh only where
+/// winding numbers are negative on some column. Rays on the box's upper side, and a lone ray beyond it, are taken for
+/// what is within. `missed`, where it is given, says whether all rays of the volume's reference direction miss much of
+/// a mesh that lies within the box.
+Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress = {}, MeshReport* report = nullptr,
+                 MissedMaterial* missed = nullptr);
 
 }  // namespace riffler

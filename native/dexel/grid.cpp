@@ -11,6 +11,16 @@ int ray_count(double extent, double pitch) {
   return std::max(1, static_cast<int>(std::lround(extent / pitch)));
 }
 
+namespace {
+
+/// Of n cells along a side; the pitch itself where rounding makes the difference.
+double last_width(double extent, int n, double pitch) {
+  const double width = extent - (n - 1) * pitch;
+  return std::abs(width - pitch) <= 1e-9 * pitch * n ? pitch : width;
+}
+
+}  // namespace
+
 std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n) {
   if (range.empty()) return {0, -1};
   const double first = std::ceil((range.near - lower) / pitch - 0.5),
@@ -23,6 +33,7 @@ Grid::Grid(Axis axis, const Box3& box, double pitch, bool with_normals)
     : axis_(axis), with_normals_(with_normals), pitch_(pitch), box_(to_local(axis, box)) {
   nu_ = ray_count(box_.size().x, pitch);
   nv_ = ray_count(box_.size().y, pitch);
+  last_u_ = last_width(box_.size().x, nu_, pitch), last_v_ = last_width(box_.size().y, nv_, pitch);
   tiles_u_ = (nu_ + kTileSide - 1) / kTileSide;
   tiles_v_ = (nv_ + kTileSide - 1) / kTileSide;
   const std::shared_ptr<const Tile> empty = make_shared_block<Tile>();
@@ -40,13 +51,30 @@ Tile& Grid::writable(std::size_t index) {
   return const_cast<Tile&>(*held);  // every tile is made by make_shared_block<Tile>, never as a const object
 }
 
+double Grid::least_area() const {
+  return std::min(pitch_, last_u_) * std::min(pitch_, last_v_);
+}
+
 double Grid::volume() const {
-  double sum = 0;
-  for (const auto& tile : tiles_) {
-    double in_tile = 0;
-    for (const Span& s : tile->spans) in_tile += s.length();
-    sum += in_tile;
-  }
+  double sum = 0;  // of lengths, of those at the border as much as their areas are to h²
+  for (int a = 0; a < tiles_u_; ++a)
+    for (int b = 0; b < tiles_v_; ++b) {
+      const Tile& tile = *tiles_[tile_index(a, b)];
+      double in_tile = 0;
+      const bool uneven = (a + 1 == tiles_u_ && !even_u()) || (b + 1 == tiles_v_ && !even_v());
+      if (!uneven) {
+        for (const Span& s : tile.spans) in_tile += s.length();
+      } else {
+        const int rows = std::min(kTileSide, nu_ - a * kTileSide), columns = std::min(kTileSide, nv_ - b * kTileSide);
+        for (int i = 0; i < rows; ++i)
+          for (int j = 0; j < columns; ++j) {
+            double on_ray = 0;
+            for (const Span& s : tile.ray(i * kTileSide + j)) on_ray += s.length();
+            in_tile += on_ray * (width_u(a * kTileSide + i) / pitch_) * (width_v(b * kTileSide + j) / pitch_);
+          }
+      }
+      sum += in_tile;
+    }
   return sum * pitch_ * pitch_;
 }
 

@@ -36,6 +36,17 @@ class Grid {
   double u(int i) const { return box_.lower.x + (i + 0.5) * pitch_; }
   double v(int j) const { return box_.lower.y + (j + 0.5) * pitch_; }
 
+  /// Widths of the cells of ray (i, j), mm: the pitch, but for the last ones, which end with the box. Where its side is
+  /// no whole number of pitches they are 0.5 to 1.5 pitches wide; less where a lone ray stands beside a thinner box.
+  double width_u(int i) const { return i + 1 < nu_ ? pitch_ : last_u_; }
+  double width_v(int j) const { return j + 1 < nv_ ? pitch_ : last_v_; }
+  /// mm² that ray (i, j) stands for.
+  double area(int i, int j) const { return width_u(i) * width_v(j); }
+  /// The least of them.
+  double least_area() const;
+  bool even_u() const { return last_u_ == pitch_; }
+  bool even_v() const { return last_v_ == pitch_; }
+
   std::size_t tile_count() const { return tiles_.size(); }
   std::size_t tile_index(int tile_u, int tile_v) const { return static_cast<std::size_t>(tile_u) * tiles_v_ + tile_v; }
   const Tile& tile(std::size_t index) const { return *tiles_[index]; }
@@ -61,7 +72,7 @@ class Grid {
   std::span<const SpanNormals> ray_normals(int i, int j) const { return owner(i, j).ray_normals(ray_index(i, j)); }
   static int ray_index(int i, int j) { return (i % kTileSide) * kTileSide + j % kTileSide; }
 
-  /// Sum of all lengths × h², mm³; tile by tile, so the same for any number of threads.
+  /// Sum of all lengths × their areas, mm³; tile by tile, so the same for any number of threads.
   double volume() const;
   std::size_t span_count() const;
   /// Bytes held, each shared tile counted once.
@@ -75,6 +86,7 @@ class Grid {
   double pitch_;
   Box3 box_;
   int nu_, nv_, tiles_u_, tiles_v_;
+  double last_u_, last_v_;  // widths of the last cells
   std::vector<std::shared_ptr<const Tile>> tiles_;
 };
 

@@ -4,24 +4,13 @@
 
 #include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/weld.hpp"
+#include "mesh/near_points.hpp"
 
 namespace riffler {
 
 namespace {
 
 using Count = std::atomic<std::size_t>;
-
-Mesh welded(const Mesh& mesh) {
-  Welder<Vec3> welder(mesh.vertices.size());
-  std::vector<int> same(mesh.vertices.size());
-  welder.add(mesh.vertices, same.data());
-  Mesh out;
-  out.vertices.assign(welder.points().begin(), welder.points().end());
-  out.triangles = mesh.triangles;
-  for (Vec3i& t : out.triangles) t = {same[t.x], same[t.y], same[t.z]};
-  return out;
-}
 
 bool is_degenerate(const Mesh& mesh, const Vec3i& t) {
   const Vec3& a = mesh.vertices[t.x];

@@ -19,6 +19,9 @@ struct MeshReport {
   std::size_t nonmanifold_edges = 0;   ///< used by three or more
   std::size_t inconsistent_edges = 0;  ///< used by two that run it in the same direction
   std::size_t openings = 0;            ///< closed walks along which the surface ends
+  std::size_t turned = 0;              ///< triangles turned to agree with their neighbours
+  std::size_t left_out = 0;            ///< repeated triangles left out, as together they tear the surface open
+  std::size_t one_sided = 0;           ///< pieces connected across edges that have no two sides, left as they are
   std::size_t flipped_shells = 0;      ///< pieces connected across edges that face into the material
   double inside_out = 0;               ///< share of the volume where the winding number is negative
   double overlap = 0;                  ///< share of the volume where it is 2 or more, or −2 or less
@@ -26,10 +29,18 @@ struct MeshReport {
 
   /// Nothing to tell.
   bool clean() const {
-    return degenerate + duplicates + open_edges + nonmanifold_edges + inconsistent_edges + openings + flipped_shells ==
+    return degenerate + duplicates + open_edges + nonmanifold_edges + inconsistent_edges + openings + turned +
+                   left_out + one_sided + flipped_shells ==
                0 &&
            inside_out == 0 && overlap == 0 && doubtful_rays == 0;
   }
+};
+
+/// Material of a mesh that no ray met, since it is thinner than the pitch.
+struct MissedMaterial {
+  double volume = 0;  ///< mm³; 0 where it is less than a tenth of the mesh's volume, or where that is not known
+  double pitch = 0;   ///< mm: what keeps it, guessed from volume and area
+  Box3 box;           ///< of the mesh
 };
 
 /// Counts triangles and edges.

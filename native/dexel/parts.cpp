@@ -118,21 +118,20 @@ Pieces number_pieces(const Volume& volume, const std::vector<Numbers>& numbers, 
   const Grid& reference = volume.reference();
   const Numbers& first = numbers[grid_index(volume, reference)];
   const std::size_t spans = numbers.back().end();
-  std::vector<double> length(spans, -1);  // of the roots that the reference sees
+  std::vector<double> volume_of(spans, -1);  // mm³ of the roots that the reference sees
   for (int i = 0; i < reference.nu(); ++i)
     for (int j = 0; j < reference.nv(); ++j) {
       Number k = first(i, j);
       for (const Span& s : reference.ray(i, j)) {
-        double& sum = length[sets.root(k++)];
-        sum = std::max(sum, 0.0) + s.length();
+        double& sum = volume_of[sets.root(k++)];
+        sum = std::max(sum, 0.0) + s.length() * reference.area(i, j);
       }
     }
   std::vector<Number> order;
   for (Number k = 0; k < spans; ++k)
-    if (length[k] >= 0) order.push_back(k);
-  std::stable_sort(order.begin(), order.end(), [&](Number a, Number b) { return length[a] > length[b]; });
-  const double area = reference.pitch() * reference.pitch();
-  while (order.size() > 1 && length[order.back()] * area < least) order.pop_back();
+    if (volume_of[k] >= 0) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&](Number a, Number b) { return volume_of[a] > volume_of[b]; });
+  while (order.size() > 1 && volume_of[order.back()] < least) order.pop_back();
   if (order.size() > kMostParts)
     throw std::invalid_argument("the volume has " + std::to_string(order.size()) + " pieces, more than " +
                                 std::to_string(kMostParts) + "; ask for those that are larger, by least (mm³)");

@@ -8,6 +8,7 @@
 
 #include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/near_points.hpp"
 
 namespace riffler {
 
@@ -147,6 +148,9 @@ Audit audit(const Mesh& mesh, const Progress& progress) {
 
   const std::size_t halves = 3 * mesh.triangles.size();
   result.open_edges = count_if(halves, [&](int half) { return adjacency.is_open(half); });
+  // Rounding may have moved vertices apart that were one.
+  if (result.open_edges > 0)
+    if (const std::optional<Mesh> joined = join_near(mesh)) return audit(*joined, part(progress, 0.5, 1));
   result.folds = count_if(halves, [&](int half) {
     const int twin = adjacency.twin(half);
     return twin > half && is_fold(mesh, half, twin);

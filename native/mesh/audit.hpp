@@ -10,6 +10,7 @@ namespace riffler {
 
 /// Counts of defects. All zero but `components` and `volume`: a closed, consistently oriented two-manifold.
 /// Triangles that name a vertex twice are counted as degenerate and otherwise left out, as if they were removed.
+/// Vertices are told apart by index, but where edges are open those a few ulps apart count as one.
 struct Audit {
   std::size_t open_edges = 0;         ///< used by one triangle
   std::size_t nonmanifold_edges = 0;  ///< used by three or more, or by two that run it in the same direction

@@ -9,6 +9,7 @@
 #include "geom/directions.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/orient.hpp"
 
 namespace riffler {
 
@@ -265,7 +266,8 @@ double Closest::signed_distance(const Vec3& p, const Hit& hit) const {
 std::vector<double> deviation(const Mesh& mesh, const Mesh& other, bool with_sign, const Progress& progress) {
   validate(mesh);
   if (other.empty()) throw std::invalid_argument("other: a mesh without triangles has no nearest point");
-  const Closest closest(other, with_sign);
+  std::optional<Mesh> storage;
+  const Closest closest(with_sign ? as_solid(other, storage) : other, with_sign);
   report(progress, 0);
   std::vector<double> result(mesh.vertices.size());
   parallel_for(

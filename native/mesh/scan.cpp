@@ -68,7 +68,9 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 }
 
 Scanner::Scanner(std::span<const std::uint8_t> text, std::string name, std::size_t line)
-    : text_(reinterpret_cast<const char*>(text.data()), text.size()), name_(std::move(name)), line_(line) {}
+    : text_(reinterpret_cast<const char*>(text.data()), text.size()), name_(std::move(name)), line_(line) {
+  if (line == 1 && text_.starts_with("\xef\xbb\xbf")) at_ = 3;
+}
 
 std::string_view Scanner::token() {
   for (;;) {
@@ -106,7 +108,10 @@ double Scanner::number(const char* what) {
 
 void Scanner::skip_number(const char* what) {
   const std::string_view found = token();
-  if (!to_number(found) && !is_not_a_number(found)) fail_expected(what, found);
+  if (to_number(found) || is_not_a_number(found)) return;
+  std::string with_point(found);
+  if (const std::size_t comma = with_point.find(','); comma != with_point.npos) with_point[comma] = '.';
+  if (!to_number(with_point)) fail_expected(what, found);
 }
 
 Vec3 Scanner::vertex() {

@@ -24,7 +24,7 @@ bool equal_ignoring_case(std::string_view a, std::string_view b);
 /// Reads a text from front to back. CR, LF and CR LF end a line.
 class Scanner {
  public:
-  /// `name` stands in messages; `text` must outlive the scanner.
+  /// `name` stands in messages; `text` must outlive the scanner. From line 1 on a UTF-8 byte order mark is skipped.
   Scanner(std::span<const std::uint8_t> text, std::string name, std::size_t line = 1);
 
   /// The next token, on this line or a later one; empty at the end of the text.
@@ -39,7 +39,7 @@ class Scanner {
   void expect(std::string_view word);
   /// The next token as a number; `what` stands in the message if it is none.
   double number(const char* what);
-  /// Skips a number of which nothing is needed; NaN and infinity pass.
+  /// Skips a number of which nothing is needed; NaN, infinity and decimal commas pass.
   void skip_number(const char* what);
   /// Three numbers that are fit for a vertex: |x| ≤ 1e30.
   Vec3 vertex();

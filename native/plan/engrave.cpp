@@ -7,6 +7,7 @@
 
 #include "geom/parallel.hpp"
 #include "mesh/closest.hpp"
+#include "mesh/orient.hpp"
 #include "mesh/smooth_normals.hpp"
 #include "plan/cc_frame.hpp"
 #include "plan/contact_location.hpp"
@@ -135,7 +136,8 @@ std::vector<Engraved> engrave(const Mesh& part, const std::vector<std::vector<Ve
   check(options);
   validate(part);
   if (part.empty()) bad("a part without triangles");
-  const Sheet sheet(part, options);
+  std::optional<Mesh> storage;
+  const Sheet sheet(as_solid(part, storage, Hollow::Kept), options);
   for (std::size_t k = 0; k < curves.size(); ++k) check(curves[k], "curve " + std::to_string(k), sheet, options.reach);
   const CutterSupport cutter(tool);
   std::vector<Engraved> out(curves.size());

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "geom/parallel.hpp"
+#include "mesh/orient.hpp"
 #include "mesh/smooth.hpp"
 #include "plan/passes.hpp"
 #include "plan/valley_index.hpp"
@@ -189,10 +190,12 @@ double bitangency_angle_of_gap(double radius, double gap) {
   return 2 * std::acos(radius / (radius + gap));
 }
 
-PencilResult pencil(const Mesh& part, double radius, const PencilOptions& options, const Progress& progress) {
+PencilResult pencil(const Mesh& given, double radius, const PencilOptions& options, const Progress& progress) {
   check(radius, options);
-  validate(part);
-  if (part.empty()) throw std::invalid_argument("part: a mesh without triangles has no valleys");
+  validate(given);
+  if (given.empty()) throw std::invalid_argument("part: a mesh without triangles has no valleys");
+  std::optional<Mesh> storage;
+  const Mesh& part = as_solid(given, storage, Hollow::Kept);
   const double wide = radius + options.overthickness;
   const Scales scales(part, wide, options.tolerance);
   const RollingBall ball(part, wide, scales.touch);

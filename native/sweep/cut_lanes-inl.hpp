@@ -202,7 +202,8 @@ HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, Stretch
     store_material(w, g.ray, pick(simple, near, g.near), pick(simple, far, g.far));
     w.emptied = w.emptied || !none(gone);
     if (w.measured) {
-      const V length = hn::IfThenElseZero(simple, hn::Sub(high, low));
+      V length = hn::IfThenElseZero(simple, hn::Sub(high, low));
+      if (w.uneven) length = hn::Mul(length, hn::Mul(set(w.share_u[a]), hn::LoadU(kD, w.share_v + b)));
       add_to(w.sums->length, g.slot, length);
       // Lanes that lose nothing may hold infinities.
       const V middle = hn::IfThenElseZero(simple, hn::Mul(set(0.5), hn::Add(low, high)));

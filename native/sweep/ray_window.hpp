@@ -14,8 +14,8 @@ struct RayCut {
   double near, far, near_t, far_t;
 };
 
-/// Sums over the pieces of material taken, each weighted by its length. Every ray adds to the slot of its column modulo
-/// kLanes, so that the result does not depend on how many rays a kernel handles at once.
+/// Sums over the pieces of material taken, each weighted by its length and its ray's share of h². Every ray adds to the
+/// slot of its column modulo kLanes, so that the result does not depend on how many rays a kernel handles at once.
 struct alignas(64) RemovedSums {
   double length[kLanes] = {};
   double direction[3][kLanes] = {};  ///< Σ length × direction of the force (unit)
@@ -39,6 +39,9 @@ struct RayWindow {
   const std::uint32_t* many;  ///< bit b of row a: the ray holds several spans
   double u[kTileSide];
   alignas(64) double v[kTileSide + kLanes];
+  bool uneven;  ///< some cells are no squares of the pitch: areas are share_u × share_v squares
+  double share_u[kTileSide];
+  alignas(64) double share_v[kTileSide + kLanes];
   double thinnest;  ///< mm: what is left thinner vanishes
   // The part that the step may touch: columns [first[a], end[a]) of rows first_row … last_row, at these heights.
   int first_row, last_row;

@@ -20,6 +20,15 @@ TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const 
   w.rays = rays_.rays(), w.many = rays_.many();
   for (int k = 0; k < kTileSide; ++k) w.u[k] = grid.shifted_u(first_row_ + k);
   for (int k = 0; k < kTileSide + kLanes; ++k) w.v[k] = grid.shifted_v(first_column_ + k);
+  w.uneven = (first_row_ + kTileSide >= grid.nu() && !grid.even_u()) ||
+             (first_column_ + kTileSide >= grid.nv() && !grid.even_v());
+  std::fill(std::begin(w.share_u), std::end(w.share_u), 1.0),
+      std::fill(std::begin(w.share_v), std::end(w.share_v), 1.0);
+  if (w.uneven)
+    for (int k = 0; k < kTileSide; ++k) {
+      w.share_u[k] = grid.width_u(std::min(first_row_ + k, grid.nu() - 1)) / grid.pitch();
+      w.share_v[k] = grid.width_v(std::min(first_column_ + k, grid.nv() - 1)) / grid.pitch();
+    }
   w.thinnest = 1e-9 * grid.pitch();
   w.in_place = !grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
   w.self = this, w.sums = &sums_, w.law = &law_;
@@ -112,7 +121,7 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
   };
   const auto removed = [&](double low, double high) {
     if (!window_.measured) return;
-    const double length = high - low;
+    const double length = (high - low) * (window_.uneven ? window_.share_u[row] * window_.share_v[column] : 1);
     sums_.length[slot] += length;
     if (!window_.with_force) return;
     const Vec3 p{u, v, (low + high) / 2}, velocity = motion_->velocity(p, (cut.near_t + cut.far_t) / 2);

@@ -127,7 +127,7 @@ void SlabSimulation::cut(Batch batch) {
 /// A rapid that takes more than the tolerance from some ray is in material; less may be rounding, or what a turning
 /// move before it left of its surface. To know what it took it is cut by itself.
 void SlabSimulation::find_rapids(Batch cuts, std::span<const double> taken, SlabTiles before) {
-  const double least = tolerance_ * bench_.grid().pitch() * bench_.grid().pitch();
+  const double least = tolerance_ * bench_.grid().least_area();
   std::vector<std::uint32_t> ends;  // not cut yet
   for (std::size_t k = 0; k < cuts.size(); ++k) {
     const std::size_t i = cuts[k].move;

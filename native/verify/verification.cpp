@@ -7,6 +7,7 @@
 #include <string>
 
 #include "geom/parallel.hpp"
+#include "mesh/orient.hpp"
 #include "verify/rest.hpp"
 #include "verify/timing.hpp"
 
@@ -39,6 +40,18 @@ double beyond(const Box3& all) {
   return 2 * glm::length(all.size());
 }
 
+/// The part itself, or with its triangles turned.
+std::shared_ptr<const Mesh> solid_of(std::shared_ptr<const Mesh> part) {
+  try {
+    validate(*part);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("part_mesh: ") + error.what());
+  }
+  Orientation found;
+  std::optional<Mesh> turned = oriented(*part, found);
+  return turned ? std::make_shared<const Mesh>(*std::move(turned)) : part;
+}
+
 std::unique_ptr<const Target> target_of(const Mesh& part, const Frame& frame, double tolerance,
                                         const Progress& progress) {
   try {
@@ -69,6 +82,7 @@ Verification::Verification(Volume stock, std::shared_ptr<const Mesh> part, std::
       top_(box_of_all(stock_, fixtures_).upper.z) {
   if (options_.rest_tolerance && !part_)
     throw std::invalid_argument("rest_tolerance: there is no part to compare with");
+  if (part_) part_ = solid_of(std::move(part_));
   if (part_) target_ = target_of(*part_, stock_.frame(), options_.gouge_tolerance, progress);
   const auto add = [&](const Volume& volume, std::int32_t fixture) {
     for (const Slab& slab : slabs_of(volume)) {
@@ -168,7 +182,7 @@ void Verification::simulate(const Moves& moves, std::vector<SlabState>& slabs, b
 }
 
 double Verification::least_cut() const {
-  return options_.tolerance * stock_.frame().pitch * stock_.frame().pitch;
+  return options_.tolerance * stock_.reference().least_area();
 }
 
 VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& findings,

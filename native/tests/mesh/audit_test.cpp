@@ -215,6 +215,24 @@ TEST(Audit, AgreesWithTheDefinitionsOnRandomTriangles) {
   }
 }
 
+TEST(Audit, VerticesAFewUlpsApartLeaveNothingOpen) {
+  Mesh mesh = kBox;
+  // Another vertex for one corner of some triangles, as far away as rounding would put it.
+  const int copy = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.push_back(mesh.vertices[0] + Vec3(2.7e-16, 0, -4e-16));
+  for (int t : {0, 5, 8})
+    for (int k = 0; k < 3; ++k)
+      if (mesh.triangles[t][k] == 0) mesh.triangles[t][k] = copy;
+  const Audit a = audit(mesh);
+  EXPECT_TRUE(a.watertight());
+  EXPECT_EQ(a.components, 1U);
+  mesh.vertices.back().x = 1e-12;
+  EXPECT_GT(audit(mesh).open_edges, 0U);
+  // Equal vertices are told apart: that is for whoever reads files to weld.
+  mesh.vertices.back() = mesh.vertices[0];
+  EXPECT_GT(audit(mesh).open_edges, 0U);
+}
+
 TEST(Audit, RefusesAnInvalidMesh) {
   Mesh mesh = kBox;
   mesh.triangles[3].y = 99;

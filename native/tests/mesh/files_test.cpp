@@ -90,6 +90,29 @@ TEST(Stl, AsciiIsReadInAnyCaseAndWithAnyLineEnds) {
   expect_two(from_stl(bytes_of("\n  " + ascii_stl() + "\n\n"), "part"));
 }
 
+TEST(Stl, NormalsWithDecimalCommasAreIgnored) {
+  std::string text = ascii_stl();
+  text.replace(text.find("normal 0 0 1"), 12, "normal -0,5 1,0e-3 0,25");
+  expect_two(from_stl(bytes_of(text), "part"));
+  text.replace(text.find("0,25"), 4, "0,2,5");
+  EXPECT_EQ(error_of(from_stl, bytes_of(text)), "part, line 2: expected a normal's component, found '0,2,5'");
+  text = ascii_stl();
+  text.replace(text.find("vertex 1 0 0"), 12, "vertex 1,0 0 0");
+  EXPECT_EQ(error_of(from_stl, bytes_of(text)), "part, line 5: expected a finite coordinate, found '1,0'");
+}
+
+TEST(MeshFiles, MayBeginWithAByteOrderMark) {
+  const std::string mark = "\xef\xbb\xbf";
+  expect_two(from_stl(bytes_of(mark + ascii_stl()), "part"));
+  EXPECT_EQ(from_obj(bytes_of(mark + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "part").triangles.size(), 1U);
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  EXPECT_EQ(from_ply(bytes_of(mark + header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "part").triangles.size(), 1U);
+  EXPECT_EQ(error_of(from_obj, bytes_of(mark + mark + "v 0 0 0\n")).substr(0, 37),
+            "part, line 1: expected a statement, f");
+}
+
 TEST(Stl, SolidsOfOneAsciiFileBecomeOneMesh) {
   const Mesh mesh = from_stl(bytes_of(ascii_stl() + ascii_stl()), "part");
   EXPECT_EQ(mesh.vertices.size(), 4U);

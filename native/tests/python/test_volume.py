@@ -212,7 +212,7 @@ def test_from_mesh_tells_what_was_wrong():
     report = {"old": 1}
     riffler.Volume.from_mesh(mesh, 0.5, "xyz", report=report)
     assert report.pop("triangles") == len(mesh.triangles) and report.pop("old") == 1
-    assert len(report) == 10 and not any(report.values())
+    assert len(report) == 17 and not any(report.values())
 
     report = {}
     cut = riffler.Mesh(mesh.vertices, mesh.triangles[1:])

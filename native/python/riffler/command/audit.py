@@ -23,6 +23,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("mesh", metavar="FILE", help=".stl, .obj, .ply or .3mf")
 
 
+def repairs(mesh: Mesh) -> dict[str, int]:
+    """What would be turned or left out where the mesh is taken as a solid."""
+    report: dict[str, int] = {}
+    mesh.oriented(report)
+    return report
+
+
 def run(arguments: argparse.Namespace, console: Console) -> int:
     path = input_file(arguments.mesh, MESHES)
     mesh = Mesh.read(path)
@@ -34,6 +41,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "vertices": len(mesh.vertices),
         "triangles": len(mesh.triangles),
         **audit,
+        **{name: int(n) for name, n in repairs(mesh).items()},
     }
     rows = [(key.replace("_", " "), number(value)) for key, value in data.items() if key not in ("file", "closed")]
     verdict = "a closed 2-manifold" if closed else "not a closed 2-manifold"

@@ -75,6 +75,10 @@ def defects(report: dict[str, float]) -> Rows:
         rows.append(("open", f"{count('open_edges', 'open edge')} that cancel: the volume is not in doubt"))
     if edges := listed(nonmanifold_edges="non-manifold edge", inconsistent_edges="inconsistently oriented edge"):
         rows.append(("edges", edges))
+    if triangles := listed(turned="triangle"):
+        rows.append(("turned", f"{triangles} to agree with their neighbours"))
+    if pieces := listed(one_sided="piece"):
+        rows.append(("one side", f"{pieces} like a Möbius strip, left as they are"))
     if report["flipped_shells"]:
         shells = count("flipped_shells", "shell is", "shells are")
         rows.append(("inside out", f"{shells} inside out, {share('inside_out')} of the volume; taken as solid"))

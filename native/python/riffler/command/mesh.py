@@ -10,7 +10,7 @@ import argparse
 from .. import Volume
 from .arguments import MESHES, VOLUMES, input_file, length, output_file
 from .console import Console, number, times
-from .shapes import write_mesh
+from .shapes import to_mesh, write_mesh
 
 HELP = "turn a dexel volume into a closed mesh"
 
@@ -27,8 +27,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     out = output_file(arguments.out, MESHES)
     with console.step("read") as progress:
         volume = Volume.load(path, progress=progress)
-    with console.step("mesh") as progress:
-        mesh = volume.to_mesh(progress=progress)
+    mesh = to_mesh(volume, console, out)
     meshed = len(mesh.triangles)
     if tolerance is not None:
         with console.step("decimate"):

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import argparse
 
-from .. import Mesh, plan
+from .. import plan
 from . import tools
 from .arguments import MESHES, input_file, length, output_file, whole
 from .console import Console, number, times
+from .shapes import read_part
 
 HELP = "find the pencil cuts of a part"
 PLANS = (".json",)
@@ -37,7 +38,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     path = input_file(arguments.mesh, MESHES)
     out = output_file(arguments.out, PLANS)
     with console.step("read"):
-        mesh = Mesh.read(path)
+        mesh = read_part(path, console, hollow=True)
     lower, upper = mesh.bounds
     tool = given.make(float(max(upper - lower)))
     with console.step("pencil") as progress:

@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from .. import Collider, Journal, Mesh, Program, Tool, plan
+from .. import Collider, Journal, Program, Tool, plan
 from . import tools
 from .arguments import MESHES, add_machine_option, finite, input_file, length, machine_options, output_file
 from .carve import read_program
 from .console import Console, number, times
+from .shapes import read_part
 
 HELP = "write NC code for a machine"
 __doc__ += f"""
@@ -222,7 +223,7 @@ def lifted(
 ) -> list[np.ndarray]:
     part = input_file(arguments.part, MESHES)
     with console.step("locate") as progress:
-        mesh = Mesh.read(part)
+        mesh = read_part(part, console, hollow=True)
         wanted = planned.part.get("sha256")
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")

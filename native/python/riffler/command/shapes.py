@@ -3,23 +3,57 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from .. import Mesh, Volume
+from ..mesh_notes import notes_on
 from .arguments import VOLUMES
 from .console import Console
 
 
 def from_mesh(
-    path: Path, pitch: float, directions: str, console: Console, step: str, report: dict[str, float] | None = None
+    path: Path, pitch: float, directions: str, console: Console, step: str, report: dict[str, Any] | None = None
 ) -> Volume:
-    """The volume of a mesh file; ``report`` is filled as by Volume.from_mesh."""
+    """The volume of a mesh file; prints what was mended and lost. ``report`` is filled as by Volume.from_mesh."""
+    report = {} if report is None else report
     with console.step("read"):
         mesh = Mesh.read(path)
     with console.step(step) as progress:
         try:
-            return Volume.from_mesh(mesh, pitch, directions, progress=progress, report=report)
+            volume = Volume.from_mesh(mesh, pitch, directions, progress=progress, report=report)
         except ValueError as error:
             raise ValueError(f"{path.name}: {error}") from None
+    tell(path.name, report, console)
+    return volume
+
+
+def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
+    """A mesh file, as it is: plans know a part by its sum. Prints what is turned where it is taken as a solid."""
+    report: dict[str, Any] = {}
+    mesh = Mesh.read(path)
+    mesh.oriented(report, hollow=hollow)
+    tell(path.name, report, console)
+    return mesh
+
+
+def to_mesh(volume: Volume, console: Console, out: Path) -> Mesh:
+    """The mesh of a volume that is to be written to ``out``; prints on stderr what is too thin for it. ValueError where
+    that is everything."""
+    report: dict[str, Any] = {}
+    with console.step("mesh") as progress:
+        mesh = volume.to_mesh(progress=progress, report=report)
+    if len(mesh.triangles):
+        tell(out.name, report, console)
+    elif report["lost_note"]:
+        raise ValueError(f"{out.name} not written: {report['lost_note']}")
+    else:
+        console.warning(f"{out.name}: no material is left, so the mesh has no triangles")
+    return mesh
+
+
+def tell(name: str, report: dict[str, Any], console: Console) -> None:
+    for note in notes_on(report):
+        console.warning(f"{name}: {note}")
 
 
 def write_mesh(mesh: Mesh, path: Path, console: Console) -> int:
@@ -43,6 +77,4 @@ def write_left(volume: Volume, path: Path, console: Console) -> int | None:
     if path.suffix.lower() in VOLUMES:
         write_volume(volume, path, console)
         return None
-    with console.step("mesh") as progress:
-        mesh = volume.to_mesh(progress=progress)
-    return write_mesh(mesh, path, console)
+    return write_mesh(to_mesh(volume, console, path), path, console)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import Finding, Mesh, Tool, VerifyReport, Volume, cluster, verify
+from .. import Finding, Tool, VerifyReport, Volume, cluster, verify
 from . import tools
 from .arguments import (
     MESHES,
@@ -27,7 +27,7 @@ from .arguments import (
 from .carve import add_stock, is_saved, read_program, stock
 from .console import Console, number, times
 from .deviation_map import LEGEND, write_map
-from .shapes import write_mesh, write_volume
+from .shapes import from_mesh, read_part, to_mesh, write_mesh, write_volume
 
 HELP = "check an NC program by simulation"
 MAPS = (".ply",)
@@ -88,8 +88,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = with_holders(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
     with console.step("read"):
-        part = None if arguments.part is None else Mesh.read(input_file(arguments.part, MESHES))
-        fixtures = [fixture(name) for name in arguments.fixture]
+        part = None if arguments.part is None else read_part(input_file(arguments.part, MESHES), console)
+    fixtures = [fixture(name, volume.pitch, console) for name in arguments.fixture]
     with console.step("verify") as progress:
         machine = {"machine": arguments.machine, "machine_options": how} if arguments.machine else {}
         options = {"tools": by_number, "progress": progress, **limits, **machine}
@@ -101,9 +101,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         if out.suffix.lower() in VOLUMES:
             write_volume(report.volume, out, console)
         else:
-            with console.step("mesh") as progress:
-                mesh = report.volume.to_mesh(progress=progress)
-            write_mesh(mesh, out, console)
+            write_mesh(to_mesh(report.volume, console, out), out, console)
     if coloured is not None:
         with console.step("map"), console.writing(coloured) as beside:
             write_map(beside, *report.deviation, scale)
@@ -144,9 +142,12 @@ def with_holders(by_number: dict[int, Tool], around: list[tuple]) -> dict[int, T
     return out
 
 
-def fixture(name: str) -> Volume | Mesh:
+def fixture(name: str, pitch: float, console: Console) -> Volume:
+    """A fixture's volume; that of a mesh has upright rays at the stock's pitch, as `verify` makes it."""
     path = input_file(name, MESHES + VOLUMES)
-    return Volume.load(path) if path.suffix.lower() in VOLUMES else Mesh.read(path)
+    if path.suffix.lower() in VOLUMES:
+        return Volume.load(path)
+    return from_mesh(path, pitch, "z", console, "fixtures")
 
 
 def block_of(line: int, blocks: list[str]) -> str:

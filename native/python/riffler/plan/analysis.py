@@ -2,18 +2,22 @@
 
 import numpy as np
 
+from ..mesh_notes import notes_on
+
 
 def analyse(mesh):
     """A report on a part: ``mesh.audit()`` and what follows from it.
 
-    Adds to the audit's counts: ``triangles``, ``area`` (mm²), ``bounds`` ((2, 3) mm), ``closed`` (no open and no
-    non-manifold edges), ``degenerate_share`` (of the triangles), ``outward`` (True where the normals point out of the
-    material, False where they point in; None for open parts, where the volume's sign says nothing), ``units`` (what the
-    size suggests: "mm", "inch", "m" or "micrometre") and ``warnings``, a list of sentences. ValueError without
-    triangles.
+    The audit is that of ``mesh.oriented(hollow=True)``, as which plans take the part; its counts of what was turned are
+    there, too. Adds to the audit's counts: ``triangles``, ``area`` (mm²), ``bounds`` ((2, 3) mm), ``closed`` (no open
+    and no non-manifold edges), ``degenerate_share`` (of the triangles), ``outward`` (True where the normals point out
+    of the material, False where they point in; None for open parts, where the volume's sign says nothing), ``units``
+    (what the size suggests: "mm", "inch", "m" or "micrometre") and ``warnings``, a list of sentences. ValueError
+    without triangles.
     """
     bounds = mesh.bounds
-    report = mesh.audit()
+    repairs = {}
+    report = mesh.oriented(repairs, hollow=True).audit()
     count = len(mesh.triangles)
     size = float(np.max(bounds[1] - bounds[0]))
     closed = report["open_edges"] == 0 and report["nonmanifold_edges"] == 0
@@ -24,6 +28,7 @@ def analyse(mesh):
         closed=closed,
         degenerate_share=report["degenerate"] / count,
         outward=bool(report["volume"] > 0) if closed and report["volume"] != 0 else None,
+        **repairs,
         units=_units_of(size),
     )
     report["warnings"] = list(_warnings(report, size))
@@ -40,6 +45,7 @@ def _units_of(size):
 
 
 def _warnings(report, size):
+    yield from notes_on(report)
     if not report["closed"]:
         yield (
             f"the part is not closed: {report['open_edges']} open and "

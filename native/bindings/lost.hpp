@@ -1,0 +1,26 @@
+// What thin material loses on its way from a mesh to a volume and back, for Python.
+#pragma once
+
+#include "bindings/bindings.hpp"
+#include "dexel/mesh_report.hpp"
+#include "marching/thin.hpp"
+
+namespace riffler {
+
+struct Lost {
+  double volume = 0, of = 0;  ///< mm³: lost, and of how much
+  double used = 0;            ///< mm: the pitch
+  double pitch = 0;           ///< mm: what keeps it
+  Box3 box;                   ///< where it is
+  std::string note;           ///< a sentence where it is worth one, otherwise empty
+};
+
+/// Of a volume that was made of a mesh: what its rays miss, or what its own mesh will lack.
+Lost lost_in(const Volume& volume, const MissedMaterial& missed);
+/// Of a volume whose mesh has so many triangles.
+Lost lost_by_meshing(const Volume& volume, std::size_t triangles);
+
+/// Puts `lost`, `lost_box`, `lost_pitch` and `lost_note` into a report; without one the note becomes a Python warning.
+void tell(const Lost& lost, std::optional<py::dict>& report);
+
+}  // namespace riffler
