@@ -35,7 +35,7 @@ class Writer {
   Writer(const Program& program, const WriteOptions& options)
       : program_(program), options_(options), taken_(options.options, "post " + options.post) {
     machine_ = make_machine(options.post, taken_);
-    const PostOptions how = take_post_options(taken_);
+    const PostOptions how = take_post_options(taken_, machine_->control().coolant);
     post_ = make_post(*machine_, how);
     arcs_ = how.arcs && post_->has_arcs();
     safe_height_ = how.safe_height;
@@ -63,6 +63,8 @@ class Writer {
       set_up(row);
       const Pose& pose = program_.poses()[row];
       check_range(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
+      if (options_.motion && row > 0)
+        report_.motion.push_back({row, program_.poses()[row - 1], pose, program_.rapid()[row] != 0, false});
       post_->block({pose, {}, program_.rapid()[row] != 0, false, feed_of(row), 0, true});
     }
     post_->end();
@@ -137,10 +139,15 @@ class Writer {
     const auto words = [](const Joints& j) { return Vec3(j[0], j[1], j[2]); };
     std::vector<Vec3> points{words(*stands_)};
     for (const Waypoint& w : run) points.push_back(words(w.joints));
+    std::size_t done = 0;
     for (const FittedPiece& piece : fit_arcs(points, options_.tolerance)) {
       const Waypoint& w = run[piece.last - 1];
       const Pose& end = program_.poses()[w.row];
       before_ = end;
+      // Arcs are within the tolerance of the rows that they stand for.
+      for (; done < piece.last; ++done)
+        if (options_.motion && piece.arc)
+          record(run[done].row, done > 0 ? run[done - 1].joints : *stands_, run[done].joints, false);
       if (!piece.arc) {
         block(w.row, w.joints, end, true);
         continue;
@@ -191,7 +198,7 @@ class Writer {
     constexpr double kGap = 1;  // mm that the tool comes back in feed
     if (!space_) space_ = space();
     const auto shape = program_.tools.find(program_.tool()[row]);
-    const Reach reach(shape == program_.tools.end() ? nullptr : &shape->second);
+    const ToolEnvelope reach(shape == program_.tools.end() ? nullptr : &shape->second);
     Space space = *space_;
     space.top += reach.below_tip(lowest_axis(*stands_, to));
     std::vector<Pose> out = way_out(pose, reach, space);
@@ -245,8 +252,30 @@ class Writer {
     const Vec3 tip =
         machine_->joint_words() || !stands_ ? machine_->pose(joints).tip : Vec3(joints[0], joints[1], joints[2]);
     if (!rapid && stands_) take_time(row, b, glm::length(tip - tip_));
+    if (options_.motion) record(row, stands_, joints, rapid);
     stands_ = joints, tip_ = tip;
     post_->block(b);
+  }
+
+  /// What the machine makes of a block: stretches in which the rotary axes turn so little that the tool's axis keeps to
+  /// a great circle.
+  void record(std::size_t row, const std::optional<Joints>& from, const Joints& to, bool rapid) {
+    constexpr double kTurn = 1;          // deg: the axis is then within 4e-5 rad of the circle
+    constexpr double kAbove = 200;       // mm: from where a tool comes down for the first time, at least
+    constexpr double kMostParts = 7200;  // twenty turns
+    if (!from) {
+      Joints above = to;
+      above[2] += kAbove;
+      report_.motion.push_back({row, machine_->pose(above), machine_->pose(to), rapid, true});
+      return;
+    }
+    const int parts = std::max(1, static_cast<int>(std::ceil(std::min(kMostParts, rotary_way(*from, to) / kTurn))));
+    Pose last = machine_->pose(*from);
+    for (int k = 1; k <= parts; ++k) {
+      const Pose next = machine_->pose(k < parts ? mix(*from, to, static_cast<double>(k) / parts) : to);
+      if (next.tip != last.tip || next.axis != last.axis) report_.motion.push_back({row, last, next, rapid, false});
+      last = next;
+    }
   }
 
   /// The tip's way at the row's feed, or as fast as the axes may go, whichever takes longer.
@@ -352,9 +381,12 @@ std::string to_nc(const Program& program, const WriteOptions& options, WriteRepo
   return Writer(program, options).run(report ? *report : own);
 }
 
-WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options) {
+WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options,
+                     const std::function<void(const WriteReport&)>& check) {
   WriteReport report;
-  write_file(path, to_nc(program, options, &report));
+  const std::string text = to_nc(program, options, &report);
+  if (check) check(report);
+  write_file(path, text);
   return report;
 }
 

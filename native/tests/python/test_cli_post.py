@@ -96,7 +96,7 @@ def test_a_plan_becomes_code_with_the_balls_tip_on_its_paths(folder):
 
 
 def test_a_plan_without_a_feed_is_cut_slowly_and_says_so(folder):
-    data = result("post", "plain.json", "--post", "linuxcnc-xyzac", "--out", "p.ngc", cwd=folder)
+    data = result("post", "plain.json", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder)
     assert data["notes"][0].startswith("feed 500 mm/min") and data["minutes"] == pytest.approx(19 / 500)
 
 

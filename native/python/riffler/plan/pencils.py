@@ -10,8 +10,8 @@ class PencilPaths(list):
 
     ``ends``: a pair for each path, ``"part"``, ``"corner"``, ``"faded"``, ``"loop"``, ``"cut"``, ``"joined"`` where
     another path continues or, for passes beside a valley, ``"pass"``; ``rest_area``: mm² that the tool's ball cannot
-    reach; ``rest_areas``: (k,) the same for each triangle; ``reference_area``, ``reference_areas``: the same for the ball
-    of ``reference_tool`` (or of ``overthickness``), what there is to be machined; without one as those of the tool;
+    reach; ``rest_areas``: (k,) the same for each triangle; ``reference_area``, ``reference_areas``: the same for the
+    ball of ``reference_tool`` (or of ``overthickness``), what there is to be machined; without one those of the tool;
     ``stats``: counters; ``reason``: why there are no paths, empty where there are some.
     """
 
