@@ -57,7 +57,7 @@ class Heidenhain final : public Post {
     tool_ = 0;
     if (options_.coolant != "off") line(options_.coolant == "flood" ? "M8" : "M7");
     printed_.fill(kNever), feed_ = kNever, first_ = true;
-    coming_ = options_.safe_start;
+    coming_ = comes_safely();
     if (!coming_) line("M128");
   }
 

@@ -46,7 +46,7 @@ class Rs274 final : public Post {
   void ready(int tool) override {
     if (options_.coolant != "off") code({options_.coolant == "flood" ? "M8" : "M7"});
     if (inverse_) code({"G94"}), inverse_ = false;
-    if (options_.safe_start)
+    if (comes_safely())
       coming_ = tool;
     else
       count_length(tool);
@@ -131,8 +131,10 @@ class Rs274 final : public Post {
       there.rapid = true;
       motion(there, '0');
     };
+    // Where X Y Z are the tip, the tool's length may make the control keep it in its place.
+    if (machine_.joint_words()) count_length(tool);
     go(axes.substr(3));
-    count_length(tool);
+    if (!machine_.joint_words()) count_length(tool);
     motion_ = ' ';
     go("XY");
     words_.clear();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
@@ -22,6 +23,18 @@ double way_of_words(const Joints& a, const Joints& b) {
 }
 
 }  // namespace
+
+bool NcRows::is_away(const NcRowWords& words) {
+  std::string_view text = place_.text;
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\r' || text.back() == '\t')) text.remove_suffix(1);
+  for (const std::string& retract : machine_->control().retract) {
+    if (!words.rapid || !text.ends_with(retract)) continue;
+    // Before it only a block's number.
+    const std::string_view before = text.substr(0, text.size() - retract.size());
+    if (before.find_first_not_of("Nn0123456789 ") == before.npos) return away_ = true;
+  }
+  return away_ = away_ && words.rapid && text.find_first_of("Zz") == text.npos;
+}
 
 void NcRows::begin(const Joints& from) {
   if (first_) return;
@@ -60,8 +73,10 @@ double NcRows::feed_over(double way, const NcRowWords& words) const {
 }
 
 void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words) {
-  // From where the first move comes nobody knows: it is one row.
-  const bool known = first_.has_value();
+  const bool was_away = away_;
+  if (is_away(words)) return;
+  // From where the first move comes nobody knows: it is one row. So is the first one after the machine's own retract.
+  const bool known = first_.has_value() && !was_away;
   begin(from);
   const Joints to = in_part(end);
   check_limits(to);

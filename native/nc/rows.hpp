@@ -59,6 +59,9 @@ class NcRows {
   std::vector<Move>& pending() { return pending_; }
 
  private:
+  /// Whether this rapid is one in which the tool is out of everything's way: from the machine's own retract, by the
+  /// text of its block, to the first move of Z. Where it is then is not in the program: it is no row.
+  bool is_away(const NcRowWords& words);
   void begin(const Joints& from);
   Joints in_part(const Joints& program) const;
   Pose pose(const Joints& joints);
@@ -75,6 +78,7 @@ class NcRows {
   NcFrame frame_;
   std::optional<NcFrame> first_;
   bool as_first_ = true;
+  bool away_ = false;  // out of everything's way, by the machine's own retract
   // Where the last row is, in the first frame.
   Joints at_{};
   Pose last_{};

@@ -96,6 +96,38 @@ TEST(Rs274Post, RetractsThenTurnsThenGoesAcrossThenDown) {
   EXPECT_EQ(text_of({}, "tcp").find("G53"), text.npos) << "nothing moves";
 }
 
+TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
+  // Where the tool is between the machine's own retract and the first Z is not in the program: no row, and no rapid
+  // through the part's zero.
+  const Program p = two_tools();
+  const Options table{{"rot_point", std::vector<double>{3, 4, -50}}};
+  for (const char* post : {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head", "head-table"})
+    for (const double step : {0.0, 10.0}) {
+      const Options options = std::string(post).starts_with("linuxcnc") ? table : Options{};
+      Options how = options;
+      how["line_numbers"] = step;
+      const Program q = parse_nc(text_of(p, post, how), "p.ngc", {post, options});
+      std::size_t row = 0;
+      for (std::size_t k = 0; k < q.size(); ++k) {
+        const Vec3& tip = q.poses()[k].tip;
+        // Every row of the code is on the way to the row of the program that comes next.
+        const Vec3 from = p.poses()[row > 0 ? row - 1 : 0].tip, way = p.poses()[row].tip - from;
+        const double length2 = glm::dot(way, way);
+        const double t = length2 > 0 ? std::clamp(glm::dot(tip - from, way) / length2, 0.0, 1.0) : 0;
+        ASSERT_LT(glm::length(tip - from - t * way), 0.011) << post << ", row " << k;
+        EXPECT_EQ(q.tool()[k], p.tool()[row]);
+        EXPECT_EQ(q.rapid()[k], p.rapid()[row]);
+        const bool ends =
+            glm::length(tip - p.poses()[row].tip) < 2e-5 && test::angle(q.poses()[k].axis, p.poses()[row].axis) < 1e-6;
+        if (ends && row + 1 < p.size()) ++row;
+      }
+      EXPECT_EQ(row, p.size() - 1) << post;
+    }
+  // Another block to a position of the machine is what it was.
+  EXPECT_EQ(parse_nc("G0 X1 Y2 Z3\nG53 G0 Z0.0\nG0 X5\nZ4\n", "p.ngc").size(), 4U);
+  EXPECT_EQ(parse_nc("G0 X1 Y2 Z3\nG53 G0 Z0\nG0 X5\nZ4\n", "p.ngc").size(), 2U);
+}
+
 TEST(Rs274Post, MakesArcsOfStraightRunsWithinTheTolerance) {
   CutterPath path{{}, {600}, 8000, 1};
   for (int i = 0; i <= 300; ++i) {

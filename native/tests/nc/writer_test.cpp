@@ -159,7 +159,7 @@ TEST(Writer, TakesTheFeedOfTheNextMoveWhereTheTipStandsStill) {
 TEST(Writer, WritesTheSmallestFeedAsMoreThanNothing) {
   Program p;
   p.append({{{0, 0, 0}, {0, 0, 1}}, 1e-9, 0, 1, 0, false});
-  EXPECT_GT(parse_nc(to_nc(p), "p.ngc").feed().back(), 0);
+  EXPECT_GT(parse_nc(to_nc(p, {.options = {{"safe_start", false}}}), "p.ngc").feed()[0], 0);
 }
 
 std::string error_of(const Program& p, const WriteOptions& options) {
