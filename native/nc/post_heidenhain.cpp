@@ -116,7 +116,7 @@ class Heidenhain final : public Post {
       const std::size_t k = joint_index(letter);
       word(turn, {&letter, 1}, b.joints[k], printed_[k], kAngleDecimals, true);
     }
-    if (!turn.empty()) line("L" + turn + " R0 FMAX"), ++blocks_, first_ = false;
+    if (!turn.empty()) line("L" + turn + " R0 FMAX"), first_ = false;
     line("M128");
     std::string across;
     for (const char letter : {'X', 'Y'}) {
@@ -124,7 +124,7 @@ class Heidenhain final : public Post {
       const double value = options_.vectors ? b.pose.tip[static_cast<int>(k)] : b.joints[k];
       word(across, {&letter, 1}, value, printed_[k], kLengthDecimals, true);
     }
-    line("L" + across + (first_ ? " R0 FMAX" : " FMAX")), ++blocks_;
+    line("L" + across + (first_ ? " R0 FMAX" : " FMAX"));
   }
 
   void line(const std::string& text) { text_ += std::to_string(number_++) + ' ' + text + '\n'; }

@@ -130,6 +130,7 @@ class Rs274 final : public Post {
       PostBlock there;
       there.rapid = true;
       motion(there, '0');
+      --blocks_;  // of a row there is one
     };
     // Where X Y Z are the tip, the tool's length may make the control keep it in its place.
     if (machine_.joint_words()) count_length(tool);
