@@ -36,7 +36,8 @@ def problem(path: Path) -> str:
     first = ""
     for machine in machines(path.read_text(errors="replace")[:100_000]):
         try:
-            program = riffler.Program.read(path, machine)
+            pivot = {"rot_point": [0, 0, 0]} if machine.startswith("linuxcnc") else {}
+            program = riffler.Program.read(path, machine, pivot)
         except ValueError as error:
             first = first or str(error)
             if "the machine has no such axis" in str(error):

@@ -60,6 +60,9 @@ def of_plan(context, ob, plan, feed, spindle):
         feed=feed,
         spindle=spindle,
         occupied=taken.bounds,
+        collider=taken.result().collider,
+        contact_tolerance=touch(plan),
+        **_links(settings),
         provenance={
             "plan": ob.name,
             "part": f"{taken.who[0]} {taken.prints[0][:16]}",
@@ -70,9 +73,27 @@ def of_plan(context, ob, plan, feed, spindle):
     )
 
 
-def write(program, plan, path, post, chosen):
-    """Writes a plan's program as NC code; what Program.write says of it."""
-    return program.write(path, post=post, tolerance=plan.tolerance or 0.01, options=chosen)
+def touch(plan):
+    """mm by which a plan's tool may enter part and fixtures: that of its locations, as much again between blocks, and
+    rounding."""
+    return 3 * (plan.tolerance or 0.01)
+
+
+def _links(settings):
+    """How the tool gets into its cuts and out of them, for Program.from_cl; 0 stands for what is found."""
+    return {
+        "safe_height": units.clean(settings.plane) or None,
+        "retract": units.clean(settings.retract) or None,
+        "direction": (0.0, 0.0, 1.0) if settings.leave == "UP" else None,
+        "lead_in": units.clean(settings.lead_in) or None,
+    }
+
+
+def write(program, plan, path, post, chosen, collider=None):
+    """Writes a plan's program as NC code; what Program.write says of it. With a `collider` the machine's motion is
+    checked: nothing is written that enters part or fixtures."""
+    how = {"tolerance": plan.tolerance or 0.01, "options": chosen}
+    return program.write(path, post=post, collider=collider, contact_tolerance=touch(plan), **how)
 
 
 def options(text):
@@ -241,7 +262,7 @@ def _with_lines(program, plan, post, chosen):
 
 def _of_reading(chosen):
     """Without those that only say how code is written."""
-    written = ("line_numbers", "coolant", "retract", "safe_height", "arcs", "max_rotary")
+    written = ("line_numbers", "coolant", "retract", "safe_start", "safe_height", "arcs", "max_rotary")
     return {key: value for key, value in chosen.items() if key not in written and not key.startswith("rate_")}
 
 

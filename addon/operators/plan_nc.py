@@ -159,7 +159,8 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
             program = programs.of_plan(context, ob, plan, units.clean(self.feed), units.clean(self.spindle))
             path = bpy.path.abspath(self.filepath)
             problems.check_target(path)
-            written = programs.write(program, plan, path, self.post, chosen)
+            collider = surroundings.take(context, ob).result().collider
+            written = programs.write(program, plan, path, self.post, chosen, collider)
         except shared.ERRORS as error:
             return shared.fail(self, error)
         self._tell(context, ob, path, written)

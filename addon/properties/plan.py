@@ -31,6 +31,12 @@ SHOWN = (
 )
 
 
+LEAVE = (
+    ("CLEAR", "What Is Clear", "Along the tool's axis where that is clear, otherwise another way"),
+    ("UP", "Up", "Along the scene's z"),
+)
+
+
 class FindSettings:
     """Shared by the panel's settings and the operator."""
 
@@ -69,6 +75,23 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
     tool: StringProperty(name="Tool", description="Cutter, shank and holder as JSON", default="")
     source: StringProperty(name="From", description="The file that the tool was taken from; empty: the presets")
     clearance: length("Clearance", 0.0, "That shank and holder keep from part and fixtures, in mm")
+    plane: length(
+        "Clearance Plane",
+        0.0,
+        "z in mm of the scene, above part, fixtures and stock, at which the tool goes from path to path; 0: 10 mm "
+        "above what is known",
+        -1e5,
+    )
+    retract: length("Retract", 0.0, "mm that the tool first leaves a cut by; 0: what is clear, the shortest first")
+    leave: EnumProperty(
+        name="Leave",
+        items=LEAVE,
+        default="CLEAR",
+        description="Which way the tool leaves a cut, and comes to it",
+    )
+    lead_in: length(
+        "Lead-In", 0.0, "mm before a cut that are fed, with air above them; 0: all the way from the clearance plane"
+    )
     feed: length("Feed", 800.0, "mm/min at the tip", 0.001, 1e6)
     spindle: FloatProperty(name="Spindle", default=12000.0, min=0.0, max=1e6, precision=0, description="rev/min")
     show: EnumProperty(

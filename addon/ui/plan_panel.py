@@ -183,6 +183,11 @@ class RIFFLER_PT_plan_machine(Tab, bpy.types.Panel):
         layout.prop(settings, "options")
         layout.prop(settings, "clearance")
         column = layout.column(align=True)
+        column.prop(settings, "plane")
+        column.prop(settings, "leave")
+        column.prop(settings, "retract")
+        column.prop(settings, "lead_in")
+        column = layout.column(align=True)
         column.prop(settings, "feed")
         column.prop(settings, "spindle")
 

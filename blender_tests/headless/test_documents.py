@@ -99,7 +99,8 @@ def planning(folder):
     (ob,) = support.part("bl.plan_store").in_scene(bpy.context.scene)
     plan = programs.content(ob)
     assert {72, 100} <= set(plan.paths[0].keys)
-    read = riffler.Program.read(folder / "step.ngc", machine="linuxcnc-xyzac")
+    table = {"rot_point": [0, 0, -40]}
+    read = riffler.Program.read(folder / "step.ngc", machine="linuxcnc-xyzac", options=table)
     assert max(np.linalg.norm(read.poses - row, axis=1).min() for row in plan.cl[0]) < 2e-4
     assert support.part("bl.simulating").active() is None
     settings = programs.settings()

@@ -37,8 +37,9 @@ def test_resolved_paths_become_nc_code_that_reads_back():
     settings = bpy.context.scene.riffler.plan
     settings.feed, settings.spindle = 750, 9000
     for machine in ("tcp", "linuxcnc-xyzac", "head-table"):
-        path = write(f"plan-{machine}.ngc", post=machine)
-        read = riffler.Program.read(path, machine=machine)
+        chosen = {"rot_point": [0, 0, -40]} if machine.startswith("linuxcnc") else {}
+        path = write(f"plan-{machine}.ngc", post=machine, options=json.dumps(chosen))
+        read = riffler.Program.read(path, machine=machine, options=chosen)
         away = [np.linalg.norm(read.poses[:, :3] - row[:3], axis=1).min() for row in rows]
         assert max(away) < 2e-4, (machine, max(away))
         k = [int(np.linalg.norm(read.poses - row, axis=1).argmin()) for row in rows]
@@ -73,7 +74,7 @@ def interpreted(path):
 
 def test_linuxcnc_accepts_it():
     ob = programs.resolved()
-    path = Path(write("accepted.ngc", post="linuxcnc-xyzac"))
+    path = Path(write("accepted.ngc", post="linuxcnc-xyzac", options='{"rot_point": [0, 0, -40]}'))
     feeds, (rows,) = interpreted(path), programs.content(ob).cl
     assert len(feeds) >= len(rows)
     # a table tilts by A and turns by C: the axis in the part is Rz(−C) Rx(−A) z or its mirror, whose height is cos A

@@ -239,7 +239,9 @@ def to_code(screen, ob):
     yield from lessons.picture(screen, "pencil-cut-6", (0, 0, *lessons.view_box(screen)[2:]))
     path = support.out("pencil.ngc")
     with screen.override():
-        assert bpy.ops.riffler.plan_nc(filepath=path, post="linuxcnc-xyzac") == {"FINISHED"}
+        assert bpy.ops.riffler.plan_nc(filepath=path, post="linuxcnc-xyzac", options='{"rot_point": [0, 0, -40]}') == {
+            "FINISHED"
+        }
     lessons.interpreted(path, len(lessons.module("bl.plan_store").plan(ob).cl[0]))
 
 

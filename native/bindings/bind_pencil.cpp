@@ -24,14 +24,18 @@ py::dict to_dict(PencilResult&& result) {
   for (const auto& [first, last] : result.ends) ends.append(py::make_tuple(first, last));
   using namespace py::literals;
   return py::dict("paths"_a = paths, "ends"_a = ends, "rest_area"_a = result.rest_area,
-                  "rest_areas"_a = take<double>(std::move(result.rest_areas)), "stats"_a = to_dict(result.stats),
-                  "reason"_a = result.reason);
+                  "rest_areas"_a = take<double>(std::move(result.rest_areas)),
+                  "reference_area"_a = result.reference_area,
+                  "reference_areas"_a = take<double>(std::move(result.reference_areas)),
+                  "stats"_a = to_dict(result.stats), "reason"_a = result.reason);
 }
 
 }  // namespace
 
 void bind_pencil(py::module_& m) {
   m.def("stepover_of_scallop", &stepover_of_scallop, py::arg("radius"), py::arg("height"));
+  m.def("tip_ball_radius", &tip_ball_radius, py::arg("tool"), py::arg("name"),
+        "Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.");
   m.def(
       "pencil",
       [](const std::shared_ptr<Mesh>& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,
@@ -41,7 +45,7 @@ void bind_pencil(py::module_& m) {
         options.tolerance = tolerance, options.bitangency_angle = bitangency_angle;
         options.minimum_length = minimum_length, options.passes = passes, options.stepover = stepover;
         options.overthickness = overthickness;
-        const auto work = [part, radius = 0.5 * tool.diameter(), options](const Progress& listener) {
+        const auto work = [part, radius = tip_ball_radius(tool, "tool"), options](const Progress& listener) {
           return pencil(*part, radius, options, listener);
         };
         return long_call(progress, work, [](PencilResult&& found) { return to_dict(std::move(found)); });

@@ -1,8 +1,10 @@
 // riffler.Program, riffler.machines
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "bindings/bindings.hpp"
+#include "bindings/shared_volume.hpp"
 #include "nc/cutter_path.hpp"
 #include "nc/edit.hpp"
 #include "nc/follow.hpp"
@@ -11,6 +13,7 @@
 #include "nc/program.hpp"
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
+#include "verify/motion_check.hpp"
 
 namespace riffler {
 
@@ -151,7 +154,9 @@ py::object for_path(const py::object& object, std::size_t k, std::size_t paths, 
 
 Program from_cl(const py::iterable& cl, const py::object& tools, const py::object& feed, const py::object& spindle,
                 const std::optional<double>& safe_height, double clearance, const py::object& occupied,
-                const py::object& provenance) {
+                const py::object& provenance, const std::shared_ptr<Collider>& collider,
+                const std::optional<double>& retract, const py::object& direction, const std::optional<double>& lead_in,
+                double contact_tolerance) {
   std::vector<py::object> arrays;
   for (const py::handle& array : cl) arrays.push_back(py::reinterpret_borrow<py::object>(array));
   std::map<int, Tool> by_number;
@@ -171,8 +176,14 @@ Program from_cl(const py::iterable& cl, const py::object& tools, const py::objec
     const auto box = py::cast<std::pair<py::object, py::object>>(occupied);
     room.occupied = {to_vec3(box.first, "occupied lower"), to_vec3(box.second, "occupied upper")};
   }
-  Program program = program_from_paths(paths, std::move(by_number), room);
-  program.provenance = to_provenance(provenance);
+  LinkRule links{collider.get(), contact_tolerance, retract, {}, lead_in};
+  if (!direction.is_none()) links.direction = to_vec3(direction, "direction");
+  if (!collider && (links.retract || links.direction))
+    throw py::value_error("retract and direction choose among ways that are checked: they need a collider");
+  const Provenance origin = to_provenance(provenance);
+  const py::gil_scoped_release release;
+  Program program = program_from_paths(paths, std::move(by_number), room, links);
+  program.provenance = origin;
   return program;
 }
 
@@ -228,6 +239,23 @@ py::dict to_dict(const WriteReport& report) {
                              "rotary_degrees"_a = p.rotary, "slowed"_a = p.slowed));
   return py::dict("blocks"_a = report.blocks, "slowed_blocks"_a = report.slowed, "rewinds"_a = report.rewinds,
                   "pole_passages"_a = passages);
+}
+
+py::dict write(const Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,
+               double axis_tolerance, const py::object& options, const std::shared_ptr<Collider>& collider,
+               SharedVolume* stock, double contact_tolerance) {
+  const WriteOptions how{post, tolerance, axis_tolerance, to_options(options), collider || stock};
+  std::optional<Volume> material;
+  if (stock) material = Reading(*stock).volume.snapshot();
+  WriteReport report;
+  {
+    const py::gil_scoped_release release;
+    report = write_nc(self, path, how, [&](const WriteReport& written) {
+      if (collider) refuse_collisions(self, written.motion, *collider, contact_tolerance);
+      if (material) refuse_strikes(self, written.motion, *material, std::max(tolerance, 0.01));
+    });
+  }
+  return to_dict(report);
 }
 
 Program edited_transform(const Program& program, const Doubles& matrix) {
@@ -323,14 +351,23 @@ than the row before.)")
       .def_static("from_cl", &from_cl, py::arg("cl"), py::arg("tools"), py::arg("feed"), py::arg("spindle") = 0.0,
                   py::kw_only(), py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
                   py::arg("occupied") = py::none(), py::arg("provenance") = py::none(),
+                  py::arg("collider") = py::none(), py::arg("retract") = py::none(), py::arg("direction") = py::none(),
+                  py::arg("lead_in") = py::none(), py::arg("contact_tolerance") = 0.02,
                   R"(From cutter locations: every (n, 6) array is one cut.
 
 Its rows become feed moves in order, none merged. Before it a rapid at safe height to above its first point, along the
 tool's axis, and the feed in; after it a rapid out along the axis. ``tools``: one for all arrays or one for each
 (None: tool 1 of unknown shape). ``feed`` (mm/min at the tip) and ``spindle`` (rev/min, negative counter-clockwise): one
 for all, or a list of one for each array; a feed may be an array of one per row.
-``safe_height``: z (mm) above everything; by default ``clearance`` (mm) above all tips and ``occupied``, a pair of
-corners around stock, part and fixtures.)")
+``safe_height``: z (mm) above everything, the clearance plane; by default ``clearance`` (mm) above all tips and
+``occupied``, a pair of corners around stock, part and fixtures.
+
+With a ``collider``, its part and fixtures are occupied too, and approaches, retracts and the moves between cuts are
+resolved with cutter, shank and holder: along the tool's axis where that is clear, otherwise by another way, the axis
+kept; such a way is fed, since it may cross stock. ``retract``: mm of the first stretch out of a cut; ``direction``: a
+unit vector, which way that goes. Not given, what is clear is looked for. ``lead_in``: mm before a cut that are fed, what
+is above it being air; not given, all of it is fed. ``contact_tolerance``: mm that a tool may enter part and fixtures by,
+as cuts touch the part. ValueError names the path, the row, the place and the remedy where nothing is clear.)")
       .def_static(
           "read",
           [](const std::filesystem::path& path, const std::string& machine, const py::object& options) {
@@ -360,21 +397,10 @@ programmed. FormatError names file, line and block; nothing that is not understo
           py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::arg("rows") = 65536,
           R"(Reads as ``read`` does, in memory that does not grow with the file: an iterator of programs of at most ``rows``
 rows. Each after the first begins with the row at which the one before ended.)")
-      .def(
-          "write",
-          [](const Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,
-             double axis_tolerance, const py::object& options) {
-            const WriteOptions how{post, tolerance, axis_tolerance, to_options(options)};
-            WriteReport report;
-            {
-              const py::gil_scoped_release release;
-              report = write_nc(self, path, how);
-            }
-            return to_dict(report);
-          },
-          py::arg("path"), py::arg("post") = "tcp", py::arg("tolerance") = 0.01, py::arg("axis_tolerance") = 0.00175,
-          py::arg("options") = py::none(),
-          R"(Writes NC code; ``post`` is a name of machines(). The file is whole or not there.
+      .def("write", &write, py::arg("path"), py::arg("post") = "tcp", py::arg("tolerance") = 0.01,
+           py::arg("axis_tolerance") = 0.00175, py::arg("options") = py::none(), py::kw_only(),
+           py::arg("collider") = py::none(), py::arg("stock") = py::none(), py::arg("contact_tolerance") = 0.05,
+           R"(Writes NC code; ``post`` is a name of machines(). The file is whole or not there.
 
 Every row is the end of a block; more blocks come between two rows where machine axes that move linearly would take the
 tip more than ``tolerance`` (mm) off the straight line or the axis more than ``axis_tolerance`` (rad) off the great
@@ -386,6 +412,11 @@ coordinates), ``direction`` (``"linuxcnc"`` or ``"iso"``, of tables), ``limits_x
 ``rate_c``, ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``safe_height``, ``arcs``, ``vectors``: docs/machines.md. Where a
 rotary axis moves beside linear ones that are written as they stand, blocks are under G93, each with F = 1 / minutes: the
 tip's way at the feed, or longer where an axis's rate asks for it.
+
+With a ``collider`` the machine's own motion is checked, block by block as its axes make it, with cutter, shank and
+holder against part and fixtures; with a ``stock`` (a Volume) it is run on that, as a verification does. What enters them
+by more than ``contact_tolerance`` (mm), a rapid in the stock, or shank or holder in it, is a ValueError with the row, the
+place and the remedy, and nothing is written.
 
 Returns a dict: ``blocks``; ``slowed_blocks``, longer than their feed asks; ``rewinds``, the rows at which the tool leaves
 the material because a limit asks to turn an axis back; ``pole_passages``, near the singular direction: a list of dicts of

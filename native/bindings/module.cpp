@@ -20,6 +20,7 @@ PYBIND11_MODULE(_core, m) {
   bind_volume(m);
   bind_soften(m);
   bind_mesher(m);
+  bind_collide(m);
   bind_program(m);
   bind_program_file(m);
   bind_verify(m);
@@ -27,7 +28,6 @@ PYBIND11_MODULE(_core, m) {
   bind_pen(m);
   bind_pen_device(m);
   bind_journal(m);
-  bind_collide(m);
   bind_session(m);
   bind_path(m);
   bind_pencil(m);

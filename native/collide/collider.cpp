@@ -53,10 +53,12 @@ struct Collider::Data {
   std::vector<double> stiffness;         // of each of them
   std::vector<const Surface*> surfaces;  // the part's first
   Settings settings;
+  Box3 box;                      // of all of them
   mutable std::once_flag asked;  // for a side of the part
   mutable std::optional<WindingNumber> winding;
 
-  Data(const Mesh& mesh, const Settings& s) : part(mesh), points(part, s.spacing), settings(s) {}
+  Data(const Mesh& mesh, const Settings& s)
+      : part(mesh), points(part, s.spacing), settings(s), box(riffler::bounds(mesh)) {}
 
   NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
                               Counts& counts, double enough = kNone, double loose = 0) const;
@@ -71,6 +73,7 @@ Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Setting
   data_->fixtures.reserve(fixtures.size());
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) {
+      data_->box.add(riffler::bounds(m));
       data_->fixtures.emplace_back(fixtures[i], m, kBoxes * data_->points.spacing());
       data_->stiffness.push_back(settings.stiffness_of_each.empty() ? settings.fixture_stiffness
                                                                     : settings.stiffness_of_each[i]);
@@ -177,6 +180,10 @@ Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wan
 bool Collider::inside_part(const Vec3& p) const {
   std::call_once(data_->asked, [&] { data_->winding.emplace(data_->part); });
   return (*data_->winding)(p) > 0.5;
+}
+
+const Box3& Collider::bounds() const {
+  return data_->box;
 }
 
 double Collider::spacing() const {

@@ -75,6 +75,9 @@ class Collider {
   /// its material.
   bool inside_part(const Vec3& p) const;
 
+  /// Box around part and fixtures, mm.
+  const Box3& bounds() const;
+
   double spacing() const;
   std::size_t triangles() const;
   std::size_t points() const;

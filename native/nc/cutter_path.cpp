@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "nc/way_out.hpp"
+#include "geom/parallel.hpp"
 
 namespace riffler {
 
@@ -27,7 +27,7 @@ double hang(std::span<const CutterPath> paths, const std::map<int, Tool>& tools)
     }
   double out = 0;
   for (const CutterPath& path : paths) {
-    const Reach reach(find(tools, path.tool));
+    const ToolEnvelope reach(find(tools, path.tool));
     out = std::max(out, (tilted || downwards ? reach.radius : 0) + (downwards ? reach.length : 0));
   }
   return out;
@@ -65,21 +65,98 @@ std::vector<CutterPath> checked(std::span<const CutterPath> paths) {
   return out;
 }
 
+/// Approach and retract of a path.
+struct Ends {
+  Link in, out;
+};
+
+/// With a collider they are found in parallel; the first path that has none is an error.
+std::vector<Ends> ends_of(std::span<const CutterPath> paths, const std::map<int, Tool>& tools, const Space& space,
+                          const LinkRule& rule) {
+  std::vector<Ends> out(paths.size());
+  std::map<int, LinkFinder> finders;
+  for (std::size_t k = 0; k < paths.size() && rule.collider; ++k) {
+    const Tool* tool = find(tools, paths[k].tool);
+    if (!tool)
+      throw std::invalid_argument("path " + std::to_string(k) +
+                                  ": links are checked with the tool's shape, and that of tool " +
+                                  std::to_string(paths[k].tool) + " is not known: give tools");
+    finders.try_emplace(paths[k].tool, *tool, space, rule);
+  }
+  std::vector<std::string> faults(2 * paths.size());
+  parallel_for(faults.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const CutterPath& path = paths[i / 2];
+      const Pose& pose = i % 2 ? path.poses.back() : path.poses.front();
+      Link& link = i % 2 ? out[i / 2].out : out[i / 2].in;
+      try {
+        if (rule.collider)
+          link = finders.at(path.tool).find(pose);
+        else
+          link.poses = way_out(pose, ToolEnvelope(find(tools, path.tool)), space);
+      } catch (const std::invalid_argument& e) {
+        faults[i] = e.what();
+      }
+    }
+  });
+  for (std::size_t i = 0; i < faults.size(); ++i)
+    if (!faults[i].empty())
+      throw RowError("path " + std::to_string(i / 2), i % 2 ? paths[i / 2].poses.size() - 1 : 0,
+                     (i % 2 ? "no retract is clear: " : "no approach is clear: ") + faults[i]);
+  return out;
+}
+
+/// One move of a link: where it ends, and whether it is fed.
+struct LinkMove {
+  Pose to;
+  bool fed;
+};
+
+/// The moves along a link, out of the cut at `cut`; gone backwards they are the approach, whose last move, to the cut,
+/// is the path's first row. `level`: z below which there may be stock.
+std::vector<LinkMove> moves_of(const Link& link, const Pose& cut, double level, const std::optional<double>& lead_in,
+                               bool approach) {
+  std::vector<LinkMove> out;
+  double way = 0;
+  Pose from = cut;
+  for (const Pose& to : link.poses) {
+    const double length = glm::length(to.tip - from.tip);
+    if (lead_in && approach && way < *lead_in && *lead_in < way + length)
+      out.push_back({{from.tip + (*lead_in - way) / length * (to.tip - from.tip), to.axis}, true});
+    const bool fed = lead_in ? approach && way + length <= *lead_in : !link.direct;
+    // What rises straight is in the air above everything: no feed move ends in the clearance plane.
+    const bool rises = !link.direct && &to == &link.poses.back() && !lead_in;
+    if (rises && from.tip.z < level && level < to.tip.z) out.push_back({{{to.tip.x, to.tip.y, level}, to.axis}, true});
+    out.push_back({to, fed && !rises});
+    way += length, from = to;
+  }
+  return out;
+}
+
 }  // namespace
 
-Program program_from_paths(std::span<const CutterPath> given, std::map<int, Tool> tools, const Clearance& clearance) {
+Program program_from_paths(std::span<const CutterPath> given, std::map<int, Tool> tools, const Clearance& clearance,
+                           const LinkRule& links) {
   const std::vector<CutterPath> paths = checked(given);
-  const Space space = space_of(paths, tools, clearance);
+  validate(links);
+  Clearance room = clearance;
+  if (links.collider) room.occupied.add(links.collider->bounds());
+  const Space space = space_of(paths, tools, room);
+  const double level = space.box.upper.z - clearance.distance;
+  const std::vector<Ends> ends = ends_of(paths, tools, space, links);
   Program program;
-  for (const CutterPath& path : paths) {
-    const Reach reach(find(tools, path.tool));
-    const auto rapid = [&](const Pose& pose) { program.append({pose, 0, path.spindle, path.tool, 0, true}); };
-    const std::vector<Pose> in = way_out(path.poses.front(), reach, space);
-    const std::vector<Pose> out = way_out(path.poses.back(), reach, space);
-    std::for_each(in.rbegin(), in.rend(), rapid);
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    const CutterPath& path = paths[k];
+    const auto link = [&](const Pose& to, bool fed, double feed) {
+      program.append({to, fed ? feed : 0, path.spindle, path.tool, 0, !fed});
+    };
+    const auto in = moves_of(ends[k].in, path.poses.front(), level, links.lead_in, true),
+               out = moves_of(ends[k].out, path.poses.back(), level, links.lead_in, false);
+    // Backwards a move ends where the one before it, seen from the cut, does.
+    for (std::size_t i = in.size(); i-- > 0;) link(in[i].to, i + 1 < in.size() && in[i + 1].fed, path.feed.front());
     for (std::size_t row = 0; row < path.poses.size(); ++row)
       program.append({path.poses[row], path.feed[row], path.spindle, path.tool, 0, false});
-    std::for_each(out.begin(), out.end(), rapid);
+    for (const LinkMove& move : out) link(move.to, move.fed, path.feed.back());
   }
   program.tools = std::move(tools);
   return program;

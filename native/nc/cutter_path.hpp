@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "nc/links.hpp"
 #include "nc/program.hpp"
 
 namespace riffler {
@@ -35,7 +36,13 @@ struct Clearance {
 /// box and the tips' box except along the axis at the two ends of a cut. Throws std::invalid_argument naming the path
 /// and the row for what Program::append refuses, an empty path, a feed that is not positive, a safe height below an
 /// occupied point.
+///
+/// With a collider in `links` part and fixtures count as occupied, and approaches and retracts are resolved with
+/// cutter, shank and holder (nc/links.hpp): where the way along the axis is not clear another one is taken. That may
+/// cross stock, so it is fed up to where everything ends, unless `links.lead_in` says that all but the last stretch is
+/// air. RowError names the path, the row and the place where there is no clear one, and a tool whose shape is not
+/// known.
 Program program_from_paths(std::span<const CutterPath> paths, std::map<int, Tool> tools,
-                           const Clearance& clearance = {});
+                           const Clearance& clearance = {}, const LinkRule& links = {});
 
 }  // namespace riffler

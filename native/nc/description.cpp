@@ -22,7 +22,7 @@ class Describer : TomlReader {
 
   MachineDescription describe(const std::string& name, OptionReader& options) {
     allow(root(), {"description", "control", "words", "direction", "tool_length", "feed", "note", "options", "rotary",
-                   "axis", "start", "end", "rapids"});
+                   "axis", "start", "end", "retract", "coolant", "rapids"});
     summary();
     MachineDescription out;
     out.name = name;
@@ -55,14 +55,16 @@ class Describer : TomlReader {
     for (const auto& [key, declared] : *node->as_table()) {
       const std::string name(key.str());
       if (const toml::table* entry = declared.as_table()) {
-        allow(*entry, {"needed", "about"});
+        allow(*entry, {"needed", "about", "numbers"});
         word(*entry, "needed", {"joints"}, "");
+        const toml::node* numbers = entry->get("numbers");
+        const double count = numbers ? number(*numbers, "numbers") : 1;
+        if (count != 1 && count != 3) fail(*numbers, "numbers must be 1 or 3");
         const auto given = options.given(name);
-        const double value = options.number(name, 0);
+        values_[name] = count == 3 ? options.vector(name, Vec3(0)) : Vec3(options.number(name, 0));
         if (joints && !given)
           throw std::invalid_argument(options.owner() + ": option " + name +
                                       " must be given: " + text(*entry, "about"));
-        values_[name] = Vec3(value);
       } else if (declared.is_array()) {
         values_[name] = options.vector(name, vector(declared, name));
       } else {
@@ -152,7 +154,8 @@ class Describer : TomlReader {
       const char* key = out.tip_words ? "tip" : "joints";
       if (note->as_table()->get(key)) c.note = text(*note->as_table(), key);
     }
-    c.start = lines("start"), c.end = lines("end");
+    c.start = lines("start"), c.end = lines("end"), c.retract = lines("retract");
+    c.coolant = word(root(), "coolant", {"off", "flood", "mist"}, "off");
   }
 
   std::vector<std::string> lines(std::string_view key) const {

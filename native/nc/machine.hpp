@@ -55,6 +55,10 @@ struct Control {
   std::string rapids = "unknown";
   bool inverse_time = false;            ///< G93 for blocks in which a rotary axis moves; otherwise always G94
   std::vector<std::string> start, end;  ///< blocks of the machine's own before and after everything, verbatim
+  /// Blocks that take the tool out of everything's way, whatever stands on the table: before the first move, tool
+  /// changes and the end.
+  std::vector<std::string> retract;
+  std::string coolant = "off";  ///< where its user says nothing: "flood", "mist", "off"
 };
 
 struct MachineDescription {

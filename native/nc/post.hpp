@@ -21,13 +21,18 @@ struct PostOptions {
   int line_numbers = 0;  ///< step of N words; 0: none. Heidenhain counts its blocks whatever it is
   std::string coolant;   ///< "flood", "mist" or none
   bool vectors = false;  ///< Heidenhain: LN blocks with the tool's axis, no rotary words
-  /// Machine Z (G53, mm) to which the tool goes before everything, before tool changes and after everything.
+  /// Machine Z (G53, mm) to which the tool goes before everything, before tool changes and after everything, in place
+  /// of the machine's own way there.
   std::optional<double> retract;
+  /// Retract first, turn the rotary axes there, then across, then down, where the machine's file says how to retract.
+  /// Otherwise the first block, and the one after a tool change, goes straight from wherever the machine is.
+  bool safe_start = true;
   std::optional<double> safe_height;  ///< mm, z of the tip above everything; not given: as high as the program goes
   bool arcs = false;                  ///< straight runs with one axis become G2, G3 within the tolerance
 };
 
-PostOptions take_post_options(OptionReader& options);
+/// `coolant`: what the machine's file says, where the option is not given.
+PostOptions take_post_options(OptionReader& options, const std::string& coolant = "off");
 
 /// One block.
 struct PostBlock {
@@ -74,6 +79,9 @@ class Post {
   std::size_t blocks() const { return blocks_; }
 
  protected:
+  /// Whether tools come from where they are out of everything's way: the machine's file, or its user, says how.
+  bool comes_safely() const { return options_.safe_start && (options_.retract || !machine_.control().retract.empty()); }
+
   const Machine& machine_;
   PostOptions options_;
   std::string text_;

@@ -20,7 +20,8 @@ class Heidenhain final : public Post {
       throw std::invalid_argument("machine " + machine.name() +
                                   ": a Heidenhain control is given the tip (M128): tcp must not be False");
     if (options_.retract)
-      throw std::invalid_argument("machine " + machine.name() + ": retract is G53's; put L Z+… M91 into start and end");
+      throw std::invalid_argument("machine " + machine.name() +
+                                  ": retract is G53's; put L Z+… M91 into retract of the machine's file");
   }
 
   bool wants_joints() const override { return !options_.vectors; }
@@ -37,6 +38,7 @@ class Heidenhain final : public Post {
       if (turns_) line("M5");
       turns_ = false;
     }
+    retract(), moves_ = true;
     tool_ = number;
   }
 
@@ -54,11 +56,13 @@ class Heidenhain final : public Post {
     if (tool_ > 0) line("TOOL CALL " + std::to_string(tool_) + " Z");
     tool_ = 0;
     if (options_.coolant != "off") line(options_.coolant == "flood" ? "M8" : "M7");
-    line("M128");
     printed_.fill(kNever), feed_ = kNever, first_ = true;
+    coming_ = comes_safely();
+    if (!coming_) line("M128");
   }
 
   void block(const PostBlock& b) override {
+    if (coming_) come(b);
     std::string words;
     for (const char letter : options_.vectors ? std::string_view("XYZ") : machine_.axes()) {
       const std::size_t k = joint_index(letter);
@@ -91,12 +95,38 @@ class Heidenhain final : public Post {
     if (first_ || blocks_ > 0) line("M129");
     if (turns_) line("M5");
     if (options_.coolant != "off") line("M9");
+    if (moves_) retract();
     for (const std::string& own : machine_.control().end) line(own);
     line("M30");
     line("END PGM RIFFLER MM");
   }
 
  private:
+  void retract() {
+    if (options_.safe_start)
+      for (const std::string& own : machine_.control().retract) line(own);
+  }
+
+  /// Before the first block of a tool, from where it is out of everything's way: the rotary axes turn there, before the
+  /// control keeps the tip in its place, then it goes across; the block itself is what comes down.
+  void come(const PostBlock& b) {
+    coming_ = false;
+    std::string turn;
+    for (const char letter : options_.vectors ? std::string_view() : machine_.axes().substr(3)) {
+      const std::size_t k = joint_index(letter);
+      word(turn, {&letter, 1}, b.joints[k], printed_[k], kAngleDecimals, true);
+    }
+    if (!turn.empty()) line("L" + turn + " R0 FMAX"), first_ = false;
+    line("M128");
+    std::string across;
+    for (const char letter : {'X', 'Y'}) {
+      const std::size_t k = joint_index(letter);
+      const double value = options_.vectors ? b.pose.tip[static_cast<int>(k)] : b.joints[k];
+      word(across, {&letter, 1}, value, printed_[k], kLengthDecimals, true);
+    }
+    line("L" + across + (first_ ? " R0 FMAX" : " FMAX"));
+  }
+
   void line(const std::string& text) { text_ += std::to_string(number_++) + ' ' + text + '\n'; }
 
   /// " X+1.00000", where it is another than before or `always`.
@@ -111,7 +141,7 @@ class Heidenhain final : public Post {
   }
 
   int number_ = 0, tool_ = 0;
-  bool turns_ = false, first_ = false;
+  bool turns_ = false, first_ = false, moves_ = false, coming_ = false;
   std::array<std::int64_t, 6> printed_{};
   std::array<std::int64_t, 3> vector_{};
   std::int64_t feed_ = kNever;

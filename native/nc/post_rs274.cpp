@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
+#include <utility>
 
 #include "nc/number_text.hpp"
 #include "nc/post.hpp"
@@ -21,7 +23,6 @@ class Rs274 final : public Post {
     code({"G21 G90 G94"});
     code({"G17 G40 G49 G80 G54"});
     for (const std::string& own : machine_.control().start) code({own});
-    retract();
   }
 
   void change_tool(int number, const Tool*, bool first) override {
@@ -29,8 +30,8 @@ class Rs274 final : public Post {
       if (turns_) code({"M5"});
       code({"G49"});
       turns_ = false;
-      retract();
     }
+    retract(), moves_ = true;
     if (number > 0) code({"T", std::to_string(number), " M6"});
   }
 
@@ -44,13 +45,17 @@ class Rs274 final : public Post {
 
   void ready(int tool) override {
     if (options_.coolant != "off") code({options_.coolant == "flood" ? "M8" : "M7"});
-    code({machine_.control().tool_length, " H", std::to_string(tool)});
+    if (inverse_) code({"G94"}), inverse_ = false;
+    if (comes_safely())
+      coming_ = tool;
+    else
+      count_length(tool);
     // A control may lose its modes in a tool change, and an offset moves the coordinates: say everything again.
     forget();
-    if (inverse_) code({"G94"}), inverse_ = false;
   }
 
   void block(const PostBlock& b) override {
+    if (coming_) return come(b);
     words_.clear();
     for (const char letter : machine_.axes()) word(letter, b.joints[joint_index(letter)], false);
     if (words_.empty() && !b.must) return;
@@ -78,7 +83,7 @@ class Rs274 final : public Post {
     code({"G49"});
     if (inverse_) code({"G94"});
     if (normal_ != 2) code({"G17"});
-    retract();
+    if (moves_) retract();
     for (const std::string& own : machine_.control().end) code({own});
     code({"M30"});
   }
@@ -104,9 +109,38 @@ class Rs274 final : public Post {
   }
 
   void retract() {
-    if (!options_.retract) return;
-    code({"G53 G0 Z", number_text(*options_.retract, kLengthDecimals)});
+    if (options_.retract)
+      code({"G53 G0 Z", number_text(*options_.retract, kLengthDecimals)});
+    else if (options_.safe_start)
+      for (const std::string& own : machine_.control().retract) code({own});
     forget();
+  }
+
+  void count_length(int tool) { code({machine_.control().tool_length, " H", std::to_string(tool)}); }
+
+  /// The first block of a tool, from where it is out of everything's way: the rotary axes turn there, before the
+  /// control keeps the tip in its place; then across, then down.
+  void come(const PostBlock& b) {
+    const int tool = *std::exchange(coming_, std::nullopt);
+    const std::string_view axes = machine_.axes();
+    const auto go = [&](std::string_view letters) {
+      words_.clear();
+      for (const char letter : letters) word(letter, b.joints[joint_index(letter)], true);
+      if (words_.empty()) return;
+      PostBlock there;
+      there.rapid = true;
+      motion(there, '0');
+      --blocks_;  // of a row there is one
+    };
+    // Where X Y Z are the tip, the tool's length may make the control keep it in its place.
+    if (machine_.joint_words()) count_length(tool);
+    go(axes.substr(3));
+    if (!machine_.joint_words()) count_length(tool);
+    motion_ = ' ';
+    go("XY");
+    words_.clear();
+    word('Z', b.joints[2], true);
+    motion(b, b.rapid ? '0' : '1');
   }
 
   void forget() {
@@ -154,7 +188,8 @@ class Rs274 final : public Post {
   char motion_ = ' ';
   std::size_t normal_ = 2;
   bool inverse_ = false;  // G93
-  bool turns_ = false;
+  bool turns_ = false, moves_ = false;
+  std::optional<int> coming_;  // the tool whose first block is to come
   int line_number_ = 0;
 };
 

@@ -38,15 +38,16 @@ std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options) {
   return at->make(machine, std::move(options));
 }
 
-PostOptions take_post_options(OptionReader& options) {
+PostOptions take_post_options(OptionReader& options, const std::string& coolant) {
   PostOptions out;
   const double step = options.number("line_numbers", 0);
   if (!(step >= 0 && step <= 1000 && step == static_cast<int>(step)))
     throw std::invalid_argument(options.owner() + ": option line_numbers must be a whole step up to 1000; 0: none");
   out.line_numbers = static_cast<int>(step);
-  out.coolant = options.word("coolant", {"off", "flood", "mist"}, "off");
+  out.coolant = options.word("coolant", {"off", "flood", "mist"}, coolant);
   out.vectors = options.flag("vectors", false);
   out.retract = place(options, "retract");
+  out.safe_start = options.flag("safe_start", true);
   out.safe_height = place(options, "safe_height");
   out.arcs = options.flag("arcs", false);
   return out;

@@ -13,7 +13,7 @@ constexpr double kSteepEnough = 0.5;  // cos 60°
 
 }  // namespace
 
-Reach::Reach(const Tool* tool) {
+ToolEnvelope::ToolEnvelope(const Tool* tool) {
   if (!tool) return;
   length = tool->length(), radius = tool->diameter() / 2;
   for (const auto* pieces : {&tool->shank(), &tool->holder()})
@@ -23,12 +23,20 @@ Reach::Reach(const Tool* tool) {
     }
 }
 
-double Reach::below_tip(double axis_z) const {
+double ToolEnvelope::below_tip(double axis_z) const {
   if (axis_z >= kSteepEnough) return 0;
   return radius * std::sqrt(std::max(0.0, 1 - axis_z * axis_z)) + length * std::max(0.0, -axis_z);
 }
 
-std::vector<Pose> way_out(const Pose& pose, const Reach& reach, const Space& space) {
+Box3 ToolEnvelope::swept_box(const Pose& from, const Pose& to) const {
+  Box3 box;
+  for (const Pose* pose : {&from, &to}) box.add(pose->tip), box.add(pose->tip + length * pose->axis);
+  // No point of the axis is further than length angle² / 8 from the straight way between its two places.
+  const double chord = glm::length(to.axis - from.axis), angle = 2 * std::asin(std::min(1.0, 0.5 * chord));
+  return box.grown(radius + length * angle * angle / 8 + 1e-9 * (1 + length));
+}
+
+std::vector<Pose> way_out(const Pose& pose, const ToolEnvelope& reach, const Space& space) {
   const Vec3& o = pose.axis;
   const double top = space.top;
   const double up = o.z > 0 ? (top - pose.tip.z) / o.z : std::numeric_limits<double>::infinity();

@@ -9,13 +9,16 @@
 namespace riffler {
 
 /// The cylinder about the axis that holds a tool; nothing is known of an unknown tool.
-struct Reach {
+struct ToolEnvelope {
   double length = 0, radius = 0;  ///< mm
 
-  explicit Reach(const Tool* tool);
+  explicit ToolEnvelope(const Tool* tool);
 
   /// How far the tool hangs below its tip where its axis is that high, mm; of steep ones nothing.
   double below_tip(double axis_z) const;
+
+  /// Box of what the cylinder sweeps from one pose to another (geom/pose.hpp); never too small.
+  Box3 swept_box(const Pose& from, const Pose& to) const;
 };
 
 struct Space {
@@ -25,6 +28,6 @@ struct Space {
 
 /// Where the tip goes from `pose` to safe height with the axis kept: first along the axis out of the space, last the
 /// point at safe height.
-std::vector<Pose> way_out(const Pose& pose, const Reach& reach, const Space& space);
+std::vector<Pose> way_out(const Pose& pose, const ToolEnvelope& reach, const Space& space);
 
 }  // namespace riffler

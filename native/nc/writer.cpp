@@ -36,7 +36,7 @@ class Writer {
   Writer(const Program& program, const WriteOptions& options)
       : program_(program), options_(options), taken_(options.options, "post " + options.post) {
     machine_ = make_machine(options.post, taken_);
-    const PostOptions how = take_post_options(taken_);
+    const PostOptions how = take_post_options(taken_, machine_->control().coolant);
     post_ = make_post(*machine_, how);
     arcs_ = how.arcs && post_->has_arcs();
     safe_height_ = how.safe_height;
@@ -77,6 +77,8 @@ class Writer {
 
   void by_pose(std::size_t row, const Pose& pose, bool rapid) {
     check_range(row, {pose.tip.x, pose.tip.y, pose.tip.z, 0, 0, 0});
+    if (options_.motion && row > 0) report_.motion.push_back({row, before_, pose, rapid, false});
+    before_ = pose;
     post_->block({pose, {}, rapid, false, rapid ? 0 : feed_of(row), 0, true});
   }
 
@@ -122,12 +124,12 @@ class Writer {
   /// At a position of the machine, of which only the machine knows where it is: at safe height instead.
   void stay_out(std::size_t row, Subdivider& splitter) {
     if (!away_ && stands_) leave(row, *stands_, splitter);
-    set_up(row);
+    if (set_up(row)) stands_.reset();
     away_ = true;
   }
 
   void come_back(const Waypoint& w, Subdivider& splitter) {
-    set_up(w.row);
+    if (set_up(w.row)) stands_.reset();
     away_ = false;
     const Pose& end = program_.poses()[w.row];
     if (stands_)
@@ -169,10 +171,15 @@ class Writer {
     const auto words = [](const Joints& j) { return Vec3(j[0], j[1], j[2]); };
     std::vector<Vec3> points{words(*stands_)};
     for (const Waypoint& w : run) points.push_back(words(w.joints));
+    std::size_t done = 0;
     for (const FittedPiece& piece : fit_arcs(points, options_.tolerance)) {
       const Waypoint& w = run[piece.last - 1];
       const Pose& end = program_.poses()[w.row];
       before_ = end;
+      // Arcs are within the tolerance of the rows that they stand for.
+      for (; done < piece.last; ++done)
+        if (options_.motion && piece.arc)
+          record(run[done].row, done > 0 ? run[done - 1].joints : *stands_, run[done].joints, false);
       if (!piece.arc) {
         block(w.row, w.joints, end, true);
         continue;
@@ -264,9 +271,9 @@ class Writer {
     go(row, end, machine_->with_tip(*stands_, end.tip), rapid, splitter);
   }
 
-  Reach reach(std::size_t row) const {
+  ToolEnvelope reach(std::size_t row) const {
     const auto shape = program_.tools.find(program_.tool()[row]);
-    return Reach(shape == program_.tools.end() ? nullptr : &shape->second);
+    return ToolEnvelope(shape == program_.tools.end() ? nullptr : &shape->second);
   }
 
   const Space& whole_space() {
@@ -315,8 +322,30 @@ class Writer {
     const Vec3 tip =
         machine_->joint_words() || !stands_ ? machine_->pose(joints).tip : Vec3(joints[0], joints[1], joints[2]);
     if (!rapid && stands_) take_time(row, b, glm::length(tip - tip_));
+    if (options_.motion) record(row, stands_, joints, rapid);
     stands_ = joints, tip_ = tip;
     post_->block(b);
+  }
+
+  /// What the machine makes of a block: stretches in which the rotary axes turn so little that the tool's axis keeps to
+  /// a great circle.
+  void record(std::size_t row, const std::optional<Joints>& from, const Joints& to, bool rapid) {
+    constexpr double kTurn = 1;          // deg: the axis is then within 4e-5 rad of the circle
+    constexpr double kAbove = 200;       // mm: from where a tool comes down for the first time, at least
+    constexpr double kMostParts = 7200;  // twenty turns
+    if (!from) {
+      Joints above = to;
+      above[2] += kAbove;
+      report_.motion.push_back({row, machine_->pose(above), machine_->pose(to), rapid, true});
+      return;
+    }
+    const int parts = std::max(1, static_cast<int>(std::ceil(std::min(kMostParts, rotary_way(*from, to) / kTurn))));
+    Pose last = machine_->pose(*from);
+    for (int k = 1; k <= parts; ++k) {
+      const Pose next = machine_->pose(k < parts ? mix(*from, to, static_cast<double>(k) / parts) : to);
+      if (next.tip != last.tip || next.axis != last.axis) report_.motion.push_back({row, last, next, rapid, false});
+      last = next;
+    }
   }
 
   /// The tip's way at the row's feed, or as fast as the axes may go, whichever takes longer.
@@ -426,6 +455,7 @@ std::string to_nc(const Program& program, const WriteOptions& options, WriteRepo
   try {
     std::string text = Writer(whole, options).run(written);
     for (std::size_t& row : written.rewinds) row = map.original(row);
+    for (MachineStep& m : written.motion) m.row = map.original(m.row);
     for (PolePassage& p : written.passages) p.first = map.original(p.first), p.last = map.original(p.last);
     return text;
   } catch (const RowError& e) {
@@ -433,9 +463,12 @@ std::string to_nc(const Program& program, const WriteOptions& options, WriteRepo
   }
 }
 
-WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options) {
+WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options,
+                     const std::function<void(const WriteReport&)>& check) {
   WriteReport report;
-  write_file(path, to_nc(program, options, &report));
+  const std::string text = to_nc(program, options, &report);
+  if (check) check(report);
+  write_file(path, text);
   return report;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "nc/machine_motion.hpp"
 #include "nc/options.hpp"
 #include "nc/program.hpp"
 
@@ -15,6 +17,7 @@ struct WriteOptions {
   double tolerance = 0.01;          ///< mm, tip between two rows to the straight line; at least 2e-5
   double axis_tolerance = 0.00175;  ///< rad, axis between two rows to the great circle; at least 1e-7
   Options options;                  ///< of the machine and of the post
+  bool motion = false;              ///< whether the report is to have the machine's motion
 };
 
 /// Neighbouring rows in which the rotary axes turn much more than the tool does: near the singular direction.
@@ -29,6 +32,7 @@ struct WriteReport {
   std::size_t slowed = 0;            ///< of them longer than their feed asks, for an axis's rate
   std::vector<std::size_t> rewinds;  ///< rows before whose ends the tool leaves the material to turn axes back
   std::vector<PolePassage> passages;
+  MachineMotion motion;  ///< where it was asked for
 };
 
 /// The text of the program: every row is the end of a block, with more blocks between two rows where the machine's
@@ -36,7 +40,8 @@ struct WriteReport {
 /// std::invalid_argument naming the row that cannot be written, or the post or option that is not known.
 std::string to_nc(const Program& program, const WriteOptions& options = {}, WriteReport* report = nullptr);
 
-/// Writes it beside `path` and renames: the file is whole or not there.
-WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options = {});
+/// Writes it beside `path` and renames: the file is whole or not there. What `check` throws comes before that.
+WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options = {},
+                     const std::function<void(const WriteReport&)>& check = {});
 
 }  // namespace riffler

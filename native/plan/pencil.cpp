@@ -8,6 +8,7 @@
 #include "geom/parallel.hpp"
 #include "mesh/orient.hpp"
 #include "mesh/smooth.hpp"
+#include "plan/contact_location.hpp"
 #include "plan/passes.hpp"
 #include "plan/valley_index.hpp"
 #include "plan/valley_starts.hpp"
@@ -140,7 +141,7 @@ PencilPath path_of(const Valley& valley, double radius) {
 }
 
 const char* name_of(ValleyEnd end) {
-  constexpr const char* kNames[] = {"loop", "corner", "part", "faded", "cut"};
+  constexpr const char* kNames[] = {"loop", "corner", "part", "faded", "cut", "joined"};
   return kNames[static_cast<int>(end)];
 }
 
@@ -156,17 +157,108 @@ std::string reason_of(const PencilStats& stats, const PencilOptions& options) {
   return reason;
 }
 
-void count(const ContactNet& net, const ValleyStarts& starts, PencilResult& result) {
-  PencilStats& stats = result.stats;
-  stats.balls = net.balls, stats.entered = net.points.size();
-  stats.starts = starts.pressed, stats.stuck = starts.stuck;
-  stats.faceting = starts.faceting, stats.edges = starts.edges;
+/// The valleys of one ball, and the area that it cannot reach.
+struct Search {
+  std::vector<Valley> valleys;
+  double area = 0;
+  std::vector<double> areas;  // of each triangle
+};
+
+void count(const ContactNet& net, const ValleyStarts& starts, Search& out, PencilStats& stats) {
+  stats.balls += net.balls, stats.entered += net.points.size();
+  stats.starts += starts.pressed, stats.stuck += starts.stuck;
+  stats.faceting += starts.faceting, stats.edges += starts.edges;
   for (std::size_t i = 0; i < net.points.size(); ++i) {
     if (!starts.is_rest[i]) continue;
-    result.rest_area += net.points[i].area;
-    result.rest_areas[net.points[i].triangle] += net.points[i].area;
+    out.area += net.points[i].area;
+    out.areas[net.points[i].triangle] += net.points[i].area;
   }
 }
+
+Search search(const Mesh& part, const RollingBall& ball, const Scales& scales, const PencilOptions& options,
+              PencilStats& stats, const Progress& progress) {
+  ValleyRules rules;
+  rules.tolerance = options.tolerance;
+  const double gap_angle = bitangency_angle_of_gap(ball.radius(), options.tolerance);
+  rules.jump = std::min(gap_angle, kFeatureAngle);
+  rules.least_angle = options.bitangency_angle.value_or(gap_angle);
+  rules.least_gap = options.bitangency_angle ? 0 : options.tolerance;
+  const ContactNet net =
+      contact_net(part, ball, scales.spacing, scales.depth, rules.least_angle, riffler::part(progress, 0, 0.4));
+  const ValleyTracer tracer(ball, rules);
+  ValleyStarts starts = valley_starts(tracer, net.points, std::max(2 * scales.spacing, ball.radius() / 6),
+                                      4 * scales.spacing, riffler::part(progress, 0.4, 0.8));
+  Search out;
+  out.areas.assign(part.triangles.size(), 0);
+  count(net, starts, out, stats);
+  Tracing tracing(ball, tracer, rules, 6 * scales.spacing);
+  out.valleys = tracing.run(std::move(starts.stations), stats, riffler::part(progress, 0.8, 1));
+  return out;
+}
+
+/// Valleys of larger balls into which the ball is laid where none of the valleys so far goes.
+class Additions {
+ public:
+  Additions(const RollingBall& ball, std::vector<Valley>& valleys)
+      : ball_(ball), near_(0.25 * ball.radius()), valleys_(valleys), index_(0.5 * ball.radius(), near_, kAlike) {
+    for (const Valley& valley : valleys) index_.add(valley);
+  }
+
+  /// Whether any of these valleys of a larger ball goes where none goes so far.
+  bool any(const std::vector<Valley>& wide) const {
+    return std::any_of(wide.begin(), wide.end(), [&](const Valley& v) { return !runs(laid_into(v, ball_)).empty(); });
+  }
+
+  void add(const std::vector<Valley>& wide) {
+    for (const Valley& valley : wide) {
+      const Valley laid = laid_into(valley, ball_);
+      std::vector<Valley> found;
+      for (const auto& [first, last] : runs(laid)) found.push_back(piece(laid, first, last));
+      for (Valley& v : found) index_.add(v), valleys_.push_back(std::move(v));
+    }
+  }
+
+ private:
+  using Run = std::pair<std::size_t, std::size_t>;  // stations, both included
+
+  /// Where no valley goes so far, and on at both ends as far as counts as near, so that paths leave no gap.
+  std::vector<Run> runs(const Valley& laid) const {
+    const std::vector<Station>& s = laid.stations;
+    std::vector<Run> out;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      if (index_.covers(s[k])) continue;
+      Run run{k, k};
+      while (run.second + 1 < s.size() && !index_.covers(s[run.second + 1])) ++run.second;
+      k = run.second;
+      for (double way = 0; run.first > 0 && way < near_; --run.first)
+        way += glm::length(s[run.first].centre - s[run.first - 1].centre);
+      for (double way = 0; run.second + 1 < s.size() && way < near_; ++run.second)
+        way += glm::length(s[run.second].centre - s[run.second + 1].centre);
+      if (!out.empty() && run.first <= out.back().second)
+        out.back().second = run.second;
+      else
+        out.push_back(run);
+    }
+    return out;
+  }
+
+  static Valley piece(const Valley& laid, std::size_t first, std::size_t last) {
+    const bool whole = first == 0 && last + 1 == laid.stations.size();
+    if (whole) return laid;
+    Valley out;
+    out.stations.assign(laid.stations.begin() + static_cast<std::ptrdiff_t>(first),
+                        laid.stations.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    out.ends = {first > 0 || laid.closed() ? ValleyEnd::Joined : laid.ends[0],
+                last + 1 < laid.stations.size() || laid.closed() ? ValleyEnd::Joined : laid.ends[1]};
+    return out;
+  }
+
+  static constexpr double kAlike = 0.5;  // rad between the sides of valleys that are one
+  const RollingBall& ball_;
+  double near_;
+  std::vector<Valley>& valleys_;
+  ValleyIndex index_;
+};
 
 void check(double radius, const PencilOptions& options) {
   const auto positive = [](double x, const char* name) {
@@ -184,10 +276,41 @@ void check(double radius, const PencilOptions& options) {
   if (options.stepover) positive(*options.stepover, "stepover");
 }
 
+/// What a ball that is larger by the overthickness leaves beyond the ball's own valleys. Where that is something, as in
+/// a blend, balls between come first: the smaller they are the further they go into corners.
+void add_rest(const Mesh& part, const RollingBall& ball, const PencilOptions& options, std::vector<Valley>& valleys,
+              PencilResult& result, const Progress& progress) {
+  constexpr double kBetween[] = {1.0 / 16, 1.0 / 4};
+  const auto search_with = [&](double share, const Progress& part_of) {
+    const double wide = ball.radius() + share * options.overthickness;
+    const Scales scales(part, wide, options.tolerance);
+    return search(part, RollingBall(part, wide, scales.touch), scales, options, result.stats, part_of);
+  };
+  Search largest = search_with(1, riffler::part(progress, 0, 0.4));
+  result.reference_area = largest.area, result.reference_areas = std::move(largest.areas);
+  Additions additions(ball, valleys);
+  if (!additions.any(largest.valleys)) return;
+  double done = 0.4;
+  for (const double share : kBetween) {
+    additions.add(search_with(share, riffler::part(progress, done, done + 0.3)).valleys);
+    done += 0.3;
+  }
+  additions.add(largest.valleys);
+}
+
 }  // namespace
 
 double bitangency_angle_of_gap(double radius, double gap) {
   return 2 * std::acos(radius / (radius + gap));
+}
+
+double tip_ball_radius(const Tool& tool, std::string_view name) {
+  const double radius = CutterSupport(tool).ball_radius();
+  if (radius > 0) return radius;
+  throw std::invalid_argument(std::string(name) + ": pencil cuts are the paths of a ball, and the tip of a \"" +
+                              tool.kind() +
+                              "\" cutter is none: take a ball end, a taper with a ball tip, or a profile that begins "
+                              "with an arc about the axis");
 }
 
 PencilResult pencil(const Mesh& given, double radius, const PencilOptions& options, const Progress& progress) {
@@ -196,32 +319,20 @@ PencilResult pencil(const Mesh& given, double radius, const PencilOptions& optio
   if (given.empty()) throw std::invalid_argument("part: a mesh without triangles has no valleys");
   std::optional<Mesh> storage;
   const Mesh& part = as_solid(given, storage, Hollow::Kept);
-  const double wide = radius + options.overthickness;
-  const Scales scales(part, wide, options.tolerance);
-  const RollingBall ball(part, wide, scales.touch);
+  const Scales scales(part, radius, options.tolerance);
+  const RollingBall ball(part, radius, scales.touch);
   report(progress, 0.05);
 
   PencilResult result;
-  ValleyRules rules;
-  rules.tolerance = options.tolerance;
-  const double gap_angle = bitangency_angle_of_gap(wide, options.tolerance);
-  rules.jump = std::min(gap_angle, kFeatureAngle);
-  rules.least_angle = options.bitangency_angle.value_or(gap_angle);
-  rules.least_gap = options.bitangency_angle ? 0 : options.tolerance;
-  const ContactNet net =
-      contact_net(part, ball, scales.spacing, scales.depth, rules.least_angle, riffler::part(progress, 0.05, 0.4));
-  result.rest_areas.assign(part.triangles.size(), 0);
-  const ValleyTracer tracer(ball, rules);
-  ValleyStarts starts = valley_starts(tracer, net.points, std::max(2 * scales.spacing, wide / 6), 4 * scales.spacing,
-                                      riffler::part(progress, 0.4, 0.8));
-  count(net, starts, result);
-  Tracing tracing(ball, tracer, rules, 6 * scales.spacing);
+  const double share = options.overthickness > 0 ? 0.3 : 1;
+  Search own = search(part, ball, scales, options, result.stats, riffler::part(progress, 0.05, share));
+  result.rest_area = own.area, result.rest_areas = std::move(own.areas);
+  result.reference_area = result.rest_area, result.reference_areas = result.rest_areas;
+  if (options.overthickness > 0)
+    add_rest(part, ball, options, own.valleys, result, riffler::part(progress, share, 0.95));
   const double stepover = options.stepover.value_or(stepover_of_scallop(radius, std::min(radius, options.tolerance)));
-  std::optional<RollingBall> narrow;
-  if (options.overthickness > 0) narrow.emplace(part, radius, scales.touch);
-  for (Valley& valley : tracing.run(std::move(starts.stations), result.stats, riffler::part(progress, 0.8, 1))) {
-    if (narrow) valley = laid_into(valley, *narrow);
-    const std::vector<PencilPath> passes = passes_beside(narrow ? *narrow : ball, valley, options.passes - 1, stepover);
+  for (Valley& valley : own.valleys) {
+    const std::vector<PencilPath> passes = passes_beside(ball, valley, options.passes - 1, stepover);
     simplify(valley, options.tolerance);
     PencilPath path = path_of(valley, radius);
     for (const ValleyEnd end : valley.ends) result.stats.cut += end == ValleyEnd::Cut ? 1 : 0;

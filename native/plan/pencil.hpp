@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 #include "plan/path.hpp"
+#include "tool/tool.hpp"
 
 namespace riffler {
 
@@ -18,8 +20,8 @@ struct PencilOptions {
   /// Least angle (rad) between the directions to both contacts; without it that of the gap.
   std::optional<double> bitangency_angle = {};
   double minimum_length = 0;  ///< mm; shorter paths are dropped
-  /// mm. Valleys are those of a ball whose radius is larger by that much, and the ball is then laid into them: so
-  /// blends of nearly its own radius count, or what a larger ball left behind.
+  /// mm. Adds what a ball whose radius is larger by that much leaves behind: the valleys of that ball, with the ball
+  /// itself laid into them, where the ball has no valley of its own. So blends of its own radius and larger count.
   double overthickness = 0;
   /// Curves at each valley and side: 1 is the valley alone, each more adds one pass on either side of it.
   int passes = 1;
@@ -41,11 +43,15 @@ struct PencilStats {
 
 struct PencilResult {
   std::vector<PencilPath> paths;
-  /// How each path begins and ends: "loop", "corner", "part", "faded" or "cut"; "pass" for passes beside a valley,
-  /// which follow it.
+  /// How each path begins and ends: "loop", "corner", "part", "faded" or "cut"; "joined" where another path continues;
+  /// "pass" for passes beside a valley, which follow it.
   std::vector<std::array<const char*, 2>> ends;
   double rest_area = 0;            ///< mm² that the ball cannot reach
   std::vector<double> rest_areas;  ///< of each triangle
+  /// The same for the ball that is larger by the overthickness: what is there to be machined. Without one they are
+  /// those above.
+  double reference_area = 0;
+  std::vector<double> reference_areas;
   PencilStats stats;
   std::string reason;  ///< why there are no paths; empty where there are some
 };
@@ -54,8 +60,15 @@ struct PencilResult {
 /// planes is `gap`: R (1 / cos(angle / 2) - 1).
 double bitangency_angle_of_gap(double radius, double gap);
 
+/// Radius (mm) of the ball at the tool's tip, which is what rolls. std::invalid_argument naming the argument `name` and
+/// the cutters that have one, for a flat end, a bull nose and whatever else has none: such a cutter touches a valley's
+/// two sides elsewhere than a ball of its diameter does.
+double tip_ball_radius(const Tool& tool, std::string_view name);
+
 /// All valleys of `part` for a ball of `radius` (mm). Paths run to the part's end or to three-contact points, each
-/// valley once. std::invalid_argument for an empty or invalid mesh and for sizes that are not positive and finite.
+/// valley once. With an overthickness, balls between the two radii are tried as well where the larger one leaves
+/// blends, so that paths in a blend run on towards its corners. std::invalid_argument for an empty or invalid mesh and
+/// for sizes that are not positive and finite.
 PencilResult pencil(const Mesh& part, double radius, const PencilOptions& options = {}, const Progress& progress = {});
 
 }  // namespace riffler

@@ -24,6 +24,7 @@ enum class ValleyEnd : unsigned char {
   Part,    ///< a contact leaves over a sharp edge or an open one
   Faded,   ///< the sides come too near to one another
   Cut,     ///< too many stations: something is wrong with the part there
+  Joined,  ///< another path continues here
 };
 
 struct Valley {

@@ -6,7 +6,7 @@ import numpy.typing
 import os
 import typing
 import types
-__all__: list[str] = ['Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'contact_locations', 'cutter_locations', 'drop', 'engrave', 'least_tilt', 'lift', 'machines', 'orientation_maps', 'pencil', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'verify']
+__all__: list[str] = ['Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'contact_locations', 'cutter_locations', 'drop', 'engrave', 'least_tilt', 'lift', 'machines', 'orientation_maps', 'pencil', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -545,6 +545,87 @@ class Mesher:
     @property
     def triangles(self) -> int:
         ...
+class Contact:
+    """
+    What a tool meets at a pose: forces act on the tool, in the part's frame.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def checked(self) -> float:
+        """
+        Share of the candidate triangles that was looked at; 1 without a budget.
+        """
+    @property
+    def depth(self) -> float:
+        """
+        mm; 0 where nothing is touched.
+        """
+    @property
+    def force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        N, (3,): out of what is touched.
+        """
+    @property
+    def missed_depth_bound(self) -> float:
+        """
+        mm: the true depth is at most depth + missed_depth_bound.
+        """
+    @property
+    def parts(self) -> list:
+        """
+        What touches at each point: "cutter", "shank", "holder", or "fixture" where it is one that is touched.
+        """
+    @property
+    def points(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 3) mm: the deepest point, then the sample points and pieces of fixtures that are in the tool.
+        """
+    @property
+    def torque(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        N·mm, (3,), about the tip.
+        """
+class Collider:
+    """
+    A part and its fixtures, against which tools are held; immutable.
+
+    ``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
+    that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
+    are N per mm of depth and mm² of surface against the cutter and against shank and holder, and N per mm³ of a
+    fixture in the tool: one number or Material, or a list of one for each fixture. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
+    several threads and release the GIL.
+    """
+    @staticmethod
+    def made(part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: typing.Any = 10.0, progress: typing.Any = None) -> Collider:
+        """
+        The same as a function, for ``riffler.tasks.collider``. ``progress`` is asked at the beginning
+        and at the end only.
+        """
+    def __init__(self, part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: typing.Any = 10.0) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def clearance(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) mm for poses (n, 6): the least signed distance between the part's surface and the union of cutter, shank
+        and holder, negative where they overlap. Fixtures do not count. On all threads.
+        """
+    def nearest(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+        """
+        (distance, point, part) for one pose, over part and fixtures: mm, (3,) mm on part or fixture, and what of the
+        tool it is next to, or "fixture".
+        """
+    def query(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], budget_us: typing.SupportsFloat | None = None) -> Contact:
+        """
+        Force, torque, depth and where they are, as a Contact. After ``budget_us`` microseconds what is left is
+        only bounded: see ``checked`` and ``missed_depth_bound``.
+        """
+    @property
+    def spacing(self) -> float:
+        """
+        Of the points on the part, mm.
+        """
 class Note:
     """
     What a reader of NC code assumed or passed over.
@@ -587,7 +668,7 @@ class Program:
         A program from the bytes of a .rprog file.
         """
     @staticmethod
-    def from_cl(cl: collections.abc.Iterable, tools: typing.Any, feed: typing.Any, spindle: typing.Any = 0.0, *, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0, occupied: typing.Any = None, provenance: typing.Any = None) -> Program:
+    def from_cl(cl: collections.abc.Iterable, tools: typing.Any, feed: typing.Any, spindle: typing.Any = 0.0, *, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0, occupied: typing.Any = None, provenance: typing.Any = None, collider: Collider = None, retract: typing.SupportsFloat | None = None, direction: typing.Any = None, lead_in: typing.SupportsFloat | None = None, contact_tolerance: typing.SupportsFloat = 0.02) -> Program:
         """
         From cutter locations: every (n, 6) array is one cut.
 
@@ -595,8 +676,15 @@ class Program:
         tool's axis, and the feed in; after it a rapid out along the axis. ``tools``: one for all arrays or one for each
         (None: tool 1 of unknown shape). ``feed`` (mm/min at the tip) and ``spindle`` (rev/min, negative counter-clockwise): one
         for all, or a list of one for each array; a feed may be an array of one per row.
-        ``safe_height``: z (mm) above everything; by default ``clearance`` (mm) above all tips and ``occupied``, a pair of
-        corners around stock, part and fixtures.
+        ``safe_height``: z (mm) above everything, the clearance plane; by default ``clearance`` (mm) above all tips and
+        ``occupied``, a pair of corners around stock, part and fixtures.
+
+        With a ``collider``, its part and fixtures are occupied too, and approaches, retracts and the moves between cuts are
+        resolved with cutter, shank and holder: along the tool's axis where that is clear, otherwise by another way, the axis
+        kept; such a way is fed, since it may cross stock. ``retract``: mm of the first stretch out of a cut; ``direction``: a
+        unit vector, which way that goes. Not given, what is clear is looked for. ``lead_in``: mm before a cut that are fed, what
+        is above it being air; not given, all of it is fed. ``contact_tolerance``: mm that a tool may enter part and fixtures by,
+        as cuts touch the part. ValueError names the path, the row, the place and the remedy where nothing is clear.
         """
     @staticmethod
     def joined(programs: collections.abc.Sequence[Program]) -> Program:
@@ -678,7 +766,7 @@ class Program:
         """
         Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.
         """
-    def write(self, path: os.PathLike | str | bytes, post: str = 'tcp', tolerance: typing.SupportsFloat = 0.01, axis_tolerance: typing.SupportsFloat = 0.00175, options: typing.Any = None) -> dict:
+    def write(self, path: os.PathLike | str | bytes, post: str = 'tcp', tolerance: typing.SupportsFloat = 0.01, axis_tolerance: typing.SupportsFloat = 0.00175, options: typing.Any = None, *, collider: Collider = None, stock: Volume = None, contact_tolerance: typing.SupportsFloat = 0.05) -> dict:
         """
         Writes NC code; ``post`` is a name of machines(). The file is whole or not there.
 
@@ -692,6 +780,11 @@ class Program:
         ``rate_c``, ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``safe_height``, ``arcs``, ``vectors``: docs/machines.md. Where a
         rotary axis moves beside linear ones that are written as they stand, blocks are under G93, each with F = 1 / minutes: the
         tip's way at the feed, or longer where an axis's rate asks for it.
+
+        With a ``collider`` the machine's own motion is checked, block by block as its axes make it, with cutter, shank and
+        holder against part and fixtures; with a ``stock`` (a Volume) it is run on that, as a verification does. What enters them
+        by more than ``contact_tolerance`` (mm), a rapid in the stock, or shank or holder in it, is a ValueError with the row, the
+        place and the remedy, and nothing is written.
 
         Returns a dict: ``blocks``; ``slowed_blocks``, longer than their feed asks; ``rewinds``, the rows at which the tool leaves
         the material because a limit asks to turn an axis back; ``pole_passages``, near the singular direction: a list of dicts of
@@ -1433,87 +1526,6 @@ class JournalWriter:
         """
         A copy of everything in the file.
         """
-class Contact:
-    """
-    What a tool meets at a pose: forces act on the tool, in the part's frame.
-    """
-    def __repr__(self) -> str:
-        ...
-    @property
-    def checked(self) -> float:
-        """
-        Share of the candidate triangles that was looked at; 1 without a budget.
-        """
-    @property
-    def depth(self) -> float:
-        """
-        mm; 0 where nothing is touched.
-        """
-    @property
-    def force(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        N, (3,): out of what is touched.
-        """
-    @property
-    def missed_depth_bound(self) -> float:
-        """
-        mm: the true depth is at most depth + missed_depth_bound.
-        """
-    @property
-    def parts(self) -> list:
-        """
-        What touches at each point: "cutter", "shank", "holder", or "fixture" where it is one that is touched.
-        """
-    @property
-    def points(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (k, 3) mm: the deepest point, then the sample points and pieces of fixtures that are in the tool.
-        """
-    @property
-    def torque(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        N·mm, (3,), about the tip.
-        """
-class Collider:
-    """
-    A part and its fixtures, against which tools are held; immutable.
-
-    ``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
-    that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
-    are N per mm of depth and mm² of surface against the cutter and against shank and holder, and N per mm³ of a
-    fixture in the tool: one number or Material, or a list of one for each fixture. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
-    several threads and release the GIL.
-    """
-    @staticmethod
-    def made(part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: typing.Any = 10.0, progress: typing.Any = None) -> Collider:
-        """
-        The same as a function, for ``riffler.tasks.collider``. ``progress`` is asked at the beginning
-        and at the end only.
-        """
-    def __init__(self, part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: typing.Any = 10.0) -> None:
-        ...
-    def __repr__(self) -> str:
-        ...
-    def clearance(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n,) mm for poses (n, 6): the least signed distance between the part's surface and the union of cutter, shank
-        and holder, negative where they overlap. Fixtures do not count. On all threads.
-        """
-    def nearest(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
-        """
-        (distance, point, part) for one pose, over part and fixtures: mm, (3,) mm on part or fixture, and what of the
-        tool it is next to, or "fixture".
-        """
-    def query(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], budget_us: typing.SupportsFloat | None = None) -> Contact:
-        """
-        Force, torque, depth and where they are, as a Contact. After ``budget_us`` microseconds what is left is
-        only bounded: see ``checked`` and ``missed_depth_bound``.
-        """
-    @property
-    def spacing(self) -> float:
-        """
-        Of the points on the part, mm.
-        """
 class Material:
     """
     What a stock or a fixture is made of, as far as a hand can feel it.
@@ -1921,6 +1933,10 @@ def then(found: typing.Any, convert: typing.Any) -> typing.Any:
 def threads() -> int:
     """
     Threads that a parallel call uses: what set_threads() says, else RIFFLER_THREADS where that is set, else as many as the process may run on.
+    """
+def tip_ball_radius(tool: Tool, name: str) -> float:
+    """
+    Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.
     """
 def verify(program: typing.Any, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, progress: typing.Any = None) -> VerifyReport:
     """

@@ -54,7 +54,7 @@ WriteOptions to_xyzac(Options more = {}) {
 TEST(JointWords, KeepTheTipOnItsLineBetweenBlocks) {
   const Program p = swaying(30);
   for (const double tolerance : {0.1, 0.01, 0.001}) {
-    WriteOptions options = to_xyzac();
+    WriteOptions options = to_xyzac({{"safe_start", false}});
     options.tolerance = tolerance;
     const auto blocks = test::block_ends(to_nc(p, options));
     std::size_t row = 0;
@@ -175,7 +175,7 @@ TEST(Header, KeepsCodeFromBeingReadForAnotherMachine) {
   three.post = "3-axis";
   const std::string text = to_nc(program_from_paths(std::vector{upright}, {}), three);
   EXPECT_EQ(error(text, "tcp"), "") << "upright tools are upright anywhere";
-  EXPECT_NE(error(text, "linuxcnc-xyzac"), "");
+  EXPECT_NE(error(text, "linuxcnc-xyzac", kTable), "");
   EXPECT_EQ(error("(some other CAM)\nG0 X1\n", "tcp"), "");
 }
 
@@ -193,8 +193,31 @@ TEST(JointWords, AreReadUpToTheLineThatLeavesALimit) {
 
 TEST(JointWords, ComeFromNowhereInTheirFirstRapid) {
   const Program p = swaying(5);
-  const Program back = parse_nc(to_nc(p, to_xyzac()), "p.ngc", {"linuxcnc-xyzac", kTable});
+  const std::string text = to_nc(p, to_xyzac({{"safe_start", false}}));
+  const Program back = parse_nc(text, "p.ngc", {"linuxcnc-xyzac", kTable});
   EXPECT_LT(glm::length(back.poses()[0].tip - p.poses()[0].tip), 1e-4) << "one row, where it ends";
+}
+
+TEST(JointWords, AskForThePivotOfATable) {
+  for (const char* name : {"linuxcnc-xyzac", "linuxcnc-xyzbc", "head-table"}) {
+    Options options;
+    if (name == std::string("head-table")) options = {{"tcp", false}, {"pivot_length", 200.0}};
+    WriteOptions how;
+    how.post = name, how.options = options;
+    try {
+      to_nc(swaying(2), how);
+      ADD_FAILURE() << name;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("option rot_point must be given: [x, y, z] in part coordinates"),
+                std::string::npos)
+          << e.what();
+    }
+    how.options["rot_point"] = std::vector<double>{0, 0, -40};
+    EXPECT_NO_THROW(to_nc(swaying(2), how)) << name;
+    // Where the control keeps the tip the pivot is its own.
+    how.options = {{"tcp", true}};
+    EXPECT_NO_THROW(to_nc(swaying(2), how)) << name;
+  }
 }
 
 TEST(JointWords, SayInTheHeaderWhatTheyAre) {

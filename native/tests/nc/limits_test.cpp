@@ -18,6 +18,8 @@
 namespace riffler::limits_test {
 namespace {
 
+const std::vector<double> kOrigin{0, 0, 0};
+
 using test::tilted;
 
 constexpr double kDegree = 3.141592653589793 / 180;
@@ -278,6 +280,7 @@ TEST(Rewinds, LeaveUpwardsTurnThereAndComeBack) {
   const Program p = program_from_paths(std::vector{round(25, 2.2, 40)}, {});
   for (const char* name : {"tcp", "linuxcnc-xyzac"}) {
     Options options = limits(-90, 90, -360, 360);
+    if (name != std::string("tcp")) options["rot_point"] = kOrigin;
     WriteReport report;
     const std::string text = to_nc(p, post(name, options), &report);
     ASSERT_EQ(report.rewinds.size(), 1U);
@@ -304,7 +307,8 @@ TEST(Rewinds, LeaveUpwardsTurnThereAndComeBack) {
 TEST(Rewinds, HoldTheTipOverWholeTurnsToo) {
   // From one end of ±3600° to the other: some twenty turns, which samples see as rest.
   const Program p = program_from_paths(std::vector{round(25, 38, 40)}, {});
-  const Options options{{"limits_c", std::vector<double>{-3600, 3600}}, {"limits_a", std::vector<double>{0, 90}}};
+  const Options options{
+      {"limits_c", std::vector<double>{-3600, 3600}}, {"limits_a", std::vector<double>{0, 90}}, {"rot_point", kOrigin}};
   WriteReport report;
   const std::string text = to_nc(p, post("linuxcnc-xyzac", options), &report);
   ASSERT_EQ(report.rewinds.size(), 1U);
@@ -342,7 +346,7 @@ TEST(Rewinds, GoToTheSafeHeightThatIsAskedForAndRapidsTurnFreelyOnlyThere) {
   for (const Pose& pose : p.poses()) clear = std::max(clear, pose.tip.z);
   Options options = limits(-90, 90, -360, 360);
   for (const double safe : {clear, clear + 50}) {
-    options["safe_height"] = safe;
+    options["safe_height"] = safe, options["rot_point"] = kOrigin;
     WriteReport report;
     const std::string text = to_nc(p, post("linuxcnc-xyzac", options), &report);
     EXPECT_EQ(report.rewinds.size(), 1U);
@@ -365,7 +369,9 @@ TEST(Rewinds, GoToTheSafeHeightThatIsAskedForAndRapidsTurnFreelyOnlyThere) {
 TEST(Rewinds, NameTheAxisThatNoTurnBringsWithinItsLimits) {
   const Program p = program_from_paths(std::vector{round(70, 0.5, 40)}, {});
   try {
-    to_nc(p, post("linuxcnc-xyzac", limits(-30, 50, -360, 360)));
+    Options options = limits(-30, 50, -360, 360);
+    options["rot_point"] = kOrigin;
+    to_nc(p, post("linuxcnc-xyzac", options));
     FAIL();
   } catch (const std::invalid_argument& e) {
     EXPECT_EQ(std::string(e.what()),
@@ -378,7 +384,9 @@ TEST(Rewinds, LinearLimitsBindWhereTheWordsAreJoints) {
   const Program p = program_from_paths(std::vector{round(20, 0.5, 40)}, {});
   const Options narrow{{"limits_y", std::vector<double>{-5, 5}}};
   EXPECT_NO_THROW(to_nc(p, post("tcp", narrow))) << "the tip's place says nothing about the axis";
-  EXPECT_THROW(to_nc(p, post("linuxcnc-xyzac", narrow)), std::invalid_argument);
+  Options table = narrow;
+  table["rot_point"] = kOrigin;
+  EXPECT_THROW(to_nc(p, post("linuxcnc-xyzac", table)), RowError);
 }
 
 TEST(PolePassages, AreReportedWithWhatTheyCost) {
@@ -386,7 +394,7 @@ TEST(PolePassages, AreReportedWithWhatTheyCost) {
   for (int k = -20; k <= 20; ++k) path.poses.push_back({{0.1 * k, 0, 0}, glm::normalize(Vec3(0.01 * k, 0.002, 1))});
   const Program p = program_from_paths(std::vector{path}, {});
   WriteReport report;
-  to_nc(p, post("linuxcnc-xyzac", {{"max_rotary", 2000.0}}), &report);
+  to_nc(p, post("linuxcnc-xyzac", {{"max_rotary", 2000.0}, {"rot_point", kOrigin}}), &report);
   ASSERT_EQ(report.passages.size(), 1U);
   const PolePassage& passage = report.passages[0];
   EXPECT_NEAR(static_cast<double>(passage.first + passage.last) / 2, 22, 1);

@@ -16,6 +16,7 @@ using test::tilted;
 constexpr double kDegree = std::numbers::pi / 180;
 
 std::unique_ptr<Machine> linuxcnc(const char* name, Options options = {}) {
+  options.emplace("rot_point", std::vector<double>{0, 0, 0});
   OptionReader reader(std::move(options), std::string("machine ") + name);
   auto machine = make_machine(name, reader);
   reader.done();

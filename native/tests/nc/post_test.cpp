@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <sstream>
 
 #include "nc/cutter_path.hpp"
@@ -61,10 +62,70 @@ TEST(Rs274Post, SwitchesCoolantAndRetractsWhereItIsAsked) {
   std::size_t retracts = 0;
   for (const std::string& line : lines(text)) retracts += line == "G53 G0 Z-2.5";
   EXPECT_EQ(retracts, 3U) << "before everything, before the second tool, after everything";
-  EXPECT_NE(text.find("M8\nG43.4 H1"), text.npos);
+  EXPECT_NE(text.find("M8\nG0 A"), text.npos);
   EXPECT_NE(text.find("M9\nG49\nG53 G0 Z-2.5\nM30\n"), text.npos);
   // After it, all words are said again.
   EXPECT_NE(text.find("G43.4 H1\nG0 X"), text.npos);
+}
+
+TEST(Rs274Post, RetractsThenTurnsThenGoesAcrossThenDown) {
+  const Program p = two_tools();
+  const std::string text = text_of(p, "tcp");
+  const auto all = lines(text);
+  EXPECT_EQ(std::count(all.begin(), all.end(), "G53 G0 Z0"), 3) << "before each tool and at the end";
+  for (const int tool : {1, 2}) {
+    const auto call = std::find(all.begin(), all.end(), "T" + std::to_string(tool) + " M6");
+    ASSERT_NE(call, all.end());
+    EXPECT_EQ(*(call - 1), "G53 G0 Z0");
+    EXPECT_TRUE((call + 1)->starts_with("S")) << *(call + 1);
+    EXPECT_TRUE((call + 2)->starts_with("G0 A") && (call + 2)->find(" C") != std::string::npos &&
+                (call + 2)->find_first_of("XYZ") == std::string::npos)
+        << *(call + 2);
+    EXPECT_EQ(*(call + 3), "G43.4 H" + std::to_string(tool)) << "the control keeps the tip only once the axes stand";
+    EXPECT_TRUE((call + 4)->starts_with("G0 X") && (call + 4)->find(" Y") != std::string::npos &&
+                (call + 4)->find('Z') == std::string::npos)
+        << *(call + 4);
+    EXPECT_TRUE((call + 5)->starts_with("Z") || (call + 5)->starts_with("G0 Z")) << *(call + 5);
+  }
+  EXPECT_TRUE(text.ends_with("\nM5\nG49\nG53 G0 Z0\nM30\n"));
+  // Without it: one block from wherever the machine is, and no retract.
+  const std::string plain = text_of(p, "tcp", {{"safe_start", false}});
+  EXPECT_EQ(plain.find("G53"), plain.npos);
+  EXPECT_NE(plain.find("G43.4 H1\nG0 X"), plain.npos);
+  EXPECT_NE(plain.find("G43.4 H2\nG0 X"), plain.npos);
+  EXPECT_EQ(text_of({}, "tcp").find("G53"), text.npos) << "nothing moves";
+}
+
+TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
+  // Where the tool is between the machine's own retract and the first Z is not in the program: no row, and no rapid
+  // through the part's zero.
+  const Program p = two_tools();
+  const Options table{{"rot_point", std::vector<double>{3, 4, -50}}};
+  for (const char* post : {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head", "head-table"})
+    for (const double step : {0.0, 10.0}) {
+      const Options options = std::string(post).starts_with("linuxcnc") ? table : Options{};
+      Options how = options;
+      how["line_numbers"] = step;
+      const Program q = parse_nc(text_of(p, post, how), "p.ngc", {post, options});
+      std::size_t row = 0;
+      for (std::size_t k = 0; k < q.size(); ++k) {
+        const Vec3& tip = q.poses()[k].tip;
+        // Every row of the code is on the way to the row of the program that comes next.
+        const Vec3 from = p.poses()[row > 0 ? row - 1 : 0].tip, way = p.poses()[row].tip - from;
+        const double length2 = glm::dot(way, way);
+        const double t = length2 > 0 ? std::clamp(glm::dot(tip - from, way) / length2, 0.0, 1.0) : 0;
+        ASSERT_LT(glm::length(tip - from - t * way), 0.011) << post << ", row " << k;
+        EXPECT_EQ(q.tool()[k], p.tool()[row]);
+        EXPECT_EQ(q.rapid()[k], p.rapid()[row]);
+        const bool ends =
+            glm::length(tip - p.poses()[row].tip) < 2e-5 && test::angle(q.poses()[k].axis, p.poses()[row].axis) < 1e-6;
+        if (ends && row + 1 < p.size()) ++row;
+      }
+      EXPECT_EQ(row, p.size() - 1) << post;
+    }
+  // Another block to a position of the machine is what it was.
+  EXPECT_EQ(parse_nc("G0 X1 Y2 Z3\nG53 G0 Z0.0\nG0 X5\nZ4\n", "p.ngc").size(), 4U);
+  EXPECT_EQ(parse_nc("G0 X1 Y2 Z3\nG53 G0 Z0\nG0 X5\nZ4\n", "p.ngc").size(), 2U);
 }
 
 TEST(Rs274Post, MakesArcsOfStraightRunsWithinTheTolerance) {
@@ -76,14 +137,18 @@ TEST(Rs274Post, MakesArcsOfStraightRunsWithinTheTolerance) {
   for (int i = 1; i <= 20; ++i) path.poses.push_back({path.poses[300].tip + Vec3(i, 0, 0), path.poses[300].axis});
   const Program p = program_from_paths(std::vector{path}, {});
   for (const char* post : {"tcp", "linuxcnc-xyzac", "heidenhain"}) {
-    const std::string straight = text_of(p, post), curved = text_of(p, post, {{"arcs", true}});
+    Options table{{"safe_start", false}}, options;
+    if (post == std::string("linuxcnc-xyzac")) options["rot_point"] = table["rot_point"] = std::vector<double>{0, 0, 0};
+    const std::string straight = text_of(p, post, table);
+    table["arcs"] = true;
+    const std::string curved = text_of(p, post, table);
     if (post == std::string("heidenhain")) {
       EXPECT_EQ(straight, curved) << "the post has none";
       continue;
     }
     EXPECT_LT(lines(curved).size() + 250, lines(straight).size()) << post;
     EXPECT_NE(curved.find("G3 X"), curved.npos);
-    const Program q = parse_nc(curved, "p.ngc", {post, {}});
+    const Program q = parse_nc(curved, "p.ngc", {post, options});
     // Every row of either is beside a move of the other.
     const auto beside = [](const Program& a, const Program& b) {
       double worst = 0;
@@ -113,11 +178,15 @@ TEST(HeidenhainPost, CountsItsBlocksAndKeepsTheTip) {
   std::string text;
   for (const std::string& line : all) text += line.substr(line.find(' ') + 1) + "\n";
   EXPECT_NE(text.find("; part: ?? [1].stl"), text.npos);
-  EXPECT_NE(text.find("TOOL CALL 1 Z S8000\nM3\nM7\nM128\nL X"), text.npos);
-  EXPECT_NE(text.find("M129\nM5\nTOOL CALL 2 Z S9000\nM4\nM7\nM128\nL X"), text.npos);
+  EXPECT_NE(text.find("L M140 MB MAX\nTOOL CALL 1 Z S8000\nM3\nM7\nL A"), text.npos);
+  EXPECT_NE(text.find("M129\nM5\nL M140 MB MAX\nTOOL CALL 2 Z S9000\nM4\nM7\nL A"), text.npos);
+  // The rotary axes turn before the control keeps the tip, then the tool goes across, then down.
+  EXPECT_TRUE(std::regex_search(
+      text, std::regex("\nL A[^ ]+ C[^ ]+ R0 FMAX\nM128\nL X[^ ]+ Y[^ ]+ FMAX\nL X[^ ]+ Z[^ ]+ FMAX\n")))
+      << text;
   EXPECT_NE(text.find(" FMAX\n"), text.npos);
   EXPECT_NE(text.find(" F600\n"), text.npos);
-  EXPECT_TRUE(text.find("M129\nM5\nM9\nM30\nEND PGM") != text.npos);
+  EXPECT_TRUE(text.find("M129\nM5\nM9\nL M140 MB MAX\nM30\nEND PGM") != text.npos);
 }
 
 /// Poses of L and LN blocks: axis words as tcp has them, or the vector.

@@ -303,8 +303,8 @@ TEST(Subdivider, ChangesTheBranchOnlyWhereTheMovePassesThePole) {
 
 TEST(Subdivider, DoesNotTakeWholeTurnsForRest) {
   // Twenty turns with the tip held look like rest at every tenth of them.
-  OptionReader none({}, "machine linuxcnc-xyzac");
-  const auto machine = make_machine("linuxcnc-xyzac", none);
+  OptionReader origin({{"rot_point", std::vector<double>{0, 0, 0}}}, "machine linuxcnc-xyzac");
+  const auto machine = make_machine("linuxcnc-xyzac", origin);
   const Pose pose{{30, 0, 5}, tilted(20, 40)};
   const Joints from = machine->joints(pose, 0, {}, 1e-6);
   Joints to = from;

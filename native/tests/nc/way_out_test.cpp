@@ -33,7 +33,7 @@ bool inside(const Box3& box, const Pose& pose, double length) {
 
 TEST(WayOut, BringsTheWholeToolOutAndUpWhateverItsTilt) {
   const Tool tool = cutters::ball(6, 80);
-  const Reach reach(&tool);
+  const ToolEnvelope reach(&tool);
   for (double tilt = 0; tilt <= 180; tilt += 7.5)
     for (double around = 0; around < 360; around += 22.5) {
       const Pose pose{{3, -4, -5}, tilted(tilt, around)};
@@ -52,11 +52,35 @@ TEST(WayOut, BringsTheWholeToolOutAndUpWhateverItsTilt) {
 
 TEST(WayOut, SaysHowFarATiltedToolHangsBelowItsTip) {
   const Tool tool = cutters::flat(10, 60);
-  const Reach reach(&tool);
+  const ToolEnvelope reach(&tool);
   EXPECT_EQ(reach.below_tip(1), 0);
   EXPECT_NEAR(reach.below_tip(0), 5, 1e-12);
   EXPECT_NEAR(reach.below_tip(-1), 60, 1e-12);
   EXPECT_NEAR(reach.below_tip(-0.6), 0.6 * 60 + 0.8 * 5, 1e-12);
+}
+
+TEST(WayOut, SweptBoxHoldsTheWholeToolOnItsWay) {
+  const Tool tool = cutters::ball(6, 25).with_holder({{25, 14, 60, 16}});
+  const ToolEnvelope reach(&tool);
+  EXPECT_EQ(reach.length, 60);
+  EXPECT_EQ(reach.radius, 16);
+  for (double tilt = 0; tilt <= 160; tilt += 20)
+    for (double around = 0; around < 360; around += 45) {
+      const Pose from{{3, -4, -5}, tilted(10, 30)}, to{{-20, 9, 14}, tilted(tilt, around)};
+      const Motion motion(from, to);
+      const Box3 box = reach.swept_box(from, to);
+      double least = 1e9;
+      for (int k = 0; k <= 32; ++k)
+        for (double h = 0; h <= 60; h += 10)
+          for (int side = 0; side < 16; ++side) {
+            const Pose pose = motion.at(k / 32.0);
+            const Vec3 u = glm::normalize(glm::cross(pose.axis, Vec3(0.3, 0.5, 0.81))), v = glm::cross(pose.axis, u);
+            const Vec3 p = pose.tip + h * pose.axis + 16.0 * (std::cos(0.4 * side) * u + std::sin(0.4 * side) * v);
+            for (int i = 0; i < 3; ++i) least = std::min({least, p[i] - box.lower[i], box.upper[i] - p[i]});
+          }
+      EXPECT_GE(least, 0) << tilt << ' ' << around;
+      EXPECT_LT(least, 20 + 60 * motion.angle() * motion.angle() / 8) << "and is no larger than it must be";
+    }
 }
 
 }  // namespace

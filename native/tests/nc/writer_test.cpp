@@ -51,7 +51,7 @@ TEST(Writer, EveryRowEndsABlockAndBlocksKeepToTheMove) {
   const Program p = program_from_paths(swaying(40), {});
   for (const double axis_tolerance : {0.00175, 1e-4}) {
     WriteOptions options;
-    options.axis_tolerance = axis_tolerance;
+    options.axis_tolerance = axis_tolerance, options.options["safe_start"] = false;
     const auto blocks = block_ends(to_nc(p, options));
     std::size_t block = 0;
     for (std::size_t row = 0; row < p.size(); ++row) {
@@ -103,7 +103,7 @@ TEST(Writer, KeepsRowsThatDoNotMove) {
   const Program p = program_from_paths(std::vector<CutterPath>{{{a, a, a}, {100}, 0, 1}}, {});
   for (const char* post : {"tcp", "3-axis"}) {
     WriteOptions options;
-    options.post = post;
+    options.post = post, options.options["safe_start"] = false;
     EXPECT_EQ(parse_nc(to_nc(p, options), "p.ngc", {post, {}}).size(), p.size()) << post;
   }
 }
@@ -120,13 +120,15 @@ TEST(Writer, WritesWhatControlsExpectAroundTheMoves) {
   EXPECT_NE(text.find("(part: shoe [left] ??.stl)"), std::string::npos);
   EXPECT_EQ(text.find("(LOGOPEN,"), std::string::npos) << "a comment must not be a command";
   EXPECT_NE(text.find("(T1: ball, diameter 6, named B6)"), std::string::npos);
-  EXPECT_NE(text.find("T1 M6\nS9000 M3\nG43.4 H1\n"), std::string::npos);
-  EXPECT_NE(text.find("M5\nG49\nT2 M6\nS9000 M3\nG43.4 H2\nG0 X"), std::string::npos) << "all words after the change";
-  EXPECT_TRUE(text.ends_with("\nM5\nG49\nM30\n"));
+  EXPECT_NE(text.find("G53 G0 Z0\nT1 M6\nS9000 M3\nG0 A"), std::string::npos);
+  EXPECT_NE(text.find("M5\nG49\nG53 G0 Z0\nT2 M6\nS9000 M3\nG0 A"), std::string::npos) << "all words after the change";
+  EXPECT_TRUE(text.ends_with("\nM5\nG49\nG53 G0 Z0\nM30\n"));
 }
 
 TEST(Writer, PrintsAtLeastFiveDecimalsAndSixForAngles) {
-  const std::string text = to_nc(program_from_paths(swaying(30), {}));
+  WriteOptions options;
+  options.options["safe_start"] = false;
+  const std::string text = to_nc(program_from_paths(swaying(30), {}), options);
   EXPECT_FALSE(std::regex_search(text, std::regex("\n[^(\n]*[XYZ]-?[0-9]*(\\.[0-9]{0,4})?[ \n]")));
   EXPECT_FALSE(std::regex_search(text, std::regex("\n[^(\n]*[AC]-?[0-9]*(\\.[0-9]{0,5})?[ \n]")));
   EXPECT_EQ(text.find("-0.00000 "), std::string::npos);
@@ -157,7 +159,7 @@ TEST(Writer, TakesTheFeedOfTheNextMoveWhereTheTipStandsStill) {
 TEST(Writer, WritesTheSmallestFeedAsMoreThanNothing) {
   Program p;
   p.append({{{0, 0, 0}, {0, 0, 1}}, 1e-9, 0, 1, 0, false});
-  EXPECT_GT(parse_nc(to_nc(p), "p.ngc").feed()[0], 0);
+  EXPECT_GT(parse_nc(to_nc(p, {.options = {{"safe_start", false}}}), "p.ngc").feed()[0], 0);
 }
 
 std::string error_of(const Program& p, const WriteOptions& options) {
@@ -180,7 +182,7 @@ TEST(Writer, NamesWhatIsWrong) {
   EXPECT_EQ(error_of(p, options),
             "post tcp: unknown option 'offset'; known: tcp, max_rotary, limits_x, rate_x, limits_y, rate_y, limits_z, "
             "rate_z, limits_a, rate_a, limits_c, rate_c, tool_length, feed, line_numbers, coolant, vectors, retract, "
-            "safe_height, arcs");
+            "safe_start, safe_height, arcs");
   options = {};
   options.tolerance = 0;
   EXPECT_NE(error_of(p, options).find("tolerance"), std::string::npos);

@@ -7,6 +7,7 @@
 #include "geom/error.hpp"
 #include "mesh/closest.hpp"
 #include "plan/parts.hpp"
+#include "tool/cutters.hpp"
 
 namespace riffler::pencil_test {
 namespace {
@@ -187,6 +188,105 @@ TEST(Pencil, AThickerBallFindsBlendsOfNearlyTheSameRadius) {
   const double bottom = -8 + blend * std::sqrt(2.0) - blend + radius;
   EXPECT_LT(hausdorff(found.paths[0], {0, 0, bottom}, {40, 0, bottom}), 2e-3);
   expect_rolls(part, found.paths[0], 0.02);
+}
+
+/// A square pocket from z = 0 to `depth`, open at the top, in a plate of 80 x 80 mm.
+Mesh square_pocket(double half, double depth) {
+  const double wide = 40;
+  Mesh m;
+  for (const double z : {0.0, depth})
+    for (const Vec2 p : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)})
+      m.vertices.emplace_back(half * p.x, half * p.y, z);
+  for (const Vec2 p : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)})
+    m.vertices.emplace_back(wide * p.x, wide * p.y, depth);
+  const auto quad = [&](int a, int b, int c, int d) {
+    m.triangles.emplace_back(a, b, c), m.triangles.emplace_back(a, c, d);
+  };
+  quad(0, 1, 2, 3);
+  for (int k = 0; k < 4; ++k) {
+    const int n = (k + 1) % 4;
+    quad(n, k, 4 + k, 4 + n), quad(4 + n, 4 + k, 8 + k, 8 + n);
+  }
+  return m;
+}
+
+double length_of(const PencilResult& result) {
+  double sum = 0;
+  for (const PencilPath& path : result.paths) sum += path.length();
+  return sum;
+}
+
+/// mm² that a ball cannot reach in a square pocket deeper than its radius: a strip on both sides of every edge, by the
+/// faces' areas less what their contacts cover.
+double rest_of_pocket(double half, double depth, double r) {
+  const double side = 2 * half, reached = side - 2 * r;
+  return side * side - reached * reached + 4 * (side * depth - reached * (depth - r));
+}
+
+TEST(Pencil, RestOfALargerBallGoesIntoTheCornersOfAPocket) {
+  const double half = 20, depth = 8, small = 2, large = 6;
+  const Mesh part = square_pocket(half, depth);
+  const PencilResult found = pencil(part, small, {.overthickness = large - small});
+  // Four edges of the floor and four upright ones, each once, from corner to corner and from corner to rim.
+  ASSERT_EQ(found.paths.size(), 8U);
+  EXPECT_NEAR(length_of(found), 4 * 2 * (half - small) + 4 * (depth - small), 1e-3);
+  int upright = 0;
+  for (std::size_t k = 0; k < found.paths.size(); ++k) {
+    const PencilPath& path = found.paths[k];
+    expect_rolls(part, path, 1e-6);
+    const Vec3 along = glm::normalize(path.centres.back() - path.centres.front());
+    upright += std::abs(along.z) > 0.5 ? 1 : 0;
+    for (const Vec3& c : path.centres) {
+      const int walls = (std::abs(std::abs(c.x) - (half - small)) < 1e-6 ? 1 : 0) +
+                        (std::abs(std::abs(c.y) - (half - small)) < 1e-6 ? 1 : 0) +
+                        (std::abs(c.z - small) < 1e-6 ? 1 : 0);
+      EXPECT_GE(walls, 2);
+    }
+  }
+  EXPECT_EQ(upright, 4);
+  EXPECT_NEAR(found.rest_area, rest_of_pocket(half, depth, small), 0.03 * found.rest_area);
+  EXPECT_NEAR(found.reference_area, rest_of_pocket(half, depth, large), 0.03 * found.reference_area);
+  EXPECT_EQ(pencil(part, large).rest_areas, found.reference_areas);
+}
+
+TEST(Pencil, RestInABlendRunsOnTowardsItsCorners) {
+  // The ball finds no valley in the blend itself; the larger one would end 5 mm before the walls at both ends.
+  const double radius = 3, blend = 3.2, length = 40;
+  const Mesh trough = groove(kPi / 2, length, blend, 64);
+  const Mesh part =
+      both(both(trough, box_mesh({-10, -30, -30}, {0, 30, 10})), box_mesh({length, -30, -30}, {length + 10, 30, 10}));
+  const PencilResult found = pencil(part, radius, {.overthickness = 2});
+  const double bottom = -8 + blend * std::sqrt(2.0) - blend + radius;
+  double low = length, high = 0;
+  for (const PencilPath& path : found.paths)
+    for (const Vec3& c : path.centres) {
+      EXPECT_GE(Closest(part)(c).distance, radius - 1e-6);
+      if (std::abs(c.y) < 0.02 && std::abs(c.z - bottom) < 0.02) low = std::min(low, c.x), high = std::max(high, c.x);
+    }
+  EXPECT_LT(low, radius + 0.6);
+  EXPECT_GT(high, length - radius - 0.6);
+  // Its line is covered once: no second path beside the first.
+  double along = 0;
+  for (const PencilPath& path : found.paths)
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      const Vec3 &a = path.centres[k - 1], &b = path.centres[k];
+      if (std::abs(a.y) < 0.02 && std::abs(b.y) < 0.02 && std::abs(a.z - b.z) < 0.02) along += std::abs(b.x - a.x);
+    }
+  EXPECT_NEAR(along, length - 2 * radius, 4.0);
+}
+
+TEST(Pencil, OnlyCuttersWithABallAtTheirTipHavePencilCuts) {
+  EXPECT_EQ(tip_ball_radius(cutters::ball(6, 30), "tool"), 3);
+  EXPECT_NEAR(tip_ball_radius(cutters::taper(1, 0.1, 6, 40), "tool"), 1, 1e-12);
+  for (const Tool& tool : {cutters::flat(6, 30), cutters::fillet(6, 1, 30), cutters::taper(1, 0.1, 6, 40, true),
+                           cutters::cone_end(0.5, 1, 0.5, 4, 20)})
+    try {
+      tip_ball_radius(tool, "reference_tool");
+      ADD_FAILURE() << tool.kind();
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("reference_tool: "), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("ball end"), std::string::npos) << e.what();
+    }
 }
 
 /// A dovetail: undercut walls of 60 degrees, from three prisms that are not welded.

@@ -49,7 +49,7 @@ def demonstration_file(name: str) -> Path:
 
 def demonstration(name: str) -> riffler.Program:
     """One of FIVE_AXES as riffler reads it."""
-    options = {"subroutines": str(DEMOS / "remap_subs")}
+    options = {"subroutines": str(DEMOS / "remap_subs"), "rot_point": [0, 0, 0]}
     return riffler.Program.read(demonstration_file(name), machine=FIVE_AXES[name], options=options)
 
 

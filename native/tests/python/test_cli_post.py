@@ -57,7 +57,7 @@ def folder(tmp_path: Path) -> Path:
     plan.save(tmp_path / "leaning.json", plan.Plan([leaning], BALL, part=part))
     program = riffler.Program.from_cl([swinging()], tools=[BALL], feed=800, spindle=12000)
     program.save(tmp_path / "p.rprog")
-    program.write(tmp_path / "p.ngc", post="tcp")
+    program.write(tmp_path / "p.ngc", post="tcp", options={"safe_start": False})
     journal = riffler.Journal()
     journal.set_stock((0, -10, -5), (60, 10, 0), 0.5)
     journal.add_tool(3, BALL)
@@ -96,7 +96,7 @@ def test_a_plan_becomes_code_with_the_balls_tip_on_its_paths(folder):
 
 
 def test_a_plan_without_a_feed_is_cut_slowly_and_says_so(folder):
-    data = result("post", "plain.json", "--post", "linuxcnc-xyzac", "--out", "p.ngc", cwd=folder)
+    data = result("post", "plain.json", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder)
     assert data["notes"][0].startswith("feed 500 mm/min") and data["minutes"] == pytest.approx(19 / 500)
 
 
@@ -132,8 +132,9 @@ def test_a_part_lifts_the_tool_out_of_it(folder):
 
 def test_programs_go_from_one_machine_to_another(folder):
     data = result(
-        "post", "p.ngc", "--machine", "tcp", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "q.ngc", cwd=folder
-    )
+        "post", "p.ngc", "--machine", "tcp", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--option", "safe_start=false",
+        "--out", "q.ngc", cwd=folder,
+    )  # fmt: skip
     assert nearest(poses_of(folder / "q.ngc", "linuxcnc-xyzac", **TABLE), swinging()) < 4e-5
     assert data["blocks"] == data["rows"] + data["subdivisions"] and data["subdivisions"] > 0
     # And back, under other options.

@@ -81,7 +81,7 @@ def written(tmp_path, poses, post, tolerance=0.01, **options):
     program = riffler.Program.from_cl([poses], tools=[tool], feed=600, spindle=8000)
     file = tmp_path / "p.ngc"
     name, own, _ = POSTS[post]
-    program.write(file, post=name, tolerance=tolerance, options=own | options)
+    program.write(file, post=name, tolerance=tolerance, options={"safe_start": False} | own | options)
     return file
 
 
@@ -240,3 +240,27 @@ def test_arcs_stay_within_the_tolerance_of_the_straight_runs(tmp_path, post):
         return np.linalg.norm(point - tips[:-1] - share * way, axis=1).min()
 
     assert max(beside(point) for point in dense[:, :3]) <= 0.01 + 5e-4
+
+
+@pytest.mark.parametrize("post", POSTS)
+def test_the_first_blocks_retract_turn_go_across_and_come_down(tmp_path, post):
+    """As the interpreter says it: no rotary axis turns, and nothing goes across, below where the retract has ended."""
+    poses = path("smooth")
+    tools = [riffler.Tool.ball(6, 30), riffler.Tool.ball(4, 30)]
+    program = riffler.Program.from_cl([poses, poses + [5, 0, 0, 0, 0, 0]], tools=tools, feed=600, spindle=8000)
+    name, own, axes = POSTS[post]
+    file = tmp_path / "p.ngc"
+    program.write(file, post=name, options=own)
+    text = file.read_text()
+    assert text.count("G53 G0 Z0\n") == 3 and text.rstrip().endswith("G53 G0 Z0\nM30")
+    moves = linuxcnc.interpreted(file)
+    at, first, starts = forward(moves.joints, axes), moves.joints[1], []
+    assert first[2] == 0 and not first[3:].any(), "Z alone"
+    for pose in (program.poses[0], program.poses[len(poses) + 2]):
+        far, turned = off(at, pose)
+        starts.append(int(np.flatnonzero((far < 2e-3) & (turned < 4e-5) & (moves.joints[:, 2] != 0))[0]))
+    for k in starts:
+        retract, turn, across, down = np.diff(moves.joints[k - 4 : k + 1], axis=0)
+        assert not retract[[0, 1, 3, 4, 5]].any() and not turn[:3].any()
+        assert not across[2:].any() and not down[[0, 1, 3, 4, 5]].any()
+        assert moves.joints[k - 3 : k, 2].tolist() == [0, 0, 0] and moves.rapid[k - 3 : k + 1].all()

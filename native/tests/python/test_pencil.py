@@ -70,6 +70,34 @@ def test_passes_lie_beside_the_valley():
     assert RADIUS - np.sqrt(RADIUS**2 - (gap / 2) ** 2) == pytest.approx(0.02)
 
 
+def test_rest_after_a_larger_tool_has_the_corners_of_a_pocket():
+    """Ø4 after Ø12 in an open pocket of 40 × 40 × 8 mm: 4 × 36 mm along the floor, 4 × 6 mm up its corners."""
+    corners = np.array([(-20, -20), (20, -20), (20, 20), (-20, 20)], float)
+    rings = [np.column_stack([k * corners, np.full(4, z)]) for k, z in ((1, 0), (1, 8), (2, 8))]
+    triangles = [(0, 1, 2), (0, 2, 3)]
+    for low in (0, 4):
+        for k in range(4):
+            a, b, c, d = low + (k + 1) % 4, low + k, low + 4 + k, low + 4 + (k + 1) % 4
+            triangles += [(a, b, c), (a, c, d)]
+    pocket = riffler.Mesh(np.concatenate(rings), triangles)
+    paths = riffler.plan.pencil(pocket, riffler.Tool.ball(4, 30), reference_tool=riffler.Tool.ball(12, 40))
+    assert sum(p.length for p in paths) == pytest.approx(168, abs=1e-3) and len(paths) == 8
+    reach = np.abs(np.concatenate([p.centres[:, :2] for p in paths])).max()
+    assert reach == pytest.approx(18, abs=1e-6)
+    assert paths.rest_area < 0.5 * paths.reference_area
+    assert paths.reference_area == pytest.approx(paths.reference_areas.sum())
+
+
+@pytest.mark.parametrize("name", ["tool", "reference_tool"])
+@pytest.mark.parametrize("tool", [riffler.Tool.flat(8, 30), riffler.Tool.fillet(8, 1, 30)])
+def test_tools_without_a_ball_at_the_tip_are_refused(name, tool):
+    given = {"tool": BALL, name: tool}
+    with pytest.raises(ValueError, match=f"^{name}: .*take a ball end, a taper with a ball tip"):
+        riffler.plan.pencil(step(), **given)
+    given[name] = riffler.Tool.taper(4 if name == "reference_tool" else 1, 0.1, 12, 80)
+    assert len(riffler.plan.pencil(step(), **given)) == 1
+
+
 def test_links_are_short():
     rng = np.random.default_rng(4)
     boxes = None

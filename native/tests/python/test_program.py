@@ -57,6 +57,9 @@ def rows_of(program, wanted):
     return out
 
 
+AS_ROWS = {"safe_start": False}  # without the blocks that bring a tool to its first row
+
+
 @pytest.fixture
 def ball():
     return riffler.Tool.ball(6, 30)
@@ -175,7 +178,7 @@ def test_tcp_blocks_hold_the_poses_and_the_way_between_them(tmp_path_factory, cl
     cl = cl[np.r_[True, np.linalg.norm(np.diff(cl[:, :3], axis=0), axis=1) > 1e-2]]
     p = riffler.Program.from_cl([cl], tools=[riffler.Tool.ball(6, 30)], feed=100)
     file = tmp_path_factory.mktemp("nc") / "p.ngc"
-    p.write(file, post="tcp", axis_tolerance=axis_tolerance)
+    p.write(file, post="tcp", axis_tolerance=axis_tolerance, options=AS_ROWS)
     ends, _, rapid, c = blocks(file.read_text())
     assert np.abs(np.diff(c)).max() <= 180 + 1e-6
     rows = rows_of(ends, p.poses)
@@ -217,22 +220,22 @@ def test_read_gives_back_what_was_written(tmp_path_factory, post, options, cl):
         [cl, cl[::-1]], tools=[riffler.Tool.ball(6, 30), riffler.Tool.flat(6, 30)], feed=123.456, spindle=-999
     )
     file = tmp_path_factory.mktemp("nc") / "p.ngc"
-    p.write(file, post=post, options=options)
+    p.write(file, post=post, options=options | AS_ROWS)
     first = file.read_bytes()
     q = riffler.Program.read(file, machine=post, options=options)
     rows = rows_of(q.poses, p.poses)
     for name in ("feed", "rapid", "tool", "spindle"):
         np.testing.assert_array_equal(getattr(q, name)[rows], getattr(p, name))
     assert (q.line > 0).all() and (np.diff(q.line) > 0).all()
-    assert q.provenance == {"source": "p.ngc"} and not q.notes
-    p.write(file, post=post, options=options)
+    assert q.provenance == {"source": "p.ngc"} and {note.kind for note in q.notes} <= {"rapid"}
+    p.write(file, post=post, options=options | AS_ROWS)
     assert file.read_bytes() == first
 
 
 def test_three_axis_post_has_upright_tools_only(tmp_path, ball):
     upright = spiral(5, tilt=0)
     file = tmp_path / "p.ngc"
-    riffler.Program.from_cl([upright], tools=[ball], feed=100).write(file, post="3-axis")
+    riffler.Program.from_cl([upright], tools=[ball], feed=100).write(file, post="3-axis", options=AS_ROWS)
     text = file.read_text()
     assert "G43 H1" in text and not re.search(r"^[^(]*[AC][-0-9]", text, re.M)
     np.testing.assert_allclose(riffler.Program.read(file, machine="3-axis").poses[1:6], upright, atol=1e-5)
@@ -339,7 +342,7 @@ def test_arcs_are_chords_within_the_tolerance(tmp_path):
 def test_mutations_of_the_code_do_not_pass(tmp_path, ball):
     p = riffler.Program.from_cl([spiral(30, turns=0.4)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"
-    p.write(file)
+    p.write(file, options=AS_ROWS)
     text = file.read_text()
 
     def worst(mutated):
@@ -361,7 +364,7 @@ def test_replay_of_read_code_carves_as_the_program_does(tmp_path, ball):
     p = riffler.Program.from_cl(
         [spiral(12) + np.array([0, 20, 28, 0, 0, 0])], tools=[ball], feed=100, occupied=((0, 0, 0), (90, 50, 30))
     )
-    p.write(tmp_path / "p.ngc", axis_tolerance=1e-4)
+    p.write(tmp_path / "p.ngc", axis_tolerance=1e-4, options=AS_ROWS)
     q = riffler.Program.read(tmp_path / "p.ngc")
     volumes = []
     for program in (p, q):

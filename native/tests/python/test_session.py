@@ -86,8 +86,9 @@ def test_a_recording_becomes_nc_code_and_a_session_again(tmp_path):
     volume, _, _ = carve_with_the_simulated_pen(tmp_path)
     journal = riffler.Journal.read(tmp_path / "a.rjournal")
     program = journal.program(feed=600, spindle=10000)
-    program.write(tmp_path / "a.ngc", post="linuxcnc-xyzac")
-    back = riffler.Program.read(tmp_path / "a.ngc", machine="linuxcnc-xyzac")
+    table = {"rot_point": [0, 0, 0]}
+    program.write(tmp_path / "a.ngc", post="linuxcnc-xyzac", options=table | {"safe_start": False})
+    back = riffler.Program.read(tmp_path / "a.ngc", machine="linuxcnc-xyzac", options=table)
     again = stock()
     for _, poses in back.cuts():
         again.carve(BALL, poses)

@@ -1,7 +1,7 @@
 """Write a plan, a recording or a program as NC code for a machine.
 
 riffler post pencil.json --feed 800 --post linuxcnc-xyzac --option rot_point=0,0,-40 --out p.ngc
-riffler post p.ngc --machine tcp --post linuxcnc-xyzac --out q.ngc
+riffler post p.ngc --machine tcp --post linuxcnc-xyzac --option rot_point=0,0,-40 --out q.ngc
 riffler post session.rjournal --out session.rprog
 """
 
@@ -70,10 +70,11 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         else math.radians(length(arguments.axis_tolerance, "--axis-tolerance")),
         "options": machine_options(arguments.option, "--option"),
     }
-    program, notes = read(arguments, console)
+    program, notes, collider = read(arguments, console)
     if not len(program):
         raise ValueError(f"{Path(arguments.file).name}: nothing moves in it")
     with console.step("write"), console.writing(out) as beside:
+        how["collider"] = collider
         report = program.save(beside) if saved else program.write(beside, post=arguments.post, **how)
     data = summary(program, report) | {"post": arguments.post, "notes": notes}
     data |= {"out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
@@ -94,8 +95,8 @@ def vector(text: str, what: str) -> np.ndarray:
 # ---- the program
 
 
-def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str]]:
-    """The program, and what one should know about it."""
+def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str], Collider | None]:
+    """The program, what one should know about it, and what its moves are checked against."""
     kind = Path(arguments.file).suffix.lower()
     path = input_file(arguments.file, (kind,))
     code = kind not in PLANS + RECORDINGS + PROGRAMS
@@ -117,7 +118,7 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
             program = read_program(path, arguments.machine, how, console)
     if kind in PLANS:
         return from_plan(planned, path.name, arguments, console)
-    return changed(program, arguments), notes
+    return changed(program, arguments), notes, None
 
 
 def recorded(path: Path, arguments: argparse.Namespace) -> tuple[Program, list[str]]:
@@ -154,7 +155,7 @@ def changed(program: Program, arguments: argparse.Namespace) -> Program:
 
 def from_plan(
     planned: plan.Plan, name: str, arguments: argparse.Namespace, console: Console
-) -> tuple[Program, list[str]]:
+) -> tuple[Program, list[str], Collider | None]:
     feed = FEED if arguments.feed is None else length(arguments.feed, "--feed")
     spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
     axis = vector(arguments.axis or "0,0,1", f"--axis {arguments.axis}")
@@ -164,8 +165,9 @@ def from_plan(
     turned = sum(len(path.axes) == 0 for path in planned.paths)
     if turned:
         notes.append(f"{turned} paths without axes: the tool stands along {', '.join(f'{x:g}' for x in axis)}")
+    collider = None
     if arguments.part is not None:
-        cl = lifted(planned, paths, tool, arguments, console, notes)
+        cl, collider = lifted(planned, paths, tool, arguments, console, notes)
     else:
         cl = [tips(path, tool) if rows is None else rows for path, rows in zip(paths, located(planned), strict=True)]
         if any(rows is None for rows in located(planned)):
@@ -173,9 +175,9 @@ def from_plan(
     safe = height(arguments)
     program = Program.from_cl(
         [rows for rows in cl if len(rows)], tools=[tool], feed=feed, spindle=spindle, safe_height=safe,
-        provenance={"plan": name, "part": planned.part.get("name", ""), **planned.provenance},
+        collider=collider, provenance={"plan": name, "part": planned.part.get("name", ""), **planned.provenance},
     )  # fmt: skip
-    return (program.retooled({1: called}) if called != 1 else program), notes
+    return (program.retooled({1: called}) if called != 1 else program), notes, collider
 
 
 def located(planned: plan.Plan) -> list:
@@ -220,7 +222,7 @@ def tips(path, tool: Tool) -> np.ndarray:
 
 def lifted(
     planned: plan.Plan, paths: list, tool: Tool, arguments: argparse.Namespace, console: Console, notes: list[str]
-) -> list[np.ndarray]:
+) -> tuple[list[np.ndarray], Collider]:
     part = input_file(arguments.part, MESHES)
     with console.step("locate") as progress:
         mesh = read_part(part, console, hollow=True)
@@ -236,8 +238,8 @@ def lifted(
             found.append(rows)
             if progress:
                 progress((k + 1) / len(paths))
-    notes.append(f"free of {part.name} along all rows within {LIFTED:g} mm; approach and retract are not checked")
-    return found
+    notes.append(f"free of {part.name} along all rows within {LIFTED:g} mm, approaches and retracts included")
+    return found, collider
 
 
 # ---- what is said about it

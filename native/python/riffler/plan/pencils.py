@@ -8,8 +8,10 @@ from .. import _core
 class PencilPaths(list):
     """A list of ``PencilPath``; what was done to find them stands beside it.
 
-    ``ends``: a pair for each path, ``"part"``, ``"corner"``, ``"faded"``, ``"loop"``, ``"cut"`` or, for passes beside a
-    valley, ``"pass"``; ``rest_area``: mm² that the ball cannot reach; ``rest_areas``: (k,) the same for each triangle;
+    ``ends``: a pair for each path, ``"part"``, ``"corner"``, ``"faded"``, ``"loop"``, ``"cut"``, ``"joined"`` where
+    another path continues or, for passes beside a valley, ``"pass"``; ``rest_area``: mm² that the tool's ball cannot
+    reach; ``rest_areas``: (k,) the same for each triangle; ``reference_area``, ``reference_areas``: the same for the
+    ball of ``reference_tool`` (or of ``overthickness``), what there is to be machined; without one those of the tool;
     ``stats``: counters; ``reason``: why there are no paths, empty where there are some.
     """
 
@@ -18,6 +20,8 @@ class PencilPaths(list):
         self.ends = found["ends"]
         self.rest_area = found["rest_area"]
         self.rest_areas = found["rest_areas"]
+        self.reference_area = found["reference_area"]
+        self.reference_areas = found["reference_areas"]
         self.stats = found["stats"]
         self.reason = found["reason"]
 
@@ -36,7 +40,7 @@ def pencil(
     overthickness=0.0,
     reference_tool=None,
 ):
-    """The valleys of ``part_mesh`` for a ball of the tool's diameter, as ``PencilPaths``.
+    """The valleys of ``part_mesh`` for the ball at the tool's tip, as ``PencilPaths``.
 
     The curves of ball centres along which the ball touches the part at two places at once and enters it nowhere. A
     valley counts where the ball's gap to its bottom exceeds ``tolerance`` (mm), to which the curves are traced; if
@@ -47,25 +51,26 @@ def pencil(
     far as leaves ridges of ``scallop`` (mm; the tolerance, if neither is given) on a plane; there both contacts are the
     one point that the ball touches.
 
-    With ``overthickness`` (mm) the valleys are those of a ball whose radius is larger by that much, and the tool's ball
-    is laid into them: blends of nearly its own radius count too. ``reference_tool``, a larger one, does the same for
-    what that tool's ball could not reach. Paths end where those of the larger ball do.
+    ``overthickness`` (mm) adds what a ball whose radius is larger by that much leaves behind: its valleys, with the
+    tool's ball laid into them, where that has none of its own, as in blends of its own radius or a larger one.
+    ``reference_tool``, a larger one that has been there before, does the same for what its ball could not reach: rest
+    machining, corners included.
 
-    ``progress`` is called with the finished share and cancels by returning False. ValueError for an empty mesh and for
-    sizes that are not positive and finite.
+    ``progress`` is called with the finished share and cancels by returning False. ValueError for an empty mesh, for
+    sizes that are not positive and finite, and for a tool or reference tool whose tip is no ball.
     """
     if stepover is not None and scallop is not None:
         raise ValueError("stepover and scallop: only one of them")
+    radius = _core.tip_ball_radius(tool, "tool")
     if scallop is not None:
-        if not 0 < scallop <= tool.diameter / 2:
+        if not 0 < scallop <= radius:
             raise ValueError(f"scallop must be positive and at most the ball's radius, not {scallop}")
-        stepover = _core.stepover_of_scallop(tool.diameter / 2, scallop)
+        stepover = _core.stepover_of_scallop(radius, scallop)
     if reference_tool is not None:
-        if reference_tool.diameter <= tool.diameter:
-            raise ValueError(
-                f"reference_tool must be larger than {tool.diameter:g} mm, not {reference_tool.diameter:g}"
-            )
-        overthickness = max(overthickness, (reference_tool.diameter - tool.diameter) / 2)
+        larger = _core.tip_ball_radius(reference_tool, "reference_tool")
+        if larger <= radius:
+            raise ValueError(f"reference_tool must have a ball larger than {2 * radius:g} mm, not {2 * larger:g}")
+        overthickness = max(overthickness, larger - radius)
     found = _core.pencil(
         part_mesh,
         tool,

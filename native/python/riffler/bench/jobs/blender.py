@@ -313,7 +313,7 @@ def natively(table: Section, settings: Settings) -> None:
 
         def write() -> dict[str, Any]:
             program = Program.from_cl(rows, tools=[TOOL], feed=800, spindle=12000, occupied=part.bounds)
-            return program.write(file, post=POST, tolerance=0.01)
+            return program.write(file, post=POST, tolerance=0.01, options={"rot_point": [0, 0, -40]})
 
         blocks = timed("nc", write)["blocks"]
         size = file.stat().st_size
