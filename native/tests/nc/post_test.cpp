@@ -97,8 +97,8 @@ TEST(Rs274Post, RetractsThenTurnsThenGoesAcrossThenDown) {
 }
 
 TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
-  // Where the tool is between the machine's own retract and the first Z is not in the program: no row, and no rapid
-  // through the part's zero.
+  // Where the tool is between the machine's own retract and the first Z is not in the program: no row of the part, and no
+  // rapid through the part's zero.
   const Program p = two_tools();
   const Options table{{"rot_point", std::vector<double>{3, 4, -50}}};
   for (const char* post : {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head", "head-table"})
@@ -109,6 +109,7 @@ TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
       const Program q = parse_nc(text_of(p, post, how), "p.ngc", {post, options});
       std::size_t row = 0;
       for (std::size_t k = 0; k < q.size(); ++k) {
+        if (q.at_machine()[k]) continue;
         const Vec3& tip = q.poses()[k].tip;
         // Every row of the code is on the way to the row of the program that comes next.
         const Vec3 from = p.poses()[row > 0 ? row - 1 : 0].tip, way = p.poses()[row].tip - from;
@@ -123,9 +124,6 @@ TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
       }
       EXPECT_EQ(row, p.size() - 1) << post;
     }
-  // Another block to a position of the machine is what it was.
-  EXPECT_EQ(parse_nc("G0 X1 Y2 Z3\nG53 G0 Z0.0\nG0 X5\nZ4\n", "p.ngc").size(), 4U);
-  EXPECT_EQ(parse_nc("G0 X1 Y2 Z3\nG53 G0 Z0\nG0 X5\nZ4\n", "p.ngc").size(), 2U);
 }
 
 TEST(Rs274Post, MakesArcsOfStraightRunsWithinTheTolerance) {
