@@ -1,7 +1,9 @@
 // riffler.Program, riffler.machines
 #include <cmath>
+#include <functional>
 
 #include "bindings/bindings.hpp"
+#include "bindings/one_caller.hpp"
 #include "nc/cutter_path.hpp"
 #include "nc/edit.hpp"
 #include "nc/limits.hpp"
@@ -186,6 +188,11 @@ py::dict machine_list() {
   return out;
 }
 
+struct SharedStream : Guarded {
+  explicit SharedStream(NcStream&& s) : stream(std::move(s)) {}
+  NcStream stream;
+};
+
 py::dict to_dict(const WriteReport& report) {
   using namespace py::literals;
   py::list passages;
@@ -257,14 +264,15 @@ void bind_program(py::module_& m) {
         return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
       });
 
-  py::class_<NcStream>(m, "ProgramStream", "What Program.stream gives: an iterator of programs.")
+  py::class_<SharedStream>(m, "ProgramStream", "What Program.stream gives: an iterator of programs.")
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", [](NcStream& self) {
+      .def("__next__", [](SharedStream& self) {
+        const OneCaller only(self, "the stream");
         Program program;
         bool more;
         {
-          const py::gil_scoped_release release;
-          more = self.next(program);
+          const NoGil release;
+          more = self.stream.next(program);
         }
         if (!more) throw py::stop_iteration();
         return program;
@@ -295,12 +303,14 @@ for all, or a list of one for each array; a feed may be an array of one per row.
 corners around stock, part and fixtures.)")
       .def_static(
           "read",
-          [](const std::filesystem::path& path, const std::string& machine, const py::object& options) {
-            const ReadOptions how{machine, to_options(options)};
-            const py::gil_scoped_release release;
+          [](const std::filesystem::path& path, const std::string& machine, const py::object& options,
+             const py::object& progress) {
+            const ReadOptions how{machine, to_options(options), to_progress(progress)};
+            const NoGil release;
             return read_nc(path, how);
           },
-          py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(),
+          py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::kw_only(),
+          py::arg("progress") = py::none(),
           R"(Reads NC code (RS-274 as LinuxCNC has it); ``machine`` is a name of machines(), or "apt" for an APT file.
 
 Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
@@ -314,8 +324,9 @@ programmed. FormatError names file, line and block; nothing that is not understo
           "stream",
           [](const std::filesystem::path& path, const std::string& machine, const py::object& options, double rows) {
             if (!(rows >= 2 && rows <= 1e9)) throw py::value_error("rows must be 2 to 1e9");
-            return std::make_unique<NcStream>(path, ReadOptions{machine, to_options(options)},
-                                              static_cast<std::size_t>(rows));
+            return std::make_unique<SharedStream>(
+                NcStream(path, ReadOptions{machine, to_options(options), to_progress(py::none())},
+                         static_cast<std::size_t>(rows)));
           },
           py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::arg("rows") = 65536,
           R"(Reads as ``read`` does, in memory that does not grow with the file: an iterator of programs of at most ``rows``
@@ -327,7 +338,7 @@ rows. Each after the first begins with the row at which the one before ended.)")
             const WriteOptions how{post, tolerance, axis_tolerance, to_options(options)};
             WriteReport report;
             {
-              const py::gil_scoped_release release;
+              const NoGil release;
               report = write_nc(self, path, how);
             }
             return to_dict(report);
@@ -378,8 +389,13 @@ would take).)")
            "In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.")
       .def("retimed", &retimed, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
       .def_static(
-          "joined", [](const std::vector<const Program*>& programs) { return joined(programs); }, py::arg("programs"),
-          "One after the other. ValueError where one number stands for tools of two shapes.")
+          "joined",
+          [](const std::vector<std::reference_wrapper<const Program>>& programs) {
+            std::vector<const Program*> all;
+            for (const Program& program : programs) all.push_back(&program);
+            return joined(all);
+          },
+          py::arg("programs"), "One after the other. ValueError where one number stands for tools of two shapes.")
       .def("retooled", &retooled, py::arg("numbers"),
            "Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share "
            "one.")
