@@ -8,7 +8,7 @@ python := .venv/bin/python
 
 # `make test` runs one recipe after the other; the tools use all cores themselves.
 .NOTPARALLEL:
-.PHONY: help setup envs demo test test-cpp test-python test-docs test-tools test-blender test-blenders soak stress scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package clean
+.PHONY: help setup envs demo test test-cpp test-python test-docs test-tools test-blender test-blenders soak stress fuzz scenes bench bench-docs lint format sanitize docs stubs operators gallery tutorials package clean
 .DEFAULT_GOAL := help
 
 help:  ## Show this list
@@ -57,6 +57,10 @@ stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, ho
 	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)
 	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Sculpting.*'
 	RIFFLER_LONG=1 $(python) -m pytest -q native/tests/python/test_tasks.py -k many_tasks
+
+fuzz:  ## Fuzz every reader of files for SECONDS each, from SEED, under the sanitizers (TARGETS="rs274 ply" for some): build/fuzz
+	@$(ready) cpp-tests
+	@$(python) tools/fuzz.py --seconds $(or $(SECONDS),600) --seed $(or $(SEED),1) $(TARGETS)
 
 scenes:  ## Write the hashes of the replayed journals anew: native/tests/scenes/hashes.txt
 	@$(ready) cpp-tests

@@ -18,6 +18,7 @@ BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
     "reference": (["geom", "tool"], []),
     "bench": (None, ["reference"]),
     "stress": (None, ["reference"]),
+    "fuzz": (None, []),
     "bindings": (None, ["bench", "stress"]),
 }
 # Topics that may include the pen's protocol and firmware.

@@ -5,6 +5,7 @@ without being doubled or cut short. Who points to an image owns it; it goes when
 """
 
 import bpy
+from riffler import files
 
 IDENTITY = "riffler_content"  # on the image: the hash of what is packed in it
 
@@ -31,7 +32,6 @@ def read(image, what):
     # File > External Data > Unpack wrote it to a file of its own.
     path = bpy.path.abspath(image.filepath, library=image.library)
     try:
-        with open(path, "rb") as file:
-            return file.read()
-    except OSError as error:
-        raise ValueError(f"{what}'s data is not in this .blend, and not at {path}: {error.strerror}") from error
+        return files.read(path)
+    except ValueError as error:
+        raise ValueError(f"{what}'s data is not in this .blend, and not at {path}: {error}") from error

@@ -1,7 +1,6 @@
 """Programs of a plan, of a file, of a sculpt's cuts; and as they are simulated and verified: in the frame of the stock,
 and on the timeline."""
 
-import json
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,7 @@ import bpy
 import numpy as np
 import riffler
 
-from ..core import course, problems
+from ..core import course, json_object, problems
 from ..core import units as names
 from . import live, plan_fit, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
 
@@ -100,13 +99,7 @@ def options(text):
     """A machine's options from JSON. ValueError where it is none."""
     if not text.strip():
         return {}
-    try:
-        found = json.loads(text)
-    except ValueError as error:
-        raise ValueError(f'options: JSON expected, as {{"max_rotary": 3600}}: {error}') from None
-    if not isinstance(found, dict):
-        raise ValueError('options: a JSON object expected, as {"max_rotary": 3600}')
-    return found
+    return json_object.loads(text, 'options, as {"max_rotary": 3600}')
 
 
 def removing(name, content):

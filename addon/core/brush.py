@@ -7,11 +7,13 @@ looked at anew. The same text on the same sculpt cuts the same, in a window or i
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import riffler
 
+from . import json_object
 from .sight import Sight
 from .stroke import Hit, Sample, StrokeMaker, View, settings_for
 
@@ -149,10 +151,10 @@ def stub(tool, depth: float):
 def read(text: str) -> tuple[Sight, list[Sample], list[int]]:
     """Of Brush.text: view, samples, looks. ValueError naming what is wrong."""
     try:
-        data = json.loads(text)
+        data = json_object.loads(text, "stroke")
         view, rows, looks = data["view"], data["rows"], data.get("looks", [])
         matrix, size = view["matrix"], view["size"]
-    except (json.JSONDecodeError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"stroke must be JSON with view (matrix, size) and rows: {error}") from error
     if not _numbers(matrix, 16) or not _numbers(size, 2):
         raise ValueError("stroke: view has a matrix of 16 numbers and a size of 2")
@@ -169,7 +171,10 @@ def read(text: str) -> tuple[Sight, list[Sample], list[int]]:
 def _numbers(values, count=None) -> bool:
     if not isinstance(values, list) or (count is not None and len(values) != count):
         return False
-    return all(isinstance(v, int | float) and not isinstance(v, bool) for v in values)
+    try:
+        return all(isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in values)
+    except OverflowError:  # of a whole number
+        return False
 
 
 def replay(brush: Brush, samples: list[Sample], looks: list[int]) -> None:

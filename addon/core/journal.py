@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 import riffler
-from riffler import tasks
+from riffler import files, tasks
 
-from . import record
+from . import json_object, record
 from .cache import Content
 from .job import Cut
 
@@ -265,10 +265,9 @@ def crashed(root: Path) -> list[Found]:
 
 def about(folder: Path) -> dict:
     try:
-        found = json.loads((folder / ABOUT).read_text())
-    except (OSError, ValueError):
+        return json_object.loads(files.read(folder / ABOUT), ABOUT)
+    except ValueError:
         return {}
-    return found if isinstance(found, dict) else {}
 
 
 def _hold(file: int) -> None:

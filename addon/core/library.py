@@ -7,12 +7,13 @@ A bad file spoils neither the others nor a list that is shown: what is wrong wit
 from __future__ import annotations
 
 import json
-import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import presets
+from riffler import files
+
+from . import json_object, presets
 
 SUFFIXES = (".json", ".toml")
 _TOML_TABLE = re.compile(r"^\s*\[\[\s*tools\s*\]\]", re.MULTILINE)
@@ -38,11 +39,11 @@ def scan(folder: Path, make_tool) -> tuple[list[Entry], list[str]]:
     """The tools of a folder's files by file name, and a line for each file that could not be read. `make_tool` makes a
     tool from a dictionary and raises ValueError where it cannot."""
     try:
-        files = sorted(p for p in Path(folder).iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith("."))
+        found = sorted(p for p in Path(folder).iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith("."))
     except OSError as error:
         return [], [f"{folder}: {error.strerror}"]
     entries, problems = [], []
-    for path in files:
+    for path in found:
         try:
             entries += read(path, make_tool)
         except ValueError as error:
@@ -54,11 +55,11 @@ def read(path, make_tool) -> list[Entry]:
     """The tools of one file. ValueError names the file, the line, and what is wrong there."""
     path = Path(path)
     try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise ValueError(f"{path.name}: {error.strerror}: choose a tool file in {path.parent}") from None
+        text = files.read(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ValueError(f"{path.name}: byte {error.start} is not UTF-8") from None
+    except ValueError as error:
+        raise ValueError(f"{error}: choose a tool file in {path.parent}") from None
     rows = _toml(text, path) if path.suffix.lower() == ".toml" else _json(text, path)
     if not rows:
         raise ValueError(f"{path.name}: there is no tool in it")
@@ -77,18 +78,15 @@ def write(folder, tool: dict) -> Path:
     """Writes a tool into a folder of its own making as a file named after it. The file is whole or not there; one that
     is there is written over only if it holds a tool of the same name. ValueError with the remedy where it cannot be."""
     target = Path(folder) / f"{file_name(tool['name'])}.json"
-    beside = target.with_name(f".{target.stem}.{os.getpid()}.json")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.exists() and not _holds(target, tool["name"]):
             raise ValueError(f"{target} is there already: give the tool another name")
-        try:
-            beside.write_text(json.dumps(tool, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-            os.replace(beside, target)
-        finally:
-            beside.unlink(missing_ok=True)
+        files.write(target, (json.dumps(tool, indent=1, ensure_ascii=False) + "\n").encode())
     except OSError as error:
         raise ValueError(f"{folder}: {error.strerror}: choose a folder that can be written") from None
+    except RuntimeError as error:
+        raise ValueError(f"{folder}: {error}: choose a folder that can be written") from None
     return target
 
 
@@ -99,8 +97,8 @@ def file_name(name: str) -> str:
 
 def _holds(path: Path, name: str) -> bool:
     try:
-        return json.loads(path.read_bytes())["name"] == name
-    except (ValueError, KeyError, TypeError):
+        return json_object.loads(files.read(path), path.name)["name"] == name
+    except (ValueError, KeyError):
         return False
 
 
@@ -158,6 +156,8 @@ def _toml(text: str, path: Path) -> list[tuple[object, int]]:
 
     try:
         data = tomllib.loads(text)
+    except RecursionError:
+        raise ValueError(f"{path.name}: thousands of brackets in each other") from None
     except ValueError as error:  # its text ends with the line and the column
         raise ValueError(f"{path.name}: {error}") from None
     if "tools" not in data:

@@ -17,6 +17,7 @@ import struct
 
 import numpy as np
 
+from . import json_object
 from .job import Cut
 
 MAGIC = b"RIFFLERB"
@@ -59,10 +60,11 @@ def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[
             f"the sculpt's data has format {version}, and this Riffler reads up to {VERSION}: install a newer one"
         )
     try:
-        header = json.loads(block[_HEAD.size : _HEAD.size + size])
+        header = json_object.loads(block[_HEAD.size : _HEAD.size + size], "its header")
         at = _HEAD.size + size
-        masked = header.get("mask", 0)
-        wanted = at + header["volume"] + masked + sum(48 * c["rows"] for c in header["cuts"])
+        masked = _count(header.get("mask", 0), "mask")
+        wanted = at + _count(header["volume"], "volume") + masked
+        wanted += sum(48 * _count(c["rows"], "rows") for c in header["cuts"])
         if wanted != len(block):
             raise ValueError(f"{wanted} bytes expected, {len(block)} found")
         volume = memoryview(block)[at : at + header["volume"]]
@@ -72,9 +74,18 @@ def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[
         cuts = []
         for c in header["cuts"]:
             poses = np.frombuffer(block, "<f8", 6 * c["rows"], at).reshape(-1, 6).copy()
-            more = c.get("mode", "remove"), bool(c.get("masked"))
-            cuts.append(Cut(c["tool"], poses, c["tolerance"], *more))
+            mode = c.get("mode", "remove")
+            sound = isinstance(c["tool"], dict) and type(c["tolerance"]) in (int, float) and isinstance(mode, str)
+            if not sound:
+                raise ValueError(f"cut {len(cuts)}: a tool, a tolerance and a mode expected")
+            cuts.append(Cut(c["tool"], poses, float(c["tolerance"]), mode, bool(c.get("masked"))))
             at += 48 * c["rows"]
-    except (KeyError, TypeError, ValueError) as error:
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
         raise ValueError(f"the sculpt's data in this .blend is not whole: {error}") from error
     return volume, cuts, mask, bool(header.get("shaped"))
+
+
+def _count(value, name: str) -> int:
+    if type(value) is not int or value < 0:
+        raise ValueError(f"{name}: a count expected")
+    return value

@@ -6,14 +6,12 @@ extension (docs/decisions.md); to write one mesh takes a zip and some XML.
 
 from __future__ import annotations
 
-import os
-import tempfile
 import zipfile
 from collections.abc import Iterator
-from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from riffler import files
 
 TYPES = """<?xml version="1.0" encoding="UTF-8"?>
 <Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">\
@@ -50,24 +48,14 @@ def pieces(path, vertices, triangles, name: str = "part") -> Iterator[None]:
         raise ValueError("the mesh has no triangles; a 3MF file holds one at least")
     if not np.isfinite(vertices).all():
         raise ValueError("the mesh has a vertex that is not finite")
-    path = Path(path)
-    handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-            for part, text in (("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONS)):
-                with _open(archive, part) as stream:
-                    stream.write(text.encode())
-            with _open(archive, "3D/3dmodel.model") as stream:
-                for text in _model(vertices, triangles, name):
-                    stream.write(text.encode())
-                    yield
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(draft, 0o666 & ~mask)  # a draft is private; the file is as any new one
-        os.replace(draft, path)
-    except BaseException:
-        Path(draft).unlink(missing_ok=True)
-        raise
+    with files.writing(path) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for part, text in (("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONS)):
+            with _open(archive, part) as stream:
+                stream.write(text.encode())
+        with _open(archive, "3D/3dmodel.model") as stream:
+            for text in _model(vertices, triangles, name):
+                stream.write(text.encode())
+                yield
 
 
 def _open(archive, name):

@@ -1,11 +1,10 @@
 """What the operators have in common."""
 
-import json
-
 import bpy
 from riffler.mesh_notes import notes_on
 
 from ..bl import sculpts
+from ..core import json_object
 from ..core.problems import said
 from ..translations import local
 
@@ -32,10 +31,7 @@ EDITS_LEFT_OUT = "The mesh was edited: what is made is the volume, without the e
 
 def tool_of_text(text):
     """A tool's dictionary from JSON."""
-    tool = json.loads(text)
-    if not isinstance(tool, dict):
-        raise ValueError("tool must be a JSON object")
-    return tool
+    return json_object.loads(text, "tool")
 
 
 class TakesTool:

@@ -15,7 +15,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import presets
+from ..core import json_object, presets
 from .fields import length
 
 # The numbers are what a .blend keeps: those of a machine stay when another machine is added.
@@ -112,10 +112,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         """The form of riffler.Tool.to_dict. ValueError where the text is none."""
         if not self.tool:
             return presets.preset(presets.presets()[0]["name"])
-        tool = json.loads(self.tool)
-        if not isinstance(tool, dict):
-            raise ValueError("the plan's tool is no JSON object: take one from a library")
-        return tool
+        return json_object.loads(self.tool, "the plan's tool (take one from a library)")
 
     def take(self, tool, source=""):
         self.tool = json.dumps(tool, ensure_ascii=False)

@@ -1,9 +1,11 @@
 """The block in the .blend, the cache, sizes in words, the diagnosis, the zips."""
 
+import json
+
 import numpy as np
 import pytest
 
-from addon.core import cache, diagnosis, estimate, presets, record, units
+from addon.core import cache, diagnosis, estimate, json_object, presets, record, units
 from addon.core.job import Cut
 
 POSES = np.random.default_rng(3).normal(size=(5, 6))
@@ -140,3 +142,40 @@ def test_lines_fit_the_panel():
     lines = diagnosis.wrap(text, 30)
     assert all(len(line) <= 30 for line in lines)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
+
+
+def test_a_header_of_any_kind_is_a_value_error():
+    """A .blend comes from anybody, and its checksum with it."""
+    cut = {"tool": {}, "tolerance": 0.01, "rows": 0}
+    headers = [
+        "[]",
+        "null",
+        "3",
+        '"a"',
+        "[" * 100_000,
+        '{"a":' * 100_000,
+        "{}",
+        '{"volume": 0}',
+        '{"volume": 0, "cuts": null}',
+    ]
+    headers += [json.dumps({"volume": volume, "cuts": []}) for volume in (None, "0", -1, 0.0, True, 2**70)]
+    headers += [json.dumps({"volume": 0, "cuts": [], "mask": mask}) for mask in (None, [], -1)]
+    headers += [json.dumps({"volume": 48, "cuts": [{**cut, "rows": -1}]})]
+    wrong = {"tool": None, "tolerance": "fine", "rows": "0", "mode": {}}
+    headers += [json.dumps({"volume": 0, "cuts": [{**cut, key: value}]}) for key, value in wrong.items()]
+    headers += [json.dumps({"volume": 0, "cuts": [cut]}).replace("0.01", "1" * 5000)]
+    for header in headers:
+        text = header.encode()
+        block = record.MAGIC + (2).to_bytes(4, "little") + len(text).to_bytes(4, "little") + text
+        with pytest.raises(ValueError, match="sculpt's data"):
+            record.decode(block)
+    sound = json.dumps({"volume": 0, "cuts": [cut]}).encode()
+    block = record.MAGIC + (2).to_bytes(4, "little") + len(sound).to_bytes(4, "little") + sound
+    assert len(record.decode(block)[1]) == 1
+
+
+def test_json_from_a_blend_is_an_object_or_a_value_error():
+    assert json_object.loads('{"a": 1}', "tool") == {"a": 1}
+    for text in ("[]", "null", "{", "[" * 100_000, b"\xff", "1" * 5000):
+        with pytest.raises(ValueError, match=r"^tool: "):
+            json_object.loads(text, "tool")

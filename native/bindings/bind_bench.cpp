@@ -27,7 +27,7 @@ py::dict sweep_errors(SharedVolume& volume, const Tool& tool, const Doubles& arr
   const Volume state = Reading(volume).volume.snapshot();
   bench::SweepErrors errors;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     errors = bench::sweep_errors(state, tool, poses, tolerance, rays, seed);
   }
   std::vector<double> all;
@@ -45,7 +45,7 @@ py::array_t<double> mesh_distances(const Doubles& array, const Mesh& mesh) {
   const auto* points = reinterpret_cast<const Vec3*>(array.data());
   std::vector<double> out;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     out = bench::MeshDistance(mesh)(std::span(points, n));
   }
   return take<double>(std::move(out));
@@ -55,7 +55,7 @@ py::array_t<double> contact_entries(const Mesh& mesh, const Tool& tool, const Do
   const std::vector<Pose> poses = to_poses(array, "poses");
   std::vector<std::array<double, 2>> out;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     out = bench::contact_entries(mesh, tool, poses, gap);
   }
   return take<double>(std::move(out), 2);
@@ -68,20 +68,20 @@ bench::ContactOptions contact_options(int squares, const std::string& tool, int 
 }
 
 void bind_contact(py::module_& m) {
-  using NoGil = py::call_guard<py::gil_scoped_release>;
+  using Unlocked = py::call_guard<NoGil>;
   m.def(
       "contact_times",
       [](int squares, const std::string& tool, int poses, int repeats) {
         return bench::contact_times(contact_options(squares, tool, poses, repeats));
       },
-      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("repeats"), NoGil(),
+      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("repeats"), Unlocked(),
       "Times of queries on COL's scene, without others: JSON (native/bench/contact_run.hpp).");
   m.def(
       "contact_budgets",
       [](int squares, const std::string& tool, int poses, const std::vector<double>& budgets) {
         return bench::contact_budgets(contact_options(squares, tool, poses), budgets);
       },
-      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("budgets"), NoGil(),
+      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("budgets"), Unlocked(),
       "Time, missed depth and its bound with budgets in s: JSON.");
   m.def(
       "contact_errors",
@@ -89,8 +89,8 @@ void bind_contact(py::module_& m) {
         return bench::contact_errors(contact_options(squares, tool, poses), points, brackets, gap);
       },
       py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("points"), py::arg("brackets"), py::arg("gap"),
-      NoGil(), "Depths beside the independent reference: JSON.");
-  m.def("contact_slide", &bench::contact_slide, py::arg("steps"), NoGil(),
+      Unlocked(), "Depths beside the independent reference: JSON.");
+  m.def("contact_slide", &bench::contact_slide, py::arg("steps"), Unlocked(),
         "Force on a ball that slides over an edge: JSON.");
   m.def(
       "contact_entries", &contact_entries, py::arg("mesh"), py::arg("tool"), py::arg("poses"), py::arg("gap"),
@@ -105,7 +105,7 @@ py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts
   options.budget = budget, options.period = period, options.speed = speed;
   bench::HapticRun run;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     run = bench::haptic_run(options);
   }
   const auto rows = [](const std::vector<Vec3>& all) {
@@ -124,7 +124,7 @@ py::dict mesh_stress(std::uint64_t volumes, std::uint64_t seed, const py::object
   const Progress report = to_progress(progress);
   stress::MeshResults results;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     results = stress::run_meshes(options, volumes, [&](const stress::MeshResults& now) {
       const long done = now.total().volumes;
       return done % 64 != 0 || report(static_cast<double>(done) / static_cast<double>(volumes));
@@ -151,7 +151,7 @@ py::dict sculpting(double seconds, double pitch, const std::string& directions, 
   options.warm = std::min(options.warm, 0.3 * seconds);
   stress::SculptingRun run;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     run = stress::sculpting_run(options);
   }
   py::dict out;
@@ -199,7 +199,7 @@ the hand ``gained`` at most and that were ``given`` in all, N ``greatest``, and 
   py::class_<bench::CapsuleLoop>(m, "CapsuleLoop", "The yardstick: B200 with bare capsules on a plain height map.")
       .def(py::init<double>(), py::arg("pitch"))
       .def("reset", &bench::CapsuleLoop::reset)
-      .def("run", &bench::CapsuleLoop::run, py::call_guard<py::gil_scoped_release>())
+      .def("run", &bench::CapsuleLoop::run)
       .def_property_readonly("removed", &bench::CapsuleLoop::removed);
 }
 

@@ -1,7 +1,6 @@
 // The two ends of a verification on a cluster. Not public: riffler.cluster is.
-#include <mutex>
-
 #include "bindings/bindings.hpp"
+#include "bindings/one_caller.hpp"
 #include "bindings/shared_report.hpp"
 #include "verify/remote.hpp"
 #include "verify/verify_plan.hpp"
@@ -9,8 +8,6 @@
 namespace riffler {
 
 namespace {
-
-using NoGil = py::gil_scoped_release;
 
 py::bytes to_python(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -22,16 +19,14 @@ std::span<const std::uint8_t> to_span(const py::bytes& bytes) {
   return {reinterpret_cast<const std::uint8_t*>(view.data()), view.size()};
 }
 
-/// One call at a time: calls release the GIL.
-class SharedPlan {
+class SharedPlan : Guarded {
  public:
   explicit SharedPlan(std::unique_ptr<Verification> v) : verification_(std::move(v)), plan_(*verification_) {}
 
   /// f(plan) without the GIL.
   template <class F>
   auto run(const F& f) {
-    const std::unique_lock held(mutex_, std::try_to_lock);
-    if (!held) throw std::runtime_error("the plan is in use by another thread");
+    const OneCaller only(*this, "the plan");
     const NoGil release;
     return f(plan_);
   }
@@ -39,7 +34,6 @@ class SharedPlan {
  private:
   std::unique_ptr<Verification> verification_;
   VerifyPlan plan_;
-  std::mutex mutex_;
 };
 
 py::list add(SharedPlan& self, const Program& chunk, const py::object& progress) {

@@ -14,8 +14,6 @@ namespace riffler {
 
 namespace {
 
-using NoGil = py::gil_scoped_release;
-
 bool same(const std::vector<Frustum>& a, const std::vector<Frustum>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Frustum& f, const Frustum& g) {
     return f.z0 == g.z0 && f.r0 == g.r0 && f.z1 == g.z1 && f.r1 == g.r1;

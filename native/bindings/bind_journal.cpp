@@ -1,5 +1,8 @@
 // riffler.Journal, riffler.JournalWriter
+#include <variant>
+
 #include "bindings/bindings.hpp"
+#include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "session/journal.hpp"
@@ -11,6 +14,19 @@ namespace riffler {
 namespace {
 
 using SharedJournal = std::shared_ptr<Journal>;
+
+/// Syncing waits for the disk without the GIL.
+struct SharedWriter : JournalWriter, Guarded {
+  using JournalWriter::JournalWriter;
+};
+
+/// Held while a journal is written to: nothing for one in memory, which never releases the GIL.
+OneCaller only_caller(SharedWriter& writer) {
+  return {writer, "the journal"};
+}
+std::monostate only_caller(const Journal&) {
+  return {};
+}
 
 /// Stroke `index` of a journal, which it keeps alive.
 struct StrokeView {
@@ -104,6 +120,7 @@ py::dict notes(const Journal& journal) {
 }
 
 py::list strokes(const SharedJournal& journal) {
+  if (!journal) throw py::type_error("None is no Journal");
   py::list out;
   for (std::size_t k = 0; k < journal->strokes().size(); ++k) out.append(StrokeView{journal, k});
   return out;
@@ -141,6 +158,11 @@ auto replayed(const Journal& journal, const std::optional<std::filesystem::path>
   });
 }
 
+void close(SharedWriter& writer) {
+  const OneCaller only = only_caller(writer);
+  writer.close();
+}
+
 /// The functions that Journal and JournalWriter share.
 template <class Class>
 void add_records(Class& c) {
@@ -148,18 +170,29 @@ void add_records(Class& c) {
   c.def(
        "set_stock",
        [](T& self, const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
-          const std::string& snapshot,
-          const std::string& mask) { self.set_stock(to_stock(lower, upper, pitch, directions, snapshot, mask)); },
+          const std::string& snapshot, const std::string& mask) {
+         [[maybe_unused]] const auto only = only_caller(self);
+         self.set_stock(to_stock(lower, upper, pitch, directions, snapshot, mask));
+       },
        py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z", py::arg("snapshot") = "",
        py::kw_only(), py::arg("mask") = "",
        "The frame of the stock, the file name of its snapshot where it is not a full block, and that of what is "
        "protected where something is. Once.")
       .def(
-          "add_tool", [](T& self, int number, const py::object& tool) { self.add_tool(number, tool_json(tool)); },
+          "add_tool",
+          [](T& self, int number, const py::object& tool) {
+            const std::string text = tool_json(tool);
+            [[maybe_unused]] const auto only = only_caller(self);
+            self.add_tool(number, text);
+          },
           py::arg("number"), py::arg("tool"),
           "A Tool, its dict or JSON text. The same number again is allowed for the same tool only.")
       .def(
-          "add_note", [](T& self, const std::string& key, const std::string& value) { self.add_note(key, value); },
+          "add_note",
+          [](T& self, const std::string& key, const std::string& value) {
+            [[maybe_unused]] const auto only = only_caller(self);
+            self.add_note(key, value);
+          },
           py::arg("key"), py::arg("value"), "Provenance.")
       .def(
           "add_stroke",
@@ -169,6 +202,7 @@ void add_records(Class& c) {
             JournalStroke stroke = to_rows(poses, times, forces, removed);
             stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name, stroke.mode = to_stroke_mode(mode);
             stroke.strength = strength;
+            [[maybe_unused]] const auto only = only_caller(self);
             self.add_stroke(stroke);
           },
           py::arg("tool"), py::arg("poses"), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
@@ -183,15 +217,27 @@ was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.)"
       .def(
           "extend_stroke",
           [](T& self, const Doubles& poses, const py::object& times, const py::object& forces,
-             const py::object& removed) { self.extend_stroke(to_rows(poses, times, forces, removed).rows()); },
+             const py::object& removed) {
+            const JournalStroke more = to_rows(poses, times, forces, removed);
+            [[maybe_unused]] const auto only = only_caller(self);
+            self.extend_stroke(more.rows());
+          },
           py::arg("poses"), py::arg("times") = py::none(), py::kw_only(), py::arg("forces") = py::none(),
           py::arg("removed") = py::none(), "More rows for the last stroke, with the same columns.")
       .def(
-          "take_back", [](T& self, std::size_t n) { self.take_back(n); }, py::arg("n") = 1,
-          "The last n strokes no longer count: undo.")
+          "take_back",
+          [](T& self, std::size_t n) {
+            [[maybe_unused]] const auto only = only_caller(self);
+            self.take_back(n);
+          },
+          py::arg("n") = 1, "The last n strokes no longer count: undo.")
       .def(
-          "bring_back", [](T& self, std::size_t n) { self.bring_back(n); }, py::arg("n") = 1,
-          "The last n that were taken back count again: redo. A new stroke ends that.");
+          "bring_back",
+          [](T& self, std::size_t n) {
+            [[maybe_unused]] const auto only = only_caller(self);
+            self.bring_back(n);
+          },
+          py::arg("n") = 1, "The last n that were taken back count again: redo. A new stroke ends that.");
 }
 
 }  // namespace
@@ -245,18 +291,19 @@ Replaying the strokes on the stock gives the session again. Files end in .rjourn
   journal.def(py::init<>())
       .def_static(
           "read",
-          [](const std::filesystem::path& path) {
-            const py::gil_scoped_release release;
-            return read_journal(path);
+          [](const std::filesystem::path& path, const py::object& progress) {
+            const Progress listener = to_progress(progress);
+            const NoGil release;
+            return read_journal(path, listener);
           },
-          py::arg("path"),
+          py::arg("path"), py::kw_only(), py::arg("progress") = py::none(),
           R"(Reads a file. One that a crash has cut gives all whole records, and ``cut_at`` says where it was cut; a
 damaged record that others follow is a FormatError naming the byte.)")
       .def(
           "write",
           [](const Journal& self, const std::filesystem::path& path) {
             const Journal copy = self;  // another thread may go on recording
-            const py::gil_scoped_release release;
+            const NoGil release;
             write_journal(copy, path);
           },
           py::arg("path"), "Writes the whole journal; the file is whole or not there.")
@@ -282,24 +329,31 @@ if it has two rows or more. ``with_mask``: a tuple of it and the Volume of what 
       });
   add_records(journal);
 
-  py::class_<JournalWriter> writer(m, "JournalWriter", R"(Appends to a journal file, record by record.
+  py::class_<SharedWriter> writer(m, "JournalWriter", R"(Appends to a journal file, record by record.
 
 Goes on with a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
 system before the call returns. ``keep=False`` holds no strokes in memory, so that ``journal`` cannot be asked for: for
 long sessions. Context manager.)");
   writer
       .def(py::init([](const std::filesystem::path& path, bool keep) {
-             return std::make_unique<JournalWriter>(
-                 path, keep ? JournalWriter::Keep::Everything : JournalWriter::Keep::Rules);
+             return std::make_unique<SharedWriter>(path,
+                                                   keep ? JournalWriter::Keep::Everything : JournalWriter::Keep::Rules);
            }),
            py::arg("path"), py::kw_only(), py::arg("keep") = true)
-      .def("sync", &JournalWriter::sync, py::call_guard<py::gil_scoped_release>(), "Waits until the disk has it.")
-      .def("close", &JournalWriter::close, "Ends writing; calls after it raise RuntimeError.")
+      .def(
+          "sync",
+          [](SharedWriter& self) {
+            const OneCaller only = only_caller(self);
+            const NoGil release;
+            self.sync();
+          },
+          "Waits until the disk has it.")
+      .def("close", &close, "Ends writing; calls after it raise RuntimeError.")
       .def_property_readonly(
-          "journal", [](const JournalWriter& self) { return std::make_shared<Journal>(self.journal()); },
+          "journal", [](const SharedWriter& self) { return std::make_shared<Journal>(self.journal()); },
           "A copy of everything in the file.")
       .def("__enter__", [](py::object self) { return self; })
-      .def("__exit__", [](JournalWriter& self, const py::args&) { self.close(); });
+      .def("__exit__", [](SharedWriter& self, const py::args&) { close(self); });
   add_records(writer);
 }
 

@@ -20,8 +20,6 @@ namespace riffler {
 namespace {
 
 using MeshPtr = std::shared_ptr<Mesh>;
-using NoGil = py::gil_scoped_release;
-
 /// A read-only view of a vector that `owner` keeps; a Mesh never changes once Python has it.
 template <class T, class V>
 py::array view(const BulkVector<V>& values, py::handle owner) {
@@ -98,10 +96,11 @@ bool is_3mf(const std::filesystem::path& path) {
   return equal_ignoring_case(path.extension().string(), ".3mf");
 }
 
-MeshPtr read(const std::filesystem::path& path) {
+MeshPtr read(const std::filesystem::path& path, const py::object& progress) {
   if (is_3mf(path)) return read_3mf(path);
+  const Progress listener = to_progress(progress);
   const NoGil no_gil;
-  return std::make_shared<Mesh>(read_mesh(path));
+  return std::make_shared<Mesh>(read_mesh(path, listener));
 }
 
 auto write(const MeshPtr& mesh, const std::filesystem::path& path, const py::object& progress) {
@@ -195,10 +194,11 @@ ValueError naming the argument and the row for a wrong shape, a vertex that is n
 range. Vertices are not welded; files are, when they are read.)");
   mesh.def(py::init(&make), "vertices"_a, "triangles"_a);
   mesh.def_static(
-      "read", &read, "path"_a,
+      "read", &read, "path"_a, py::kw_only(), "progress"_a = py::none(),
       R"(The mesh in a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one. A .3mf file gives
 all that it says to build, placed, in mm whatever its unit; it needs the package lib3mf. FormatError naming the byte or
-line for a bad file (for .3mf what was expected), among them those with no triangle; ValueError for another extension.)");
+line for a bad file (for .3mf what was expected), among them those with no triangle; ValueError for another extension.
+``progress`` is called with a share of the part of the file at hand, of .stl and .3mf not after the beginning.)");
   mesh.def(
       "write", &write, "path"_a, "progress"_a = py::none(),
       R"(Writes .stl (binary, coordinates rounded to float32), .obj, .ply (binary) or .3mf (mm, float32 to its last step; needs the package

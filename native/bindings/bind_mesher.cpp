@@ -1,7 +1,7 @@
-#include <mutex>
 #include <variant>
 
 #include "bindings/bindings.hpp"
+#include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
 #include "marching/mesher.hpp"
 #include "marching/patch_edges.hpp"
@@ -10,13 +10,9 @@ namespace riffler {
 
 namespace {
 
-using NoGil = py::gil_scoped_release;
-
-/// One call at a time: calls release the GIL, and an update changes everything.
-struct SharedMesher {
+struct SharedMesher : Guarded {
   explicit SharedMesher(Mesher m) : mesher(std::move(m)) {}
   Mesher mesher;
-  std::mutex mutex;
   PickStats stats;  // under the GIL
 };
 
@@ -25,10 +21,9 @@ struct SharedSurface {
   PickStats stats;  // under the GIL
 };
 
-std::unique_lock<std::mutex> lock(SharedMesher& m) {
-  std::unique_lock held(m.mutex, std::try_to_lock);
-  if (!held) throw std::runtime_error("the mesher is in use by another thread");
-  return held;
+/// Held through every call.
+OneCaller lock(SharedMesher& m) {
+  return {m, "the mesher"};
 }
 
 Volume state_of(SharedVolume& volume) {

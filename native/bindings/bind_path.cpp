@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bindings/bindings.hpp"
+#include "geom/numbers.hpp"
 #include "plan/cc_frame.hpp"
 #include "plan/orientation.hpp"
 #include "plan/pick.hpp"
@@ -160,6 +161,7 @@ outside the path, not a unit vector, or opposite to the key before it.)")
       .def(
           "axis",
           [](const PencilPath& p, std::size_t index, double inclination, double tilt) {
+            require_angle(inclination, "inclination"), require_angle(tilt, "tilt");
             return from_vec3(axis_of(frame_of(p, index), {inclination, tilt}));
           },
           py::arg("index"), py::arg("inclination"), py::arg("tilt"),

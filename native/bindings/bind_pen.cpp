@@ -68,7 +68,7 @@ void check_same(std::size_t rows, std::size_t expected, const char* name) {
 /// One row of six numbers for each of `in`; `row` knows nothing of Python.
 template <class In, class F>
 std::vector<Row> rows_of(const std::vector<In>& in, const F& row) {
-  const py::gil_scoped_release release;
+  const NoGil release;
   std::vector<Row> out;
   out.reserve(in.size());
   for (const In& one : in) out.push_back(row(one));

@@ -43,7 +43,7 @@ py::dict dict_of(const FoundDevice& found) {
 py::list devices() {
   std::vector<FoundDevice> found;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     found = find_devices();
   }
   py::list out;
@@ -67,7 +67,7 @@ SharedPen open_device(const std::string& what, const std::string& geometry, doub
   options.rate.validate();
   options.compensation = {gravity, friction};
   options.compensation.validate();
-  const py::gil_scoped_release release;
+  const NoGil release;
   return open_pen(what, options);
 }
 
@@ -206,11 +206,11 @@ torque (N·mm) about the grip's point. dict: force, torque that will be felt, mi
 None.)")
       .def("home", &Pen::home, "The device stands in its home posture. False where nothing has to be homed.")
       .def("reset", &Pen::reset, "Clears a trip that does not heal by itself: health()['cause'] says what it was.")
-      .def("stop", &Pen::stop, py::call_guard<py::gil_scoped_release>(),
+      .def("stop", &Pen::stop, py::call_guard<NoGil>(),
            "No force, and closed. False where the device could not be told in time.")
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__", [](Pen& p, const py::args&) {
-        const py::gil_scoped_release release;
+        const NoGil release;
         p.stop();
       });
 }

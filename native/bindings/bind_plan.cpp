@@ -16,7 +16,6 @@ namespace riffler {
 namespace {
 
 using namespace py::literals;
-using NoGil = py::gil_scoped_release;
 using Path = std::shared_ptr<PencilPath>;
 using Obstacle = std::shared_ptr<Collider>;
 

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "bindings/bindings.hpp"
+#include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
 #include "nc/cutter_path.hpp"
 #include "nc/edit.hpp"
@@ -181,7 +183,7 @@ Program from_cl(const py::iterable& cl, const py::object& tools, const py::objec
   if (!collider && (links.retract || links.direction))
     throw py::value_error("retract and direction choose among ways that are checked: they need a collider");
   const Provenance origin = to_provenance(provenance);
-  const py::gil_scoped_release release;
+  const NoGil release;
   Program program = program_from_paths(paths, std::move(by_number), room, links);
   program.provenance = origin;
   return program;
@@ -231,6 +233,11 @@ py::dict machine_list() {
   return out;
 }
 
+struct SharedStream : Guarded {
+  explicit SharedStream(NcStream&& s) : stream(std::move(s)) {}
+  NcStream stream;
+};
+
 py::dict to_dict(const WriteReport& report) {
   using namespace py::literals;
   py::list passages;
@@ -249,7 +256,7 @@ py::dict write(const Program& self, const std::filesystem::path& path, const std
   if (stock) material = Reading(*stock).volume.snapshot();
   WriteReport report;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     report = write_nc(self, path, how, [&](const WriteReport& written) {
       if (collider) refuse_collisions(self, written.motion, *collider, contact_tolerance);
       if (material) refuse_strikes(self, written.motion, *material, std::max(tolerance, 0.01));
@@ -310,24 +317,26 @@ void bind_program(py::module_& m) {
         "machine's name; the path of a .toml file that describes one will do as well.");
 
   py::class_<Note>(m, "Note", "What a reader of NC code assumed or passed over.")
-      .def_readonly("kind", &Note::kind,
-                    "\"skipped\", \"coordinates\" (what follows may be elsewhere), \"work offset\", \"units\", "
-                    "\"machine position\", "
-                    "\"rapid\", \"motion\", \"start\", \"tool length\", \"cutter compensation\", \"user code\" or \"end\".")
+      .def_readonly(
+          "kind", &Note::kind,
+          "\"skipped\", \"coordinates\" (what follows may be elsewhere), \"work offset\", \"units\", "
+          "\"machine position\", "
+          "\"rapid\", \"motion\", \"start\", \"tool length\", \"cutter compensation\", \"user code\" or \"end\".")
       .def_readonly("line", &Note::line, "Of the source, from 1.")
       .def_readonly("message", &Note::message)
       .def("__repr__", [](const Note& n) {
         return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
       });
 
-  py::class_<NcStream>(m, "ProgramStream", "What Program.stream gives: an iterator of programs.")
+  py::class_<SharedStream>(m, "ProgramStream", "What Program.stream gives: an iterator of programs.")
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", [](NcStream& self) {
+      .def("__next__", [](SharedStream& self) {
+        const OneCaller only(self, "the stream");
         Program program;
         bool more;
         {
-          const py::gil_scoped_release release;
-          more = self.next(program);
+          const NoGil release;
+          more = self.stream.next(program);
         }
         if (!more) throw py::stop_iteration();
         return program;
@@ -370,12 +379,14 @@ is above it being air; not given, all of it is fed. ``contact_tolerance``: mm th
 as cuts touch the part. ValueError names the path, the row, the place and the remedy where nothing is clear.)")
       .def_static(
           "read",
-          [](const std::filesystem::path& path, const std::string& machine, const py::object& options) {
-            const ReadOptions how{machine, to_options(options)};
-            const py::gil_scoped_release release;
+          [](const std::filesystem::path& path, const std::string& machine, const py::object& options,
+             const py::object& progress) {
+            const ReadOptions how{machine, to_options(options), to_progress(progress)};
+            const NoGil release;
             return read_nc(path, how);
           },
-          py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(),
+          py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::kw_only(),
+          py::arg("progress") = py::none(),
           R"(Reads NC code (RS-274 as LinuxCNC has it); ``machine`` is a name of machines(), or "apt" for an APT file.
 
 Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
@@ -391,8 +402,9 @@ programmed. FormatError names file, line and block; nothing that is not understo
           "stream",
           [](const std::filesystem::path& path, const std::string& machine, const py::object& options, double rows) {
             if (!(rows >= 2 && rows <= 1e9)) throw py::value_error("rows must be 2 to 1e9");
-            return std::make_unique<NcStream>(path, ReadOptions{machine, to_options(options)},
-                                              static_cast<std::size_t>(rows));
+            return std::make_unique<SharedStream>(
+                NcStream(path, ReadOptions{machine, to_options(options), to_progress(py::none())},
+                         static_cast<std::size_t>(rows)));
           },
           py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::arg("rows") = 65536,
           R"(Reads as ``read`` does, in memory that does not grow with the file: an iterator of programs of at most ``rows``
@@ -462,8 +474,13 @@ would take).)")
            "In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.")
       .def("retimed", &retimed, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
       .def_static(
-          "joined", [](const std::vector<const Program*>& programs) { return joined(programs); }, py::arg("programs"),
-          "One after the other. ValueError where one number stands for tools of two shapes.")
+          "joined",
+          [](const std::vector<std::reference_wrapper<const Program>>& programs) {
+            std::vector<const Program*> all;
+            for (const Program& program : programs) all.push_back(&program);
+            return joined(all);
+          },
+          py::arg("programs"), "One after the other. ValueError where one number stands for tools of two shapes.")
       .def("retooled", &retooled, py::arg("numbers"),
            "Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share "
            "one.")

@@ -16,7 +16,7 @@ ByteView view_of(const py::bytes& bytes) {
 py::bytes bytes_of(const Program& program) {
   std::vector<std::uint8_t> bytes;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     bytes = to_bytes(program);
   }
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -24,19 +24,19 @@ py::bytes bytes_of(const Program& program) {
 
 Program program_of(const py::bytes& bytes) {
   const ByteView view = view_of(bytes);
-  const py::gil_scoped_release release;
+  const NoGil release;
   return parse_program(view, "program");
 }
 
 void save(const Program& program, const std::filesystem::path& path, const py::object& progress) {
   const Progress listener = to_progress(progress);
-  const py::gil_scoped_release release;
+  const NoGil release;
   save_program(program, path, listener);
 }
 
 Program load(const std::filesystem::path& path, const py::object& progress) {
   const Progress listener = to_progress(progress);
-  const py::gil_scoped_release release;
+  const NoGil release;
   return load_program(path, listener);
 }
 

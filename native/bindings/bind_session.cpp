@@ -1,8 +1,8 @@
 // riffler.Session, riffler.Material
 #include <memory>
-#include <mutex>
 
 #include "bindings/bindings.hpp"
+#include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
 #include "dexel/file.hpp"
 #include "haptics/material.hpp"
@@ -15,8 +15,6 @@ namespace riffler {
 namespace {
 
 using namespace py::literals;
-using NoGil = py::gil_scoped_release;
-
 /// Rows of the ticks of a frame, as arrays.
 struct FrameView {
   SessionFrame frame;
@@ -46,7 +44,7 @@ struct FrameView {
 };
 
 /// A session with what it uses, which Python may have let go.
-struct SharedSession {
+struct SharedSession : Guarded {
   std::shared_ptr<SharedVolume> volume;
   std::shared_ptr<Pen> pen;
   py::object collider;
@@ -56,7 +54,6 @@ struct SharedSession {
   std::optional<Volume> mask{};
   std::shared_ptr<JournalSink> sink;
   std::unique_ptr<Session> session;
-  std::mutex mutex;
   SculptTick last{};
 
   SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<Pen> p, py::object c, const Tool& t,
@@ -76,17 +73,10 @@ struct SharedSession {
 
 /// One call at a time, and the volume is the session's meanwhile.
 struct Using {
-  explicit Using(SharedSession& s)
-      : held(s.mutex, std::try_to_lock), writing(checked(*this, s)), volume(writing.volume) {}
-  std::unique_lock<std::mutex> held;
+  explicit Using(SharedSession& s) : only(s, "the session"), writing(*s.volume), volume(writing.volume) {}
+  OneCaller only;
   Writing writing;
   Volume& volume;
-
- private:
-  static SharedVolume& checked(const Using& u, SharedSession& s) {
-    if (!u.held) throw std::runtime_error("the session is in use by another thread");
-    return *s.volume;
-  }
 };
 
 Mat3 to_turn(const py::object& turn) {
@@ -257,9 +247,17 @@ FrameView frame(SharedSession& self) {
 FrameView stop(SharedSession& self) {
   const NoGil release;
   const Using use(self);
-  FrameView out = view(self, self.session->stop(use.volume));
-  if (self.sink && !self.sink->close())
-    throw std::runtime_error("the journal is not complete on the disk: " + self.sink->problem());
+  bool kept = true;
+  const auto close = [&] { kept = !self.sink || self.sink->close(); };
+  FrameView out;
+  try {
+    out = view(self, self.session->stop(use.volume));
+  } catch (...) {
+    if (!self.session->running()) close();
+    throw;
+  }
+  close();
+  if (!kept) throw std::runtime_error("the journal is not complete on the disk: " + self.sink->problem());
   return out;
 }
 

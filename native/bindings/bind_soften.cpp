@@ -24,7 +24,7 @@ Softened soften_dabs(SharedVolume& self, const Doubles& centres, double radius, 
   std::optional<Volume> kept;  // which may be `self`
   if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);
-  const py::gil_scoped_release release;
+  const NoGil release;
   return soften(writing.volume, dabs, options);
 }
 

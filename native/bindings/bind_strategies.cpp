@@ -9,8 +9,6 @@ namespace riffler {
 
 namespace {
 
-using NoGil = py::gil_scoped_release;
-
 std::vector<std::vector<Vec3>> to_curves(const py::sequence& sequence) {
   std::vector<std::vector<Vec3>> curves;
   for (std::size_t c = 0; c < sequence.size(); ++c) {

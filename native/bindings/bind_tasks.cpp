@@ -6,8 +6,6 @@ namespace riffler {
 
 namespace {
 
-using NoGil = py::gil_scoped_release;
-
 /// Of all tasks there are, under the GIL.
 std::vector<std::weak_ptr<Background>>& running() {
   static std::vector<std::weak_ptr<Background>> all;

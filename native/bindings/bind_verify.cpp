@@ -1,7 +1,7 @@
 // riffler.verify, riffler.Verification and what they report.
 #include <memory>
-#include <mutex>
 
+#include "bindings/one_caller.hpp"
 #include "bindings/shared_report.hpp"
 #include "bindings/task.hpp"
 #include "dexel/from_mesh.hpp"
@@ -11,13 +11,9 @@ namespace riffler {
 
 namespace {
 
-using NoGil = py::gil_scoped_release;
-
-/// One call at a time: calls release the GIL.
-struct SharedVerification {
+struct SharedVerification : Guarded {
   explicit SharedVerification(std::unique_ptr<Verification> v) : verification(std::move(v)) {}
   std::unique_ptr<Verification> verification;
-  std::mutex mutex;
 };
 
 std::map<int, Tool> to_tools(const py::object& object) {
@@ -108,7 +104,7 @@ std::unique_ptr<Verification> make_verification_here(const VerifyArguments& argu
 }
 
 std::shared_ptr<SharedReport> share(VerifyReport&& report) {
-  return std::make_shared<SharedReport>(SharedReport{std::move(report), py::none(), py::none(), py::none()});
+  return std::make_shared<SharedReport>(std::move(report));
 }
 
 namespace {
@@ -160,41 +156,40 @@ auto verify(const py::object& program, SharedVolume& stock, const py::object& pa
 auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<Program>& program,
          const py::object& progress) {
   const auto work = [self, program](const Progress& listener) {
-    const std::unique_lock held(self->mutex, std::try_to_lock);
-    if (!held) throw std::runtime_error("the verification is in use by another thread");
+    const OneCaller only(*self, "the verification");
     return self->verification->run(*program, listener);
   };
   return long_call(progress, work, &share);
 }
 
+py::object made_deviation(const VerifyReport& report) {
+  const Progress listener = to_progress(py::none());
+  std::pair<Mesh, std::vector<double>> found;
+  {
+    const NoGil release;
+    found = deviation_of(report.volume, *report.part, listener);
+  }
+  return py::make_tuple(std::make_shared<Mesh>(std::move(found.first)), take<double>(std::move(found.second)));
+}
+
 py::object deviation(SharedReport& self) {
   if (!self.report.part) return py::none();
-  if (self.deviation.is_none()) {
-    const Progress listener = to_progress(py::none());
-    std::pair<Mesh, std::vector<double>> found;
-    {
-      const NoGil release;
-      found = deviation_of(self.report.volume, *self.report.part, listener);
-    }
-    self.left = py::cast(std::make_shared<Mesh>(std::move(found.first)));
-    self.deviation = py::make_tuple(self.left, take<double>(std::move(found.second)));
+  return self.deviation.get([&] { return made_deviation(self.report); });
+}
+
+py::object made_part_map(SharedReport& self) {
+  const auto left = py::cast<std::shared_ptr<Mesh>>(py::tuple(deviation(self))[0]);
+  std::vector<double> found;
+  {
+    const NoGil release;
+    found = part_map_of(*left, *self.report.part);
   }
-  return self.deviation;
+  return take<double>(std::move(found));
 }
 
 py::object part_map(SharedReport& self) {
   if (!self.report.part) return py::none();
-  if (self.part_map.is_none()) {
-    deviation(self);
-    const Mesh& left = py::cast<const Mesh&>(self.left);
-    std::vector<double> found;
-    {
-      const NoGil release;
-      found = part_map_of(left, *self.report.part);
-    }
-    self.part_map = take<double>(std::move(found));
-  }
-  return self.part_map;
+  return self.part_map.get([&] { return made_part_map(self); });
 }
 
 py::array_t<double> rate(const SharedReport& self) {

@@ -154,7 +154,7 @@ Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, doub
   std::optional<Volume> kept;  // which may be `self`
   if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);
-  const py::gil_scoped_release release;
+  const NoGil release;
   return carve(writing.volume, tool, path, options);
 }
 
@@ -164,7 +164,7 @@ auto boolean(Boolean op) {
     const Progress listener = to_progress(progress);
     const Volume operand = Reading(other).volume.snapshot();  // which may be `self`
     Writing writing(*self);
-    const py::gil_scoped_release release;
+    const NoGil release;
     apply(op, writing.volume, operand, listener);
     return self;
   };
@@ -180,7 +180,7 @@ auto save_volume(SharedVolume& self, const std::filesystem::path& path, const py
 
 std::shared_ptr<SharedVolume> load_volume(const std::filesystem::path& path, const py::object& progress) {
   const Progress listener = to_progress(progress);
-  const py::gil_scoped_release release;
+  const NoGil release;
   return share(load(path, listener));
 }
 
@@ -197,7 +197,7 @@ std::shared_ptr<SharedVolume> volume_from_bytes(const py::buffer& data, const st
   const py::buffer_info info = data.request();
   const std::span bytes(static_cast<const std::uint8_t*>(info.ptr),
                         static_cast<std::size_t>(info.size * info.itemsize));
-  const py::gil_scoped_release release;
+  const NoGil release;
   return share(from_bytes(bytes, name));
 }
 

@@ -21,7 +21,7 @@ std::shared_ptr<SharedVolume> clip_volume(const std::shared_ptr<SharedVolume>& s
   const Vec3 p = to_vec3(point, "point"), n = to_vec3(normal, "normal");
   const Progress listener = to_progress(progress);
   Writing writing(*self);
-  const py::gil_scoped_release release;
+  const NoGil release;
   clip(writing.volume, p, n, listener);
   return self;
 }
@@ -42,7 +42,7 @@ py::array_t<bool> contains_points(SharedVolume& self, const Doubles& points) {
   const Volume state = Reading(self).volume.snapshot();
   std::vector<char> inside;
   {
-    const py::gil_scoped_release release;
+    const NoGil release;
     inside = contains(state, asked);
   }
   py::array_t<bool> out(static_cast<py::ssize_t>(inside.size()));

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "bindings/gil.hpp"
 #include "collide/contact.hpp"
 #include "geom/pose.hpp"
 #include "geom/progress.hpp"
@@ -20,6 +21,11 @@ namespace riffler {
 
 namespace py = pybind11;
 
+/// The exceptions, and how others become Python's.
+void bind_errors(py::module_& m);
+/// Of all classes of the module: an object that `__new__` made without `__init__` is a TypeError wherever it is used.
+void refuse_objects_without_init(const py::module_& m);
+void bind_files(py::module_& m);
 void bind_mesh(py::module_& m);
 void bind_tool(py::module_& m);
 void bind_volume(py::module_& m);

@@ -70,7 +70,7 @@ Progress to_progress(const py::object& callable) {
   std::shared_ptr<py::object> held;
   if (!callable.is_none())
     held = std::shared_ptr<py::object>(new py::object(callable), [](py::object* p) {
-      const py::gil_scoped_acquire gil;
+      const WithGil gil;
       delete p;
     });
   using Clock = std::chrono::steady_clock;
@@ -78,7 +78,7 @@ Progress to_progress(const py::object& callable) {
     const Clock::time_point now = Clock::now();
     if (share < 1 && now - last < std::chrono::milliseconds(30)) return true;
     last = now;
-    const py::gil_scoped_acquire gil;
+    const WithGil gil;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     return !held || !py::object((*held)(share)).is(py::bool_(false));
   };

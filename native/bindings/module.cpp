@@ -1,6 +1,5 @@
 // The extension module riffler._core. Not public: the names that riffler exports are.
 #include "bindings/bindings.hpp"
-#include "geom/error.hpp"
 
 PYBIND11_MODULE(_core, m) {
   using namespace riffler;
@@ -10,11 +9,9 @@ PYBIND11_MODULE(_core, m) {
 #else
   m.attr("__compiler__") = "GCC " __VERSION__;
 #endif
-  py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError).attr("__doc__") =
-      "A file that is not what it should be: names the file, the line or byte, and what was expected.";
-  py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError).attr("__doc__") =
-      "A long call that its progress callback stopped; the object is as it was before.";
+  bind_errors(m);
   bind_tasks(m);
+  bind_files(m);
   bind_mesh(m);
   bind_tool(m);
   bind_volume(m);
@@ -34,4 +31,5 @@ PYBIND11_MODULE(_core, m) {
   bind_strategies(m);
   bind_plan(m);
   bind_bench(m);
+  refuse_objects_without_init(m);
 }

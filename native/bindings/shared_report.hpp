@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "bindings/bindings.hpp"
+#include "bindings/lazy_object.hpp"
 #include "bindings/shared_volume.hpp"
 #include "verify/verification.hpp"
 
@@ -14,8 +14,9 @@ namespace riffler {
 
 /// A report as Python holds it. The maps take as long as the meshes are large, so they are made when first asked for.
 struct SharedReport {
-  VerifyReport report;
-  py::object left, deviation, part_map;  // None until then
+  explicit SharedReport(VerifyReport&& r) : report(std::move(r)) {}
+  const VerifyReport report;
+  LazyObject deviation, part_map;
 };
 std::shared_ptr<SharedReport> share(VerifyReport&& report);
 

@@ -73,7 +73,7 @@ auto long_call(const py::object& progress, Work&& work, Convert convert) {
   if (!wants_task(progress)) {
     const Progress listener = to_progress(progress);
     Value value = [&] {
-      const py::gil_scoped_release release;
+      const NoGil release;
       return work(listener);
     }();
     return Result(to_python_object(convert(std::move(value))));

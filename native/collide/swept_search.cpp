@@ -5,11 +5,13 @@
 #include <limits>
 
 #include "geom/math.hpp"
+#include "geom/parallel.hpp"
 
 namespace riffler {
 
 namespace {
 
+constexpr std::size_t kLooksAReport = 64;
 constexpr double kShortest = 1e-12;  // of the motion: no stretch is halved further
 
 }  // namespace
@@ -135,7 +137,7 @@ Swept SweptSearch::operator()(std::span<const Surface* const> surfaces) {
     heap_.pop_back();
     const Surface& surface = *surfaces[e.surface];
     if (is_better_halved(e) && halve(surface, e)) continue;
-    ++out_.evaluations;
+    if (++out_.evaluations % kLooksAReport == 0) still_wanted();
     e.kind == Entry::Group ? open(surface, e) : test(surface, e);
   }
   if (!heap_.empty()) out_.bound = std::min(out_.bound, heap_.front().low);

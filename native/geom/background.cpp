@@ -29,20 +29,23 @@ void Background::run(Work work) {
   work = nullptr;
   const std::lock_guard lock(mutex_);
   done_.store(true, std::memory_order_release);
-  ended_.notify_all();
+  ended_->notify_all();
 }
 
 bool Background::wait(std::chrono::milliseconds most) const {
+  if (!home_.here()) return true;
   std::unique_lock lock(mutex_);
-  return ended_.wait_for(lock, most, [this] { return done(); });
+  return ended_->wait_for(lock, most, [this] { return done(); });
 }
 
 void Background::wait() const {
+  if (!home_.here()) return;
   std::unique_lock lock(mutex_);
-  ended_.wait(lock, [this] { return done(); });
+  ended_->wait(lock, [this] { return done(); });
 }
 
 void Background::check() const {
+  if (!done_.load(std::memory_order_acquire)) home_.check("the call");
   if (error_) std::rethrow_exception(error_);
 }
 

@@ -7,14 +7,15 @@
 #include <exception>
 #include <functional>
 #include <mutex>
-#include <thread>
 
+#include "geom/own_thread.hpp"
 #include "geom/progress.hpp"
 
 namespace riffler {
 
 /// Runs `work` at once, on a new thread. Any thread may ask about it; cancelling works wherever `work` reports, and
-/// what `work` holds is destroyed on that thread as soon as it has ended.
+/// what `work` holds is destroyed on that thread as soon as it has ended. In a process that was forked meanwhile the
+/// work counts as done, and lost.
 class Background {
  public:
   using Work = std::function<void(const Progress&)>;
@@ -28,7 +29,7 @@ class Background {
   /// Of the work, in [0, 1]; never goes back, and is 1 only where the work came to its end.
   double share() const { return share_.load(std::memory_order_relaxed); }
   /// Whether the work has ended, by itself, by an error or cancelled. What it wrote is then visible to who asks.
-  bool done() const { return done_.load(std::memory_order_acquire); }
+  bool done() const { return done_.load(std::memory_order_acquire) || !home_.here(); }
   /// Asks the work to end with Cancelled; without effect where it has ended. Does not wait.
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   /// Waits until the work has ended, at most for `most`; whether it has.
@@ -43,9 +44,10 @@ class Background {
   std::atomic<double> share_{0};
   std::atomic<bool> cancelled_{false}, done_{false};
   mutable std::mutex mutex_;
-  mutable std::condition_variable ended_;
+  HomeOnly<std::condition_variable> ended_;
+  HomeProcess home_;
   std::exception_ptr error_;
-  std::thread thread_;  // the last: it uses all others
+  OwnThread thread_;  // the last: it uses all others
 };
 
 }  // namespace riffler

@@ -25,6 +25,11 @@ void set_thread_count(std::optional<int> count);
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
                   const Progress& progress = {});
 
+/// In a body of parallel_for that takes long, now and then: throws Cancelled where the call no longer needs what the
+/// body makes, because its listener has stopped it or another body has failed. In the caller's thread the listener is
+/// asked.
+void still_wanted();
+
 /// As long as it lives, parallel calls of this thread start no others: the caller knows that all processors are busy.
 class OneThread {
  public:

@@ -17,6 +17,9 @@ using OpenMesh::VertexHandle;
 constexpr double kTurn = 0.2;
 // Twice the area over the square of the longest edge.
 constexpr double kThin = 1e-4;
+// At a vertex: a collapse looks at all of them, and where one fan is all of a mesh, that is its square. The edges round
+// such a fan go first.
+constexpr int kMostSpokes = 512;
 
 bool turned(const Vec3& was, const Vec3& is) {
   const double dot = glm::dot(was, is);
@@ -32,6 +35,7 @@ bool Collapse::prepare(const Placement& placement) {
   new_ = placement.point, between_ = placement.between;
   border_ = mesh_.is_boundary(from_), to_border_ = mesh_.is_boundary(to_);
   lost_ = border_ ? 1 : 2;
+  if (!has_few_spokes(from_) || !has_few_spokes(to_)) return false;
   if (border_ && !keeps_borders()) return false;
   ring_.clear(), faces_.clear();
   if (between_)
@@ -39,6 +43,16 @@ bool Collapse::prepare(const Placement& placement) {
   else
     gather_fan();
   return first_ <= last_ && keeps_manifold() && keeps_shape() && keeps_angles();
+}
+
+bool Collapse::has_few_spokes(VertexHandle v) const {
+  const HalfedgeHandle start = mesh_.halfedge_handle(v);
+  HalfedgeHandle spoke = start;
+  for (int n = 0; n < kMostSpokes; ++n) {
+    spoke = mesh_.opposite_halfedge_handle(mesh_.prev_halfedge_handle(spoke));
+    if (spoke == start) return true;
+  }
+  return false;
 }
 
 /// A vertex of a border stays on its border, two borders do not meet, and no triangle hangs by one vertex.

@@ -75,6 +75,7 @@ class Collapse {
   };
 
   int wrap(int i) const { return i == ring_size() ? 0 : i; }
+  bool has_few_spokes(OpenMesh::VertexHandle v) const;
   bool keeps_borders() const;
   bool keeps_manifold();
   bool ring_is_simple();

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/atomic_file.hpp"
 #include "geom/io.hpp"
 #include "mesh/obj.hpp"
 #include "mesh/ply.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 struct Format {
   const char* extension;
-  Mesh (*from)(std::span<const std::uint8_t>, const std::string&);
+  Mesh (*from)(std::span<const std::uint8_t>, const std::string&, const Progress&);
   void (*put)(const Mesh&, const PutBytes&);
 };
 
@@ -27,7 +28,12 @@ void put_ply(const Mesh& mesh, const PutBytes& put) {
   put(to_ply(mesh), 1);
 }
 
-constexpr Format kFormats[] = {{".stl", from_stl, put_stl}, {".obj", from_obj, put_obj}, {".ply", from_ply, put_ply}};
+Mesh stl(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress) {
+  report(progress, 0);
+  return from_stl(bytes, name);
+}
+
+constexpr Format kFormats[] = {{".stl", stl, put_stl}, {".obj", from_obj, put_obj}, {".ply", from_ply, put_ply}};
 
 const Format& format_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
@@ -40,15 +46,15 @@ const Format& format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-Mesh read_mesh(const std::filesystem::path& path) {
+Mesh read_mesh(const std::filesystem::path& path, const Progress& progress) {
   const Format& format = format_of(path);
-  return format.from(read_file(path), path.filename().string());
+  return format.from(read_file(path), path.filename().string(), progress);
 }
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
   const Format& format = format_of(path);
   report(progress, 0);
-  NewFile file(path);
+  AtomicFileWriter file(path);
   format.put(mesh, [&](std::span<const std::uint8_t> bytes, double share) {
     file.write(bytes);
     report(progress, share);

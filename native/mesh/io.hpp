@@ -9,7 +9,7 @@
 namespace riffler {
 
 /// Reads .stl, .obj or .ply (any case). FormatError for a bad file, std::invalid_argument for another extension.
-Mesh read_mesh(const std::filesystem::path& path);
+Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
 
 /// Writes .stl (binary, float32), .obj (text) or .ply (binary little-endian), whole or not at all.
 /// std::invalid_argument for another extension or where `validate` throws, std::runtime_error where the system refuses.

@@ -17,6 +17,12 @@ using Segment = SurfaceMap::Segment;
 /// How often a triangle may be halved where it is looked at piece by piece.
 constexpr int kNearDepth = 24;
 
+/// And into how many pieces, for a depth of 24 is no bound on work: what needs more counts as far.
+constexpr int kMostPieces = 1 << 12;
+
+/// Pieces of all faces together that are held at a time.
+constexpr std::size_t kMostHeld = 1 << 22;
+
 /// How many times the tolerance pieces along a rim may measure at first.
 constexpr double kCoarse = 32;
 
@@ -116,8 +122,8 @@ MapCheck::MapCheck(const Traces& traces, double tolerance)
 std::vector<int> MapCheck::far_vertices(const Progress& progress) {
   map_all(part(progress, 0, 0.8));
   std::vector<int> result;
-  check_holes(result);
-  check_faces(result, part(progress, 0.8, 1));
+  check_holes(result, part(progress, 0.8, 0.9));
+  check_faces(result, part(progress, 0.9, 1));
   each_once(result);
   return result;
 }
@@ -199,19 +205,24 @@ std::vector<int> MapCheck::old_triangles_near(const std::vector<Corners>& place,
 }
 
 /// Whether triangles are near a surface.
-std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::vector<Corners>& surface) const {
+std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::vector<Corners>& surface,
+                                 const Progress& progress) const {
   std::vector<char> result(place.size(), 0);
   if (surface.empty()) return result;
   const Closest closest(mesh_of(surface));
-  parallel_for(place.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      result[i] = triangle_near(closest, place[i][0], place[i][1], place[i][2], -1, kNearDepth);
-  });
+  const auto look = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      int pieces = kMostPieces;
+      result[i] = triangle_near(closest, place[i][0], place[i][1], place[i][2], -1, kNearDepth, pieces);
+      still_wanted();
+    }
+  };
+  parallel_for(place.size(), 64, look, progress);
   return result;
 }
 
 /// Holes of the map, against the new surface round them.
-void MapCheck::check_holes(std::vector<int>& far) const {
+void MapCheck::check_holes(std::vector<int>& far, const Progress& progress) const {
   if (holes_.empty()) return;
   std::vector<Corners> place, surface;
   std::vector<int> seeds;
@@ -221,7 +232,7 @@ void MapCheck::check_holes(std::vector<int>& far) const {
       if (const int face = map_.face_of(half_edges_.corner[3 * t + k]); face >= 0) seeds.push_back(face);
   }
   for (const int face : new_faces_near(place, std::move(seeds))) surface.push_back(map_.points_of(face));
-  const std::vector<char> is_near = near(place, surface);
+  const std::vector<char> is_near = near(place, surface, progress);
   for (std::size_t i = 0; i < holes_.size(); ++i)
     for (int k = 0; !is_near[i] && k < 3; ++k) far.push_back(half_edges_.corner[3 * holes_[i] + k]);
 }
@@ -233,8 +244,8 @@ void MapCheck::check_faces(std::vector<int>& far, const Progress& progress) cons
   std::vector<Doubt> doubt = doubts();
   // Large pieces along the rims first: hardly any is far off, and needs to be told from what is covered there.
   for (const double smallest : {kCoarse * tolerance_, tolerance_}) {
-    report(progress, smallest > tolerance_ ? 0.2 : 0.6);
-    const std::vector<char> is_near = faces_near(doubt, smallest);
+    const double begin = smallest > tolerance_ ? 0.2 : 0.6;
+    const std::vector<char> is_near = faces_near(doubt, smallest, part(progress, begin, begin + 0.4));
     std::size_t left = 0;
     for (std::size_t i = 0; i < doubt.size(); ++i)
       if (!is_near[i]) std::swap(doubt[left++], doubt[i]);
@@ -254,13 +265,22 @@ void MapCheck::check_faces(std::vector<int>& far, const Progress& progress) cons
 
 /// Whether what is not covered is near the old surface round it, in pieces along the rims that may be as large as
 /// `smallest`.
-std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double smallest) const {
+std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double smallest,
+                                       const Progress& progress) const {
   std::vector<char> result(doubt.size(), 1);
   std::vector<std::vector<Corners>> pieces(doubt.size());
-  parallel_for(doubt.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      add_uncovered(doubt[i], doubt[i].rim, map_.points_of(doubt[i].face), smallest, kNearDepth, pieces[i]);
-  });
+  const int most =
+      static_cast<int>(std::clamp<std::size_t>(kMostHeld / std::max<std::size_t>(1, doubt.size()), 64, kMostPieces));
+  const auto divide = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      int left = most;
+      const Corners whole = map_.points_of(doubt[i].face);
+      if (!add_uncovered(doubt[i], doubt[i].rim, whole, smallest, kNearDepth, left, pieces[i]))
+        pieces[i].clear(), result[i] = 0;
+      still_wanted();
+    }
+  };
+  parallel_for(doubt.size(), 16, divide, part(progress, 0, 0.5));
   std::vector<Corners> place, surface;
   std::vector<std::size_t> whose;
   std::vector<int> seeds = holes_;
@@ -272,15 +292,17 @@ std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double s
   }
   if (place.empty()) return result;
   for (const int t : old_triangles_near(place, std::move(seeds))) surface.push_back(old_points(t));
-  const std::vector<char> is_near = near(place, surface);
+  const std::vector<char> is_near = near(place, surface, part(progress, 0.5, 1));
   for (std::size_t i = 0; i < place.size(); ++i)
     if (!is_near[i]) result[whose[i]] = 0;
   return result;
 }
 
 /// Of a part of a face: no rim crosses it and there is a sheet, or it has to be near; or this is so for its halves.
-void MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim, const Corners& p, double smallest,
-                             int depth, std::vector<Corners>& pieces) const {
+/// False where that takes more than `left` pieces.
+bool MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim, const Corners& p, double smallest,
+                             int depth, int& left, std::vector<Corners>& pieces) const {
+  if (left-- <= 0) return false;
   const Vec3 lower = glm::min(p[0], glm::min(p[1], p[2])), upper = glm::max(p[0], glm::max(p[1], p[2]));
   const double slack = 1e-9 * glm::length(upper - lower);  // segments are in the face but for rounding
   std::vector<Segment> crossing;
@@ -292,20 +314,24 @@ void MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim
     int sheets = sheets_[doubt.face];
     // Hole half-edges: those of the mapped triangles beside them run the other way.
     for (const Segment& s : doubt.rim) sheets -= view.winding_beyond(s, q);
-    if (sheets != 0) return;
+    if (sheets != 0) return true;
   }
   const double side[3] = {glm::length(p[1] - p[0]), glm::length(p[2] - p[1]), glm::length(p[0] - p[2])};
   const int longest = side[0] >= side[1] && side[0] >= side[2] ? 0 : side[1] >= side[2] ? 1 : 2;
-  if (crossing.empty() || depth == 0 || side[longest] < smallest) return void(pieces.push_back(p));
+  if (crossing.empty() || depth == 0 || side[longest] < smallest) {
+    pieces.push_back(p);
+    return true;
+  }
   const Vec3 &a = p[longest], &b = p[(longest + 1) % 3], &tip = p[(longest + 2) % 3], half = 0.5 * (a + b);
-  add_uncovered(doubt, crossing, {a, half, tip}, smallest, depth - 1, pieces);
-  add_uncovered(doubt, crossing, {half, b, tip}, smallest, depth - 1, pieces);
+  return add_uncovered(doubt, crossing, {a, half, tip}, smallest, depth - 1, left, pieces) &&
+         add_uncovered(doubt, crossing, {half, b, tip}, smallest, depth - 1, left, pieces);
 }
 
 /// Points near one triangle are a convex set; what is not near any one as a whole is halved. `hint` is a triangle
 /// nearby, or -1.
-bool MapCheck::triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint,
-                             int depth) const {
+bool MapCheck::triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint, int depth,
+                             int& pieces) const {
+  if (pieces-- <= 0) return false;
   const Vec3 centre = (a + b + c) / 3.0;
   double limit = tolerance_;
   if (hint >= 0) limit = std::min(limit, closest.distance_to(hint, centre));
@@ -318,8 +344,8 @@ bool MapCheck::triangle_near(const Closest& closest, const Vec3& a, const Vec3& 
   if (depth == 0) return false;
   const auto halves = [&](const Vec3& p, const Vec3& q, const Vec3& tip) {
     const Vec3 half = 0.5 * (p + q);
-    return triangle_near(closest, p, half, tip, hit.triangle, depth - 1) &&
-           triangle_near(closest, half, q, tip, hit.triangle, depth - 1);
+    return triangle_near(closest, p, half, tip, hit.triangle, depth - 1, pieces) &&
+           triangle_near(closest, half, q, tip, hit.triangle, depth - 1, pieces);
   };
   const double ab = glm::length(b - a), bc = glm::length(c - b), ca = glm::length(a - c);
   return ab >= bc && ab >= ca ? halves(a, b, c) : bc >= ca ? halves(b, c, a) : halves(c, a, b);

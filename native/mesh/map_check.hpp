@@ -42,15 +42,17 @@ class MapCheck {
   Corners old_points(int t) const;
   void map_all(const Progress& progress);
   std::vector<Doubt> doubts() const;
-  void check_holes(std::vector<int>& far) const;
+  void check_holes(std::vector<int>& far, const Progress& progress) const;
   void check_faces(std::vector<int>& far, const Progress& progress) const;
-  std::vector<char> faces_near(const std::vector<Doubt>& doubt, double smallest) const;
-  void add_uncovered(const Doubt& doubt, const std::vector<SurfaceMap::Segment>& rim, const Corners& p, double smallest,
-                     int depth, std::vector<Corners>& pieces) const;
+  std::vector<char> faces_near(const std::vector<Doubt>& doubt, double smallest, const Progress& progress) const;
+  bool add_uncovered(const Doubt& doubt, const std::vector<SurfaceMap::Segment>& rim, const Corners& p, double smallest,
+                     int depth, int& left, std::vector<Corners>& pieces) const;
   std::vector<int> new_faces_near(const std::vector<Corners>& place, std::vector<int> seeds) const;
   std::vector<int> old_triangles_near(const std::vector<Corners>& place, std::vector<int> seeds) const;
-  std::vector<char> near(const std::vector<Corners>& place, const std::vector<Corners>& surface) const;
-  bool triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint, int depth) const;
+  std::vector<char> near(const std::vector<Corners>& place, const std::vector<Corners>& surface,
+                         const Progress& progress) const;
+  bool triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint, int depth,
+                     int& pieces) const;
 
   const Traces& traces_;
   const HalfEdges& half_edges_;

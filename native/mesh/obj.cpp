@@ -22,10 +22,15 @@ constexpr std::array<std::string_view, 41> kPassedOver = {
 
 class ObjReader {
  public:
-  ObjReader(std::span<const std::uint8_t> bytes, const std::string& name) : scan_(bytes, name) {}
+  ObjReader(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress)
+      : scan_(bytes, name), size_(bytes.size()), progress_(progress) {}
 
   Mesh read() {
-    for (; !scan_.at_end(); scan_.next_line()) statement();
+    for (std::size_t n = 0; !scan_.at_end(); scan_.next_line(), ++n) {
+      if (n % kStatementsAReport == 0)
+        report(progress_, static_cast<double>(scan_.offset()) / static_cast<double>(size_));
+      statement();
+    }
     if (mesh_.triangles.empty()) scan_.fail("zero faces");
     mesh_.vertices.assign(welder_.points().begin(), welder_.points().end());
     return std::move(mesh_);
@@ -115,7 +120,11 @@ class ObjReader {
       scan_.fail_expected("v, v/vt, v//vn or v/vt/vn", word);
   }
 
+  static constexpr std::size_t kStatementsAReport = 1 << 14;
+
   Scanner scan_;
+  std::size_t size_;
+  const Progress& progress_;
   Welder<Vec3> welder_;
   std::vector<int> welded_, corners_;  // welded_: vertex of the file → vertex of the mesh
   Mesh mesh_;
@@ -124,7 +133,11 @@ class ObjReader {
 }  // namespace
 
 Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name) {
-  return ObjReader(bytes, name).read();
+  return from_obj(bytes, name, {});
+}
+
+Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress) {
+  return ObjReader(bytes, name, progress).read();
 }
 
 std::vector<std::uint8_t> to_obj(const Mesh& mesh) {

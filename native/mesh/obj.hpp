@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {
@@ -15,6 +16,8 @@ namespace riffler {
 /// become one; vertices without a face stay. FormatError naming the line for an unknown statement, a face with fewer
 /// than three vertices or one that is not there (yet), a vertex that is not finite or beyond 1e30; also for zero faces.
 Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name);
+/// `progress` hears of every few thousand lines; its share is of no more than the part at hand.
+Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress);
 
 /// OBJ with coordinates that read back to the same doubles. std::invalid_argument where `validate` throws.
 std::vector<std::uint8_t> to_obj(const Mesh& mesh);

@@ -114,6 +114,9 @@ class HeaderReader {
   void element() {
     Element element;
     element.name = scan_.token_in_line();
+    // Files have two or three; this many are looked at again and again without being slow.
+    constexpr std::size_t kMostElements = 1000;
+    if (header_.elements.size() == kMostElements) scan_.fail("more than 1000 elements");
     for (const Element& other : header_.elements)
       if (other.name == element.name) scan_.fail("element " + in_quotes(element.name) + " twice");
     const std::string_view word = scan_.token_in_line();
@@ -226,7 +229,7 @@ class BinaryValues {
 template <class Values>
 class BodyReader {
  public:
-  explicit BodyReader(Values values) : values_(std::move(values)) {}
+  BodyReader(Values values, const Progress& progress) : values_(std::move(values)), progress_(progress) {}
 
   Mesh read(const Header& header) {
     for (const Element& element : header.elements) {
@@ -236,8 +239,10 @@ class BodyReader {
       else if (element.name == "face")
         faces(element);
       else
-        for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i)
+        for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+          listen(i, element);
           for (const Property& property : element.properties) skip(property);
+        }
     }
     values_.check_end();
     if (mesh_.triangles.empty()) values_.fail("zero faces");
@@ -257,6 +262,7 @@ class BodyReader {
     }
     if (found != 7) values_.fail("element 'vertex' has no x, y, z");
     for (std::size_t i = 0; i < element.count; ++i) {
+      listen(i, element);
       Vec3 v(0);
       for (std::size_t p = 0; p < slot.size(); ++p) {
         if (slot[p] < 0)
@@ -282,7 +288,8 @@ class BodyReader {
         indices = &p;
     if (!indices) values_.fail("element 'face' has no list of integers vertex_indices");
     std::vector<int> corners;
-    for (std::size_t i = 0; i < element.count; ++i)
+    for (std::size_t i = 0; i < element.count; ++i) {
+      listen(i, element);
       for (const Property& p : element.properties) {
         if (&p != indices) {
           skip(p);
@@ -294,6 +301,13 @@ class BodyReader {
         for (std::size_t k = 0; k < n; ++k) corners.push_back(corner(p));
         for (std::size_t k = 2; k < n; ++k) mesh_.triangles.emplace_back(corners[0], corners[k - 1], corners[k]);
       }
+    }
+  }
+
+  /// The share is that of the element at hand.
+  void listen(std::size_t row, const Element& element) const {
+    constexpr std::size_t kRowsAReport = 1 << 14;
+    if (row % kRowsAReport == 0) report(progress_, static_cast<double>(row) / static_cast<double>(element.count));
   }
 
   int corner(const Property& p) {
@@ -316,6 +330,7 @@ class BodyReader {
   }
 
   Values values_;
+  const Progress& progress_;
   Welder<Vec3> welder_;
   std::vector<int> welded_;  // vertex of the file → vertex of the mesh
   Mesh mesh_;
@@ -334,14 +349,18 @@ void append(std::vector<std::uint8_t>& bytes, const T& value) {
 }  // namespace
 
 Mesh from_ply(std::span<const std::uint8_t> bytes, const std::string& name) {
+  return from_ply(bytes, name, {});
+}
+
+Mesh from_ply(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress) {
   const Header header = HeaderReader(bytes, name).read();
   switch (header.coding) {
     case Coding::Ascii:
-      return BodyReader(TextValues(bytes, header, name)).read(header);
+      return BodyReader(TextValues(bytes, header, name), progress).read(header);
     case Coding::Little:
-      return BodyReader(BinaryValues<false>(bytes, header, name)).read(header);
+      return BodyReader(BinaryValues<false>(bytes, header, name), progress).read(header);
     default:
-      return BodyReader(BinaryValues<true>(bytes, header, name)).read(header);
+      return BodyReader(BinaryValues<true>(bytes, header, name), progress).read(header);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {
@@ -16,6 +17,8 @@ namespace riffler {
 /// naming the line or byte for a header that is not PLY, wrong counts, bytes left over, an index out of range, a face
 /// with fewer than three vertices, a vertex that is not finite or beyond 1e30, zero faces.
 Mesh from_ply(std::span<const std::uint8_t> bytes, const std::string& name);
+/// `progress` hears of every few thousand lines; its share is of no more than the part at hand.
+Mesh from_ply(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress);
 
 /// Binary little-endian PLY; coordinates are float where that keeps every one of them exact, else double.
 /// std::invalid_argument where `validate` throws.

@@ -28,6 +28,9 @@ class AptLexer {
   /// The next statement; false at the end. FormatError where the text ends within one.
   bool next(AptStatement& statement);
 
+  /// Of the text, how much has been read, in [0, 1].
+  double share() const { return source_.share(); }
+
   /// The word as a number; nothing where it is none. FormatError where it is out of range.
   std::optional<double> number(std::string_view word) const;
 

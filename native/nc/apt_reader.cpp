@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -22,11 +23,12 @@ namespace riffler {
 namespace {
 
 constexpr std::size_t kMaxListed = 20;
+constexpr std::uint64_t kStatementsAReport = 1024;
 
 class AptReader {
  public:
   AptReader(std::string_view text, const std::string& file, const ReadOptions& options)
-      : place_{file, 0, {}}, lexer_(text, place_) {
+      : place_{file, 0, {}}, lexer_(text, place_), progress_(options.progress) {
     OptionReader taken(options.options, "machine " + options.machine);
     make_machine(options.machine, taken);
     take_post_options(taken);  // the same options write and read
@@ -39,7 +41,8 @@ class AptReader {
   }
 
   Program run() {
-    while (lexer_.next(s_) && s_.major != "FINI") {
+    for (std::uint64_t n = 0; lexer_.next(s_) && s_.major != "FINI"; ++n) {
+      if (n % kStatementsAReport == 0) report(progress_, lexer_.share());
       const std::string shown = s_.major + (s_.text.empty() ? "" : "/" + s_.text);
       place_.line = s_.line, place_.text = shown;
       execute();
@@ -382,6 +385,7 @@ class AptReader {
 
   NcPlace place_;
   AptLexer lexer_;
+  const Progress& progress_;
   AptStatement s_;
   double chord_tolerance_ = 0;
   bool skip_unknown_ = false, ignore_compensation_ = false, compensation_noted_ = false;

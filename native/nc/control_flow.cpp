@@ -25,8 +25,12 @@ std::string show(const std::string& label) {
 }  // namespace
 
 NcControlFlow::NcControlFlow(std::unique_ptr<NcSource> program, std::vector<fs::path> folders, double max_turns,
-                             NcPlace& place, NcParameters& parameters)
-    : folders_(std::move(folders)), max_turns_(max_turns), place_(place), parameters_(parameters) {
+                             NcPlace& place, NcParameters& parameters, Progress progress)
+    : folders_(std::move(folders)),
+      max_turns_(max_turns),
+      place_(place),
+      parameters_(parameters),
+      progress_(std::move(progress)) {
   program_.source = std::move(program);
   frames_.push_back({&program_, {}, false, 1, {}});
   place_.file = program_.source->name();
@@ -37,7 +41,19 @@ bool NcControlFlow::advance(std::string_view& line) {
   line_mark_ = source.mark();
   if (!source.next(line)) return false;
   place_.line = source.line(), place_.text = line;
+  count_line();
   return true;
+}
+
+/// A turn may pass over a million lines: the number of turns alone is no bound.
+void NcControlFlow::count_line() {
+  constexpr std::uint64_t kLinesAReport = 4096;
+  if (place_.line > file().furthest)
+    file().furthest = place_.line;
+  else if (++again_ > kLinesOfTurn * max_turns_)
+    place_.fail("an endless loop? Its turns read more lines than option max_turns allows, " +
+                std::to_string(static_cast<int>(kLinesOfTurn)) + " each");
+  if (++lines_ % kLinesAReport == 0) report(progress_, program_.source->share());
 }
 
 bool NcControlFlow::next(std::string_view& line) {

@@ -1,6 +1,7 @@
 // Which line of NC code comes next: O-words (subroutines, loops, branches), subprograms by M98, files of subroutines.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "nc/cursor.hpp"
 #include "nc/o_word.hpp"
 #include "nc/parameters.hpp"
@@ -19,9 +21,10 @@ namespace riffler {
 class NcControlFlow {
  public:
   /// Subroutines that the program does not hold are sought as name.ngc in `folders`. After `max_turns` turns of loops
-  /// and calls the program counts as endless. Keeps `place`, in which it says where it is, and `parameters`.
+  /// and calls, or where they read lines again and again without end, the program counts as endless. `progress` hears
+  /// of lines that are passed over, too. Keeps `place`, in which it says where it is, and `parameters`.
   NcControlFlow(std::unique_ptr<NcSource> program, std::vector<std::filesystem::path> folders, double max_turns,
-                NcPlace& place, NcParameters& parameters);
+                NcPlace& place, NcParameters& parameters, Progress progress = {});
 
   /// The next line in the order of execution; false at the end. FormatError for a file that ends within a subroutine.
   bool next(std::string_view& line);
@@ -47,6 +50,7 @@ class NcControlFlow {
     std::unique_ptr<NcSource> source;
     std::map<std::string, NcSource::Mark> subs, subprograms;
     bool is_indexed = false;
+    int furthest = 0;  // line that was read
   };
   struct Loop {
     std::string label;
@@ -79,6 +83,7 @@ class NcControlFlow {
   void expect_end(NcCursor& cursor);
   void turn();
   bool advance(std::string_view& line);
+  void count_line();
   File& file() { return *frames_.back().file; }
   std::vector<Loop>& loops() { return frames_.back().loops; }
 
@@ -88,6 +93,9 @@ class NcControlFlow {
   double max_turns_, turns_ = 0;
   NcPlace& place_;
   NcParameters& parameters_;
+  Progress progress_;
+  double again_ = 0;         // lines that were read not for the first time
+  std::uint64_t lines_ = 0;  // in all
   std::vector<Frame> frames_;
   bool used_ = false;
   NcSource::Mark line_mark_;  // of the line that advance() gave last

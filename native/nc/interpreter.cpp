@@ -37,7 +37,8 @@ NcInterpreter::NcInterpreter(std::unique_ptr<NcSource> source, const std::filesy
   if (!folder.empty()) given_.folders.push_back(folder);
   take_options(options);
   if (given_.check_header) check_header(*source, rows_->machine());
-  flow_ = std::make_unique<NcControlFlow>(std::move(source), given_.folders, given_.max_turns, place_, parameters_);
+  flow_ = std::make_unique<NcControlFlow>(std::move(source), given_.folders, given_.max_turns, place_, parameters_,
+                                          options.progress);
   words_ = std::make_unique<NcWords>(rows_->machine().axes(), place_, given_.skip_unknown ? &skipped_here_ : nullptr);
   use_positions();
   frame_ = frame_of_parameters();

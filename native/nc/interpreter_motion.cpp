@@ -332,7 +332,7 @@ void NcInterpreter::drill_at(int code) {
       go(height(z), rapid);
     });
     words.spindle = turning;
-    if (rows_->pending().size() > kMaxRows) fail_rows();
+    if (rows_->pending().size() > kMaxChords) place_.fail("a canned cycle of too many moves: L is too large");
   }
 }
 

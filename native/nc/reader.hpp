@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "geom/progress.hpp"
 #include "nc/options.hpp"
 #include "nc/program.hpp"
 
@@ -22,6 +23,8 @@ struct ReadOptions {
   /// LinuxCNC's parameters (work offsets, G28); "max_turns" of loops and calls (default 1e6), after which a program
   /// counts as endless.
   Options options;
+  /// Called from the calling thread, some thousand lines apart, with the share of the text that has been read.
+  Progress progress{};
 };
 
 /// `options` without those of the reader alone: what the same machine takes for other work.
@@ -29,7 +32,8 @@ Options without_reading(Options options);
 
 /// One row per move end; rows of one block have its line. `file` (base name) stands in messages. FormatError naming the
 /// line, with its text, for everything that is not understood in full; docs/reading-nc.md says what is. Poses are in
-/// the coordinates in which the first move is programmed; offsets that change later move what comes after.
+/// the coordinates in which the first move is programmed; offsets that change later move what comes after. Cancelled
+/// where the progress callback says so.
 Program parse_nc(std::string_view text, const std::string& file, const ReadOptions& options = {});
 
 Program read_nc(const std::filesystem::path& path, const ReadOptions& options = {});

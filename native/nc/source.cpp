@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "geom/error.hpp"
+#include "geom/io.hpp"
 
 namespace riffler {
 
@@ -19,10 +20,11 @@ void NcPlace::fail(const std::string& what) const {
 }
 
 NcSource::NcSource(const std::filesystem::path& path, std::size_t window) : name_(path.filename().string()) {
-  std::error_code code;
-  if (std::filesystem::is_directory(path, code)) throw FormatError(name_, "", "is a directory, not a file");
+  check_regular(path);
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) throw FormatError(name_, "", std::string("cannot be opened: ") + std::strerror(errno));
+  std::error_code unknown;
+  if (const auto size = std::filesystem::file_size(path, unknown); !unknown) size_ = static_cast<double>(size);
   buffer_.resize(window);
 }
 

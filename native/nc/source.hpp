@@ -1,6 +1,7 @@
 // Text of NC code, line by line, from memory or from a file that is larger than memory; control flow jumps within it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -30,7 +31,8 @@ class NcSource {
   };
 
   /// Keeps `text`, which must outlive it.
-  NcSource(std::string_view text, std::string name) : name_(std::move(name)), window_(text) {}
+  NcSource(std::string_view text, std::string name)
+      : name_(std::move(name)), window_(text), size_(static_cast<double>(text.size())) {}
   /// Reads the file in windows of `window` bytes, which no line may exceed. FormatError where it cannot be opened.
   explicit NcSource(const std::filesystem::path& path, std::size_t window = 1 << 18);
 
@@ -42,6 +44,8 @@ class NcSource {
   void go(const Mark& mark);
 
   const std::string& name() const { return name_; }
+  /// Of the text, how much has been given, in [0, 1].
+  double share() const { return size_ > 0 ? std::min(1.0, static_cast<double>(base_ + at_) / size_) : 1; }
 
  private:
   struct Close {
@@ -56,6 +60,7 @@ class NcSource {
   std::uint64_t base_ = 0;  // of the window in the text
   std::size_t at_ = 0;      // in the window
   int line_ = 0;
+  double size_ = 0;  // bytes
 };
 
 }  // namespace riffler

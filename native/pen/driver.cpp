@@ -145,6 +145,7 @@ Driver::~Driver() {
 }
 
 bool Driver::stop(double seconds) {
+  if (!home_.here()) return false;
   std::unique_lock lock(shared_->mutex);
   shared_->stopping = true;
   shared_->changed.notify_all();
@@ -156,6 +157,7 @@ LinkStatus Driver::status() const noexcept {
 }
 
 std::string Driver::problem() const {
+  if (!home_.here()) return "the device is driven by the process that this one was forked from";
   const std::lock_guard lock(shared_->mutex);
   return shared_->text;
 }

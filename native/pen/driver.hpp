@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "geom/own_thread.hpp"
 #include "pen/driver_loop.hpp"
 
 namespace riffler {
@@ -25,7 +26,8 @@ class Driver {
   Driver& operator=(const Driver&) = delete;
 
   /// The device is told not to push and closed, and both threads end. False where that takes longer than `seconds`, a
-  /// system call that does not come back: the threads are then left to themselves, and end when it does.
+  /// system call that does not come back: the threads are then left to themselves, and end when it does. Nor in a
+  /// process that was forked from that of the threads: the device is not its own.
   bool stop(double seconds = 2);
 
   /// As of the last tick. Any thread; never waits.
@@ -36,6 +38,7 @@ class Driver {
  private:
   struct Shared;
   std::shared_ptr<Shared> shared_;
+  HomeProcess home_;
 };
 
 /// Of the system: std::chrono::steady_clock.

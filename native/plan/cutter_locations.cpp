@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "geom/numbers.hpp"
 #include "geom/parallel.hpp"
 #include "plan/contact_location.hpp"
 #include "plan/lift.hpp"
@@ -13,6 +14,8 @@
 namespace riffler {
 
 namespace {
+
+constexpr int kMostInserted = 100'000;
 
 constexpr const char* kOf[] = {"the cutter meets the part", "the shank meets the part", "the holder meets the part",
                                "a fixture is in the way"};
@@ -36,11 +39,11 @@ void check(const PencilPath& path, const LocationRule& rule) {
   if (path.axes.size() != path.size() || path.axes.empty())
     throw std::invalid_argument("path: has no axes; orient it first");
   if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
-  if (!(rule.tolerance > 0) || !std::isfinite(rule.tolerance))
-    throw std::invalid_argument("tolerance must be positive and finite");
+  require_tolerance(rule.tolerance);
   if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
     throw std::invalid_argument("max_lift must be finite and not negative");
-  if (rule.max_inserted < 0) throw std::invalid_argument("max_inserted must not be negative");
+  if (rule.max_inserted < 0 || rule.max_inserted > kMostInserted)
+    throw std::invalid_argument("max_inserted must be from 0 to " + std::to_string(kMostInserted));
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
 }
 

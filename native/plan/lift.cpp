@@ -5,11 +5,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/parallel.hpp"
 #include "plan/point_lift.hpp"
 
 namespace riffler {
 
 namespace {
+
+constexpr int kLooksAReport = 16;
 
 class Climb {
  public:
@@ -50,6 +53,7 @@ class Climb {
 
   void look(double h) {
     at_ = h;
+    if (out_.evaluations % kLooksAReport == 0) still_wanted();
     now_ = collider_.nearest(assembly_, {pose_.tip + h * pose_.axis, pose_.axis});
     if (++out_.evaluations == 1) out_.before = now_.distance;
   }

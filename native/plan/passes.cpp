@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "geom/numbers.hpp"
+
 namespace riffler {
 
 namespace {
@@ -50,10 +52,13 @@ std::optional<Touch> beside(const RollingBall& ball, const Station& s, int side,
 }  // namespace
 
 double stepover_of_scallop(double radius, double height) {
+  require_finite(radius, "radius"), require_finite(height, "scallop");
   return 2 * std::sqrt(std::max(0.0, height * (2 * radius - height)));
 }
 
-std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& valley, int count, double stepover) {
+std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& valley, int count, double stepover,
+                                      const Progress& progress) {
+  constexpr std::size_t kStationsAReport = 16;
   std::vector<PencilPath> passes;
   for (int side = 0; side < 2; ++side)
     for (int k = 1; k <= count; ++k) {
@@ -64,7 +69,9 @@ std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& val
         if (pass.size() > 1) passes.push_back(pass);
         pass.centres.clear(), pass.contacts.clear(), pass.normals.clear();
       };
-      for (const Station& s : valley.stations) {
+      for (std::size_t n = 0; n < valley.stations.size(); ++n) {
+        const Station& s = valley.stations[n];
+        if (n % kStationsAReport == 0) report(progress, 0);
         if (const auto touch = beside(ball, s, side, k * stepover)) {
           pass.centres.push_back(touch->centre);
           pass.contacts.push_back({touch->contact, touch->contact});

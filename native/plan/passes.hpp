@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "plan/path.hpp"
 #include "plan/valley.hpp"
 
@@ -13,6 +14,7 @@ double stepover_of_scallop(double radius, double height);
 
 /// `count` passes at multiples of `stepover` (mm) on each side of a traced valley, away from it: balls that touch the
 /// part at one point, which stands for both contacts. A pass ends where the ball cannot be, and goes on behind.
-std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& valley, int count, double stepover);
+std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& valley, int count, double stepover,
+                                      const Progress& progress = {});
 
 }  // namespace riffler

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "geom/numbers.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/orient.hpp"
 #include "mesh/smooth.hpp"
@@ -16,6 +17,10 @@
 namespace riffler {
 
 namespace {
+
+constexpr double kWidestStep = 10;    // radii: beside a valley
+constexpr double kLargestBall = 100;  // sizes of the part
+constexpr double kMostCells = 1e9;    // of the net
 
 /// The lengths that a search goes by, mm.
 struct Scales {
@@ -265,7 +270,7 @@ void check(double radius, const PencilOptions& options) {
     if (!(x > 0) || !std::isfinite(x)) throw std::invalid_argument(std::string(name) + " must be positive and finite");
   };
   positive(radius, "radius");
-  positive(options.tolerance, "tolerance");
+  require_tolerance(options.tolerance);
   if (const auto& angle = options.bitangency_angle; angle && !(*angle > 0 && *angle < 3.14159))
     throw std::invalid_argument("bitangency_angle must be between 0 and pi");
   if (!(options.minimum_length >= 0) || !std::isfinite(options.minimum_length))
@@ -274,6 +279,19 @@ void check(double radius, const PencilOptions& options) {
     throw std::invalid_argument("overthickness must not be negative, and finite");
   if (options.passes < 1 || options.passes > 1000) throw std::invalid_argument("passes must be from 1 to 1000");
   if (options.stepover) positive(*options.stepover, "stepover");
+  if (options.stepover && !(*options.stepover <= kWidestStep * radius))
+    throw std::invalid_argument("stepover must be at most ten times the ball's radius");
+}
+
+/// A ball that is much larger than the part touches it everywhere at once, and one that is much smaller has no end.
+void check_sizes(const Mesh& part, double radius, double spacing) {
+  const double size = glm::length(bounds(part).size());
+  if (radius > kLargestBall * size)
+    throw std::invalid_argument("tool: the ball's radius is more than 100 times the part's size: check the units");
+  if (area(part) > kMostCells * spacing * spacing)
+    throw std::invalid_argument(
+        "tool: the ball is too small for the part, which it would have to be laid on more than a billion "
+        "times: check the units");
 }
 
 /// What a ball that is larger by the overthickness leaves beyond the ball's own valleys. Where that is something, as in
@@ -320,6 +338,7 @@ PencilResult pencil(const Mesh& given, double radius, const PencilOptions& optio
   std::optional<Mesh> storage;
   const Mesh& part = as_solid(given, storage, Hollow::Kept);
   const Scales scales(part, radius, options.tolerance);
+  check_sizes(part, radius + options.overthickness, scales.spacing);
   const RollingBall ball(part, radius, scales.touch);
   report(progress, 0.05);
 
@@ -332,7 +351,8 @@ PencilResult pencil(const Mesh& given, double radius, const PencilOptions& optio
     add_rest(part, ball, options, own.valleys, result, riffler::part(progress, share, 0.95));
   const double stepover = options.stepover.value_or(stepover_of_scallop(radius, std::min(radius, options.tolerance)));
   for (Valley& valley : own.valleys) {
-    const std::vector<PencilPath> passes = passes_beside(ball, valley, options.passes - 1, stepover);
+    const std::vector<PencilPath> passes =
+        passes_beside(ball, valley, options.passes - 1, stepover, riffler::part(progress, 0.95, 1));
     simplify(valley, options.tolerance);
     PencilPath path = path_of(valley, radius);
     for (const ValleyEnd end : valley.ends) result.stats.cut += end == ValleyEnd::Cut ? 1 : 0;

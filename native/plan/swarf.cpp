@@ -7,6 +7,7 @@
 #include <string>
 
 #include "geom/math.hpp"
+#include "geom/numbers.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/closest.hpp"
 #include "plan/cc_frame.hpp"
@@ -137,8 +138,7 @@ class Wall {
 
 void check(const PencilPath& path, const SwarfOptions& options) {
   if (options.side != 0 && options.side != 1) throw std::invalid_argument("side must be 0 or 1");
-  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
-    throw std::invalid_argument("tolerance must be positive and finite");
+  require_tolerance(options.tolerance);
   if (path.size() < 2) throw std::invalid_argument("path has fewer than two points");
 }
 

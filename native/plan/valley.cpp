@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/parallel.hpp"
+
 namespace riffler {
 
 namespace {
@@ -208,6 +210,7 @@ ValleyEnd ValleyTracer::follow(const Station& seed, double sign, std::vector<Sta
   Station before = seed, last = seed, next;
   for (std::size_t n = 0; n < kMaxStations; ++n) {
     ++steps;
+    still_wanted();
     const Event met = advance(last, sign, step, next);
     if (met != Event::None) {
       event = met, bracket = step, step *= 0.5, calm = 0;

@@ -19,9 +19,12 @@ namespace riffler {
 
 using namespace journal_format;
 
-Journal parse_journal(View bytes, const std::string& name) {
+Journal parse_journal(View bytes, const std::string& name, const Progress& progress) {
+  constexpr std::size_t kRecordsAReport = 1024;
   Journal journal;
+  std::size_t records = 0;
   for (std::size_t at = check_header(bytes, name); at < bytes.size();) {
+    if (records++ % kRecordsAReport == 0) report(progress, static_cast<double>(at) / static_cast<double>(bytes.size()));
     const View rest = bytes.subspan(at);
     const std::optional<Record> record = whole_record(rest);
     const std::string where = "byte " + std::to_string(at);
@@ -40,8 +43,8 @@ Journal parse_journal(View bytes, const std::string& name) {
   return journal;
 }
 
-Journal read_journal(const std::filesystem::path& path) {
-  return parse_journal(read_file(path), path.filename().string());
+Journal read_journal(const std::filesystem::path& path, const Progress& progress) {
+  return parse_journal(read_file(path), path.filename().string(), progress);
 }
 
 std::vector<std::uint8_t> to_bytes(const Journal& journal) {
@@ -103,6 +106,8 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : nam
   if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by somebody else");
   struct stat status{};
   if (fstat(file.get(), &status) != 0) fail_system(name_, "cannot be read");
+  if (!S_ISREG(status.st_mode))
+    throw std::runtime_error(name_ + ": is a pipe or a device, not a file: take another name");
   Journal journal;
   if (status.st_size == 0) {
     append_to(file.get(), journal_header());

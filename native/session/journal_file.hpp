@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "geom/progress.hpp"
 #include "session/journal.hpp"
 
 namespace riffler {
@@ -23,8 +24,8 @@ namespace riffler {
 /// `name` stands in messages. FormatError naming the byte: not a journal, another version, a damaged record that others
 /// follow, a record whose content is wrong. What follows the last whole record otherwise is a tail that a crash has
 /// cut: Journal::cut_at says where.
-Journal parse_journal(std::span<const std::uint8_t> bytes, const std::string& name);
-Journal read_journal(const std::filesystem::path& path);
+Journal parse_journal(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress = {});
+Journal read_journal(const std::filesystem::path& path, const Progress& progress = {});
 
 std::vector<std::uint8_t> to_bytes(const Journal& journal);
 /// Written beside and renamed.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geom/numbers.hpp"
 #include "nc/limits.hpp"
 #include "nc/program.hpp"
 
@@ -75,7 +76,7 @@ void JournalRules::add_tool(int number, const std::string& json) {
 void JournalRules::add_stroke(const JournalStroke& stroke) {
   if (!tools_.contains(stroke.tool))
     fail("tool " + std::to_string(stroke.tool) + " is not in the journal: add it first");
-  if (!(std::isfinite(stroke.tolerance) && stroke.tolerance > 0)) fail("tolerance must be positive and finite");
+  require_tolerance(stroke.tolerance);
   if (!(stroke.strength >= 0 && stroke.strength <= 1)) fail("strength must be from 0 to 1");
   if (stroke.poses.empty()) fail("a stroke needs at least one pose");
   const std::size_t rows = stroke.poses.size();

@@ -227,6 +227,7 @@ void JournalStream::use(const std::function<void(JournalWriter&)>& f) {
 }
 
 std::string JournalStream::problem() const {
+  if (!home_.here()) return "the journal is written by another process";
   const std::scoped_lock lock(told_);
   if (!write_problem_.empty()) return write_problem_;
   if (!sync_problem_.empty()) return sync_problem_;
@@ -238,8 +239,8 @@ std::string JournalStream::problem() const {
 void JournalStream::start() {
   if (keeper_.joinable()) return;
   stopping_ = sync_wanted_ = false;
-  syncer_ = std::thread([this] { keep_synced(); });
-  keeper_ = std::thread([this] { keep(); });
+  syncer_ = OwnThread([this] { keep_synced(); });
+  keeper_ = OwnThread([this] { keep(); });
 }
 
 void JournalStream::keep() {
@@ -251,15 +252,15 @@ void JournalStream::keep() {
     write(now);
     const bool due = sync_due(now);
     lock.lock();
-    if (due) sync_wanted_ = true, wake_.notify_all();
-    wake_.wait_for(lock, pause, [this] { return stopping_; });
+    if (due) sync_wanted_ = true, wake_->notify_all();
+    wake_->wait_for(lock, pause, [this] { return stopping_; });
   }
 }
 
 void JournalStream::keep_synced() {
   std::unique_lock lock(sleeping_);
   while (true) {
-    wake_.wait(lock, [this] { return stopping_ || sync_wanted_; });
+    wake_->wait(lock, [this] { return stopping_ || sync_wanted_; });
     if (stopping_) return;
     sync_wanted_ = false;
     lock.unlock();
@@ -269,13 +270,14 @@ void JournalStream::keep_synced() {
 }
 
 bool JournalStream::stop() {
+  if (!home_.here()) return false;
   {
     const std::scoped_lock lock(sleeping_);
     stopping_ = true;
   }
-  wake_.notify_all();
-  if (keeper_.joinable()) keeper_.join();
-  if (syncer_.joinable()) syncer_.join();
+  wake_->notify_all();
+  keeper_.join();
+  syncer_.join();
   const auto at_once = [this] {
     const std::scoped_lock lock(writing_);
     retry_at_ = kNever;

@@ -10,9 +10,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "geom/own_thread.hpp"
 #include "session/journal_file.hpp"
 
 namespace riffler {
@@ -62,7 +62,8 @@ class JournalStream {
 
   /// The keeper, and one beside it who waits for the disk, in threads of their own.
   void start();
-  /// Writes and syncs what is there. False where the disk refuses: the rows wait for the next start().
+  /// Writes and syncs what is there. False where the disk refuses: the rows wait for the next start(); and in a process
+  /// that was forked from that of the journal, which leaves the file alone.
   bool stop();
   /// What the keeper does at the time `now` (s): for tests, and for those with a thread of their own. Not after
   /// start().
@@ -127,9 +128,10 @@ class JournalStream {
   std::string write_problem_, sync_problem_, refusal_;
 
   std::mutex sleeping_;
-  std::condition_variable wake_;
+  HomeOnly<std::condition_variable> wake_;
+  HomeProcess home_;
   bool stopping_ = false, sync_wanted_ = false;
-  std::thread keeper_, syncer_;
+  OwnThread keeper_, syncer_;
 };
 
 }  // namespace riffler

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "geom/numbers.hpp"
 #include "geom/thread_time.hpp"
 #include "haptics/coupling.hpp"
 
@@ -36,6 +37,7 @@ SculptSettings at_tool(SculptSettings settings, double scale) {
 
 void SculptLoopSettings::validate() const {
   sculpt.validate();
+  require_tolerance(carving.tolerance);
   if (sculpt.parts != 1) throw std::invalid_argument("parts must be 1 in a session: it records a pose for each tick");
   limits.validate();
   passivity.validate();

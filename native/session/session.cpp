@@ -56,6 +56,11 @@ Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen
 }
 
 Session::~Session() {
+  if (!home_.here()) {  // a thread that is missing here may hold what these would wait for
+    static_cast<void>(new std::shared_ptr<SculptLoop>(std::move(loop_)));
+    static_cast<void>(new std::shared_ptr<Pen>(std::move(pen_)));
+    return;
+  }
   Volume nobody = moments_[here_].volume;
   shown_ = nobody.revision();
   stop(nobody);
@@ -78,7 +83,7 @@ void Session::start() {
   loop_ = std::make_shared<SculptLoop>(settings_.loop, moments_[0].cut(), tool_, obstacles_.get(), pen_->capability(),
                                        start_pose(), sink_.get());
   reserve_.fill(kLargestBlock, kBlocks);
-  if (!pen_->set_step(loop_)) poller_ = std::thread([this] { poll(); });
+  if (!pen_->set_step(loop_)) poller_ = OwnThread([this] { poll(); });
   state_ = State::Running;
 }
 
@@ -95,20 +100,27 @@ void Session::poll() noexcept {
 }
 
 SessionFrame Session::stop(Volume& shown) {
-  SessionFrame frame;
-  if (state_ != State::Running) return frame;
-  frame = std::exchange(kept_, {});
+  if (state_ != State::Running) return std::exchange(kept_, {});
+  home_.check("the session");
+  SessionFrame frame = std::exchange(kept_, {});
   pen_->set_step(nullptr);
   ending_ = true;
-  if (poller_.joinable()) poller_.join();
+  poller_.join();
   loop_->finish();
   state_ = State::Ended;
-  look(shown, frame);
+  try {
+    look(shown, frame);
+  } catch (...) {
+    take_ticks(frame);
+    kept_ = std::move(frame);
+    throw;
+  }
   return frame;
 }
 
 SessionFrame Session::frame(Volume& shown) {
   if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  home_.check("the session");
   SessionFrame frame = std::exchange(kept_, {});
   look(shown, frame);
   std::ranges::sort(frame.tiles, {}, [](const TileExchange::Place& p) { return std::pair(p.grid, p.tile); });
@@ -127,13 +139,20 @@ TileExchange::Mark Session::follow(Volume& shown, std::vector<TileExchange::Plac
   return mark;
 }
 
+void Session::take_ticks(SessionFrame& frame) {
+  for (SculptTick tick; loop_->take(tick);) frame.ticks.push_back(tick);
+  frame.strokes = strokes_, frame.untold = loop_->untold();
+}
+
 void Session::look(Volume& shown, SessionFrame& frame) {
   if (shown.revision() != shown_)
-    throw std::runtime_error("the volume was changed by somebody else while the session ran; stop the session first");
+    throw std::runtime_error(
+        "the volume was changed by something else while the session ran: what was cut since the last frame is not in "
+        "it. Stop the session before you change its volume");
   const TileExchange::Mark mark = follow(shown, frame.tiles);
   shown_ = shown.revision();
-  for (SculptTick tick; loop_->take(tick);) frame.ticks.push_back(tick);
-  frame.strokes = mark.strokes, frame.in_stroke = mark.in_stroke, frame.untold = loop_->untold();
+  take_ticks(frame);
+  frame.strokes = mark.strokes, frame.in_stroke = mark.in_stroke;
   if (mark.in_stroke || mark.strokes == strokes_) return;
   moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(here_) + 1, moments_.end());  // nothing to redo
   moments_.push_back({mark.strokes - std::exchange(strokes_, mark.strokes), shown, left_});
@@ -153,6 +172,7 @@ std::size_t Session::redo(Volume& shown) {
 std::size_t Session::go_to(Volume& shown, int step, const char* what) {
   SessionFrame frame;
   if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  home_.check("the session");
   look(shown, frame);
   if (frame.in_stroke) throw std::runtime_error(std::string("nothing can be ") + what + " in the middle of a stroke");
   std::copy(frame.ticks.begin(), frame.ticks.end(), std::back_inserter(kept_.ticks));

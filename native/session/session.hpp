@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "geom/block_pool.hpp"
+#include "geom/own_thread.hpp"
 #include "pen/device.hpp"
 #include "session/cuttable.hpp"
 #include "session/sculpt_loop.hpp"
@@ -58,11 +58,14 @@ class Session {
   /// The device's thread sculpts from now on: its own, or one that asks it a thousand times a second. Once.
   void start();
   bool running() const noexcept { return state_ == State::Running; }
-  /// The device does not push any more, and everything that was cut is in `shown`. Nothing where it does not run.
+  /// The device does not push any more, and everything that was cut is in `shown`. Nothing where it does not run. As
+  /// frame() for a volume that was changed by something else, but the session has stopped all the same: the next call
+  /// gives its last ticks.
   SessionFrame stop(Volume& shown);
 
   /// Brings `shown` up to date: the volume of the start, which nobody else changes while the session runs; otherwise
-  /// std::runtime_error. Waits for the next step, 3 ms at most.
+  /// std::runtime_error. In a process that was forked while the session ran, all of these throw. Waits for the next
+  /// step, 3 ms at most.
   SessionFrame frame(Volume& shown);
 
   /// The last stroke, or the last few that ended between two frames, did not happen. How many that were: 0 where there
@@ -89,6 +92,7 @@ class Session {
   std::optional<Pose> start_pose() const;
   void poll() noexcept;
   TileExchange::Mark follow(Volume& shown, std::vector<TileExchange::Place>& places);
+  void take_ticks(SessionFrame& frame);
   void look(Volume& shown, SessionFrame& frame);
   std::size_t go_to(Volume& shown, int step, const char* what);
   void note_differences(const Volume& from, const Volume& to);
@@ -100,7 +104,8 @@ class Session {
   std::shared_ptr<StrokeSink> sink_;
   std::shared_ptr<SculptLoop> loop_;
   State state_ = State::New;
-  std::thread poller_;
+  OwnThread poller_;
+  HomeProcess home_;
   std::atomic<bool> ending_{false};
   BlockReserve reserve_;
 

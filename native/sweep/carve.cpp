@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/numbers.hpp"
 #include "sweep/clay.hpp"
 #include "sweep/grid_carver.hpp"
 
@@ -42,22 +43,21 @@ void check_path(std::span<const Pose> poses) {
 }
 
 void check_options(const CarveOptions& options, std::size_t moves) {
-  if (!std::isfinite(options.tolerance) || !(options.tolerance > 0))
-    throw std::invalid_argument("tolerance must be a positive length in mm");
-  if (!std::isfinite(options.removal_constant) || options.removal_constant < 0)
-    throw std::invalid_argument("removal_constant must not be negative");
+  require_tolerance(options.tolerance);
+  require_between(options.removal_constant, 0, kMaxConstant, "removal_constant", "a number", "N·s/mm³, not negative");
   if (!options.dt.empty() && options.dt.size() != moves)
     throw std::invalid_argument("dt must have one value per move: " + std::to_string(moves) + ", not " +
                                 std::to_string(options.dt.size()));
   for (std::size_t i = 0; i < options.dt.size(); ++i)
-    if (!std::isfinite(options.dt[i]) || !(options.dt[i] > 0))
-      throw std::invalid_argument("dt, row " + std::to_string(i) + ": must be a positive time in s");
+    if (!(options.dt[i] >= kMinTime && options.dt[i] <= kMaxTime))
+      require_time(options.dt[i], "dt, row " + std::to_string(i) + ":");
 }
 
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options) {
   const std::size_t moves = poses.empty() ? 0 : poses.size() - 1;
   check_path(poses);
   check_options(options, moves);
+  require_tolerance_for(options.tolerance, std::max(tool.length(), tool.diameter()));
   check_memory(moves);
   if (options.mode == CarveMode::Add || options.protect) return carve_clay(volume, tool, poses, options);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};

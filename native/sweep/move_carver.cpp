@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "geom/numbers.hpp"
+
 namespace riffler {
 
 MoveCarver::MoveCarver(Volume& volume, const Tool& tool, const Options& options)
@@ -9,6 +11,7 @@ MoveCarver::MoveCarver(Volume& volume, const Tool& tool, const Options& options)
   options_.tolerance = options.tolerance, options_.removal_constant = options.removal_constant;
   options_.dt = {1};
   check_options(options_, 1);
+  require_tolerance_for(options_.tolerance, std::max(tool.length(), tool.diameter()));
   carvers_.reserve(volume.grids().size());
   for (Grid& grid : volume.grids())
     carvers_.emplace_back(grid, &grid == &volume.reference(), options_, cut_, &rollback_);

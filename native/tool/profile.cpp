@@ -20,7 +20,7 @@ bool bulges(const Vec2& from, const Vec2& to, const Vec2& centre) {
 }
 
 void check_arc(std::size_t i, const Vec2& from, const Vec2& to, const Vec2& centre) {
-  const double r = glm::length(from - centre), slack = 1e-6 * r;
+  const double r = glm::length(from - centre), slack = std::min(1e-6 * r, Profile::kConcaveTolerance);
   if (!(r > 0) || std::abs(glm::length(to - centre) - r) > slack)
     refuse(i, "the arc's two ends are not equally far from its centre");
   const bool right = from.x >= centre.x - slack && to.x >= centre.x - slack;
@@ -72,6 +72,8 @@ Profile::Profile(std::vector<ProfileSegment> segments) : segments_(std::move(seg
     if (s.to.y < from.y) refuse(i, "its height falls; heights go from the tip upwards");
     if (s.centre) {
       if (!std::isfinite(s.centre->x) || !std::isfinite(s.centre->y)) refuse(i, "its centre is not finite");
+      if (std::max(std::abs(s.centre->x), std::abs(s.centre->y)) > kLargest)
+        refuse(i, "its centre is farther away than 1e6 mm; where the arc is that flat, a line will do");
       check_arc(i, from, s.to, *s.centre);
       if (bulges(from, s.to, *s.centre) && s.centre->y > from.y && s.centre->y < s.to.y)
         max_radius_ = std::max(max_radius_, s.centre->x + glm::length(from - *s.centre));

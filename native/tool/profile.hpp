@@ -20,7 +20,8 @@ struct ProfileSegment {
 class Profile {
  public:
   /// Throws std::invalid_argument naming the segment that is not finite, has a negative radius, falls, or whose arc
-  /// does not pass through both its ends (by more than 1e-6 of its radius), or that reaches further than kLargest.
+  /// does not pass through both its ends (by more than 1e-6 of its radius, or than kConcaveTolerance), or that reaches
+  /// further than kLargest, its centre too.
   explicit Profile(std::vector<ProfileSegment> segments);
 
   const std::vector<ProfileSegment>& segments() const { return segments_; }

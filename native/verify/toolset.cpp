@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/numbers.hpp"
+
 namespace riffler {
 
 namespace {
@@ -69,6 +71,7 @@ std::vector<std::uint32_t> Toolset::places(const Program& program, std::int64_t 
 std::uint32_t Toolset::place(int number, const Tool& tool) {
   for (std::size_t k = 0; k < tools_.size(); ++k)
     if (numbers_[k] == number && same_shape(tools_[k], tool)) return static_cast<std::uint32_t>(k);
+  require_tolerance_for(tolerance_, std::max(tool.length(), tool.diameter()));
   numbers_.push_back(number), tools_.push_back(tool);
   shapes_.emplace_back(tool, tolerance_, reach_, pitch_);
   return static_cast<std::uint32_t>(shapes_.size() - 1);

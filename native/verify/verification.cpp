@@ -6,8 +6,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/numbers.hpp"
 #include "geom/parallel.hpp"
 #include "mesh/orient.hpp"
+#include "nc/limits.hpp"
 #include "verify/rest.hpp"
 #include "verify/timing.hpp"
 
@@ -15,17 +17,11 @@ namespace riffler {
 
 namespace {
 
-void check_length(double value, const char* name) {
-  if (!std::isfinite(value) || !(value > 0))
-    throw std::invalid_argument(std::string(name) + " must be a positive length in mm");
-}
-
 const VerifyOptions& checked(const VerifyOptions& options) {
-  check_length(options.tolerance, "tolerance");
-  check_length(options.gouge_tolerance, "gouge_tolerance");
-  if (options.rest_tolerance) check_length(*options.rest_tolerance, "rest_tolerance");
-  if (!std::isfinite(options.rapid_feed) || !(options.rapid_feed > 0))
-    throw std::invalid_argument("rapid_feed must be a positive feed in mm/min");
+  require_tolerance(options.tolerance);
+  require_tolerance(options.gouge_tolerance, "gouge_tolerance");
+  if (options.rest_tolerance) require_tolerance(*options.rest_tolerance, "rest_tolerance");
+  require_between(options.rapid_feed, kMinFeed, kMaxFeed, "rapid_feed", "a positive feed", "mm/min");
   return options;
 }
 

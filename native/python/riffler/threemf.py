@@ -7,12 +7,15 @@ vertex.
 
 from __future__ import annotations
 
+import codecs
 import ctypes
 import hashlib
+import io
 import locale
-import os
-import tempfile
+import re
 import uuid
+import zipfile
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,11 +23,15 @@ from typing import Any
 
 import numpy as np
 
+from . import files
 from ._core import FormatError
 
 # mm in one unit of a file; 3MF has no others.
 UNITS = {"MicroMeter": 0.001, "MilliMeter": 1.0, "CentiMeter": 10.0, "Inch": 25.4, "Foot": 304.8, "Meter": 1000.0}
 DEEPEST = 64  # components within components
+MOST_PLACED = 10_000  # meshes and components: lib3mf takes some 0.3 ms for each
+MOST_BYTES = 1 << 32  # unpacked
+MOST_TRIANGLES = 50_000_000  # of all copies together: what a file of some kilobytes may ask for has no other bound
 LARGEST = 1e30
 DECIMALS = 9  # 3MF is text; lib3mf's usual six would make one of two float32 values that are neighbours
 NAMES = uuid.UUID("5b0e7a3e-6f0b-5d0c-9c53-2a4f8b7d1e66")
@@ -56,10 +63,8 @@ def read(path: str) -> tuple[np.ndarray, np.ndarray]:
     Items and components stand where their transforms put them; those that are support are left out.
     """
     lib, name = library(), Path(path).name
-    try:
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise FormatError(f"{name}: {error.strerror}") from error
+    data = files.read(path)
+    check_copies(data, name)
     try:
         model = lib.get_wrapper().CreateModel()
         reader = model.QueryReader("3mf")
@@ -69,7 +74,7 @@ def read(path: str) -> tuple[np.ndarray, np.ndarray]:
         # What stands in a namespace of its own, as slicers' additions do, is no reason to warn.
         if reader.GetWarningCount():
             raise FormatError(f"{name}: {reader.GetWarning(0)[1]} Expected what 3MF's core specification has")
-        pieces = list(items(lib, model, name))
+        pieces = list(Build(lib, model, name).pieces())
         scale = UNITS[model.GetUnit().name]
     except lib.ELib3MFException as error:
         raise FormatError(f"{name}: expected a 3MF package with a model: {said(error)}") from error
@@ -85,32 +90,119 @@ def read(path: str) -> tuple[np.ndarray, np.ndarray]:
     return placed, np.concatenate(triangles)
 
 
-def items(lib: Any, model: Any, name: str):
-    """Vertices and triangles of every mesh that is to be built, placed, in the file's unit."""
-    iterator = model.GetBuildItems()
-    while iterator.MoveNext():
-        item = iterator.GetCurrent()
-        place = matrix(item.GetObjectTransform()) if item.HasObjectTransform() else np.eye(4, 3)
-        yield from placed(lib, model, item.GetObjectResource(), place, 0, name)
+TAG = re.compile(rb"""<(?:[\w.-]+:)?(object|component|item)\b((?:[^>"']|"[^"]*"|'[^']*')*)>""")
+ATTRIBUTE = re.compile(rb"""(?:^|[\s:])(id|objectid|path)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 
 
-def placed(lib: Any, model: Any, thing: Any, place: np.ndarray, depth: int, name: str):
-    if depth > DEEPEST:
-        raise FormatError(f"{name}: components within components, more than {DEEPEST} deep; expected no loop")
-    if thing.GetType() in (lib.ObjectType.Support, lib.ObjectType.SolidSupport):
-        return
-    if thing.IsMeshObject():
-        vertices, triangles = geometry(lib, model.GetMeshObjectByID(thing.GetResourceID()))
-        if np.linalg.det(place[:3]) < 0:  # mirrored: seen from outside the other way round
-            triangles = triangles[:, ::-1]
-        yield vertices @ place[:3] + place[3], triangles
-    elif thing.IsComponentsObject():
-        parts = model.GetComponentsObjectByID(thing.GetResourceID())
-        for k in range(parts.GetComponentCount()):
-            part = parts.GetComponent(k)
-            inner = matrix(part.GetTransform()) if part.HasTransform() else np.eye(4, 3)
-            together = np.concatenate([inner[:3] @ place[:3], inner[3:] @ place[:3] + place[3]])
-            yield from placed(lib, model, part.GetObjectResource(), together, depth + 1, name)
+def check_copies(data: bytes, name: str) -> None:
+    """FormatError for a package that asks for more copies than can be made.
+
+    lib3mf follows components while it reads, as often as they are placed: it must not be given such a file.
+    """
+    count = copies(tags(data, name), name)
+    if count > MOST_PLACED:
+        raise FormatError(f"{name}: more than {MOST_PLACED} meshes and components to build, copies counted")
+
+
+Key = tuple[str, bytes]  # a part of the package and an object's number in it
+
+
+def tags(data: bytes, name: str) -> tuple[dict[Key, list[Key]], list[Key]]:
+    """What every object consists of, and what is to be built."""
+    objects: dict[Key, list[Key]] = {}
+    build: list[Key] = []
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            if sum(entry.file_size for entry in archive.infolist()) > MOST_BYTES:
+                raise FormatError(f"{name}: more than {MOST_BYTES} bytes when it is unpacked")
+            for part in archive.namelist():
+                if not part.lower().endswith(".model"):
+                    continue
+                text = archive.read(part)
+                if b"\0" in text[:4] or text[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+                    text = text.decode("utf-16", "replace").encode()
+                here: list[Key] = []
+                for tag, rest in TAG.findall(text):
+                    said = {key: a or b for key, a, b in ATTRIBUTE.findall(rest)}
+                    other = said.get(b"path", b"").decode("utf-8", "replace").lstrip("/") or part
+                    if tag == b"object":
+                        here = objects.setdefault((part.lstrip("/"), said.get(b"id", b"")), [])
+                    else:
+                        (here if tag == b"component" else build).append((other.lstrip("/"), said.get(b"objectid", b"")))
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+        raise FormatError(f"{name}: expected a 3MF package with a model: {error}") from error
+    return objects, build
+
+
+def copies(found: tuple[dict[Key, list[Key]], list[Key]], name: str) -> int:
+    """Meshes and components that are placed when all is built."""
+    objects, build = found
+    count: dict[Key, int] = {}
+
+    def of(start: Key) -> int:
+        stack = [start]  # no recursion: chains may be long
+        inside = set()
+        while stack:
+            at = stack[-1]
+            waiting = [part for part in objects.get(at, ()) if part not in count]
+            if at in count or not waiting:
+                count[at] = min(MOST_PLACED + 1, 1 + sum(count[part] for part in objects.get(at, ())))
+                inside.discard(stack.pop())
+                continue
+            inside.add(at)
+            if waiting[0] in inside or len(stack) > DEEPEST:
+                raise FormatError(f"{name}: components within components, more than {DEEPEST} deep; expected no loop")
+            stack.append(waiting[0])
+        return count[start]
+
+    return max(sum(map(of, build)), *map(of, objects), 0)
+
+
+class Build:
+    """What a file says to build. A mesh is read once, however often it is placed, and copies are counted before they
+    are made."""
+
+    def __init__(self, lib: Any, model: Any, name: str) -> None:
+        self.lib, self.model, self.name = lib, model, name
+        self._meshes: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+        self._placed = self._triangles = 0
+
+    def pieces(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Vertices and triangles of every mesh that is to be built, placed, in the file's unit."""
+        iterator = self.model.GetBuildItems()
+        while iterator.MoveNext():
+            item = iterator.GetCurrent()
+            place = matrix(item.GetObjectTransform()) if item.HasObjectTransform() else np.eye(4, 3)
+            yield from self._place(item.GetObjectResource(), place, 0)
+
+    def _place(self, thing: Any, place: np.ndarray, depth: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        if depth > DEEPEST:
+            raise FormatError(f"{self.name}: components within components, more than {DEEPEST} deep; expected no loop")
+        self._placed += 1
+        if self._placed > MOST_PLACED:
+            raise FormatError(f"{self.name}: more than {MOST_PLACED} meshes and components to build")
+        if thing.GetType() in (self.lib.ObjectType.Support, self.lib.ObjectType.SolidSupport):
+            return
+        if thing.IsMeshObject():
+            vertices, triangles = self._mesh(thing.GetResourceID())
+            self._triangles += len(triangles)
+            if self._triangles > MOST_TRIANGLES:
+                raise FormatError(f"{self.name}: more than {MOST_TRIANGLES} triangles to build, copies counted")
+            if np.linalg.det(place[:3]) < 0:  # mirrored: seen from outside the other way round
+                triangles = triangles[:, ::-1]
+            yield vertices @ place[:3] + place[3], triangles
+        elif thing.IsComponentsObject():
+            parts = self.model.GetComponentsObjectByID(thing.GetResourceID())
+            for k in range(parts.GetComponentCount()):
+                part = parts.GetComponent(k)
+                inner = matrix(part.GetTransform()) if part.HasTransform() else np.eye(4, 3)
+                together = np.concatenate([inner[:3] @ place[:3], inner[3:] @ place[:3] + place[3]])
+                yield from self._place(part.GetObjectResource(), together, depth + 1)
+
+    def _mesh(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        if number not in self._meshes:
+            self._meshes[number] = geometry(self.lib, self.model.GetMeshObjectByID(number))
+        return self._meshes[number]
 
 
 def matrix(transform: Any) -> np.ndarray:
@@ -133,7 +225,7 @@ def geometry(lib: Any, mesh: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    """One object, one build item, in mm; beside its target and renamed, so whole or not at all."""
+    """One object, one build item, in mm; whole or not at all."""
     lib, target = library(), Path(path)
     model = lib.get_wrapper().CreateModel()
     model.SetUnit(lib.ModelUnit.MilliMeter)
@@ -149,25 +241,14 @@ def write(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
         # Otherwise drawn at random: the same mesh is to be the same file, but for the time in the archive.
         for name, thing in (("object", mesh.SetUUID), ("item", item.SetUUID), ("build", model.SetBuildUUID)):
             thing(str(uuid.uuid5(NAMES, f"{name} {hashlib.sha256(points.tobytes() + indices.tobytes()).hexdigest()}")))
-    beside: str | None = None
     try:
-        handle, beside = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-        os.close(handle)
         writer = model.QueryWriter("3mf")
         writer.SetDecimalPrecision(DECIMALS)
-        with locale_kept():
-            writer.WriteToFile(beside)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(beside, 0o666 & ~mask)
-        os.replace(beside, target)
-        beside = None
+        with files.drafting(target) as draft, locale_kept():
+            writer.WriteToFile(str(draft))
     except (OSError, lib.ELib3MFException) as error:
         reason = error.strerror if isinstance(error, OSError) else said(error)
         raise RuntimeError(f"cannot write {target}: {reason}") from error
-    finally:
-        if beside is not None:
-            os.unlink(beside)
 
 
 def said(error: Exception) -> str:

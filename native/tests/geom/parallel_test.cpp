@@ -60,5 +60,24 @@ TEST(Parallel, TheLastShareToldIsOneEvenWhereHelpersFinishTheWork) {
   unsetenv("RIFFLER_THREADS");
 }
 
+TEST(Parallel, ALongBodyHearsThatItsCallIsNotWantedAnyMore) {
+  setenv("RIFFLER_THREADS", "2", 1);
+  still_wanted();  // outside of any call
+  const auto for_ever = [](std::size_t, std::size_t) {
+    while (true) still_wanted();
+  };
+  int asked = 0;
+  EXPECT_THROW(parallel_for(2, 1, for_ever, [&](double) { return ++asked < 100; }), Cancelled);
+  EXPECT_GE(asked, 100);
+  // Another body has failed, in a call within this one.
+  EXPECT_THROW(parallel_for(2, 1,
+                            [&](std::size_t k, std::size_t) {
+                              if (k == 1) throw std::runtime_error("no");
+                              parallel_for(1, 1, for_ever);
+                            }),
+               std::runtime_error);
+  unsetenv("RIFFLER_THREADS");
+}
+
 }  // namespace
 }  // namespace riffler::parallel_test

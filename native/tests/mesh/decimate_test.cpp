@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <set>
@@ -311,6 +313,39 @@ TEST(Decimate, ProgressNeverGoesBack) {
     });
     EXPECT_GT(last, 0.85);
   }
+}
+
+/// Bounds on the proof's pieces, where a depth of halving is none: these took minutes and gigabytes.
+TEST(Decimate, AToleranceOfNearlyNothingEndsSoon) {
+  const auto start = std::chrono::steady_clock::now();
+  const Mesh block = subdivided(box_mesh({0.1, 0.2, 0.3}, {20.4, 14.7, 10.9}), 3);
+  int told = 0;
+  for (const double tolerance : {0.0, 1e-12, 1e-5, 2e-5}) {
+    const Mesh result = decimate(block, {.triangles = {}, .tolerance = tolerance}, [&](double) { return ++told > 0; });
+    EXPECT_LE(result.triangles.size(), block.triangles.size());
+    EXPECT_LE(std::max(one_way(result, block), one_way(block, result)), tolerance + 2e-6);
+  }
+  EXPECT_GT(told, 20);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+/// All triangles round two vertices: what a collapse looks at grew with all of them.
+TEST(Decimate, FansOfManyTrianglesTakeTimeByTheTriangle) {
+  constexpr int kMany = 50'000;
+  Mesh fan;
+  fan.vertices = {{0, 0, 30}, {0, 0, -30}};
+  for (int k = 0; k < kMany; ++k) {
+    const double angle = 2 * std::acos(-1.0) * k / kMany;
+    fan.vertices.emplace_back(100 * std::cos(angle), 100 * std::sin(angle), 0);
+  }
+  for (int k = 0; k < kMany; ++k) {
+    const int a = 2 + k, b = 2 + (k + 1) % kMany;
+    fan.triangles.emplace_back(0, a, b);
+    fan.triangles.emplace_back(1, b, a);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_LE(decimate(fan, {.triangles = 2000, .tolerance = {}}).triangles.size(), 2100U);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <utility>
 
 #include "geom/error.hpp"
 #include "geom/float32.hpp"
@@ -26,9 +27,10 @@ Bytes bytes_of(const std::string& text) {
   return {text.begin(), text.end()};
 }
 
+using From = Mesh (*)(std::span<const std::uint8_t>, const std::string&);
+
 /// The message of the FormatError, or what came instead.
-template <class Read>
-std::string error_of(const Read& read, const Bytes& bytes) {
+std::string error_of(From read, const Bytes& bytes) {
   try {
     read(bytes, "part");
   } catch (const FormatError& e) {
@@ -399,6 +401,27 @@ TEST(Weld, NumbersManyPointsInTheOrderOfTheirFirstAppearance) {
       next = std::max(next, v + 1);
       EXPECT_EQ(mesh.vertices[v], to_float32(torus.vertices[torus.triangles[t][k]]));
     }
+}
+
+TEST(Ply, AHeaderOfManyElementsIsRefused) {
+  std::string header = "ply\nformat ascii 1.0\n";
+  for (int k = 0; k < 100'000; ++k) header += "element e" + std::to_string(k) + " 0\n";
+  EXPECT_NE(error_of(from_ply, bytes_of(header + "end_header\n")).find("more than 1000 elements"), std::string::npos);
+}
+
+TEST(MeshFiles, ReadingIsHeardOfAndCanBeStopped) {
+  const Mesh sphere = subdivided(box_mesh({0, 0, 0}, {1, 1, 1}), 6);
+  const Bytes obj = to_obj(sphere), ply = to_ply(sphere);
+  for (int most = 1; most < 4; ++most) {
+    int asked = 0;
+    const auto stop = [&](double share) {
+      EXPECT_TRUE(share >= 0 && share <= 1);
+      return ++asked < most;
+    };
+    EXPECT_THROW(from_obj(obj, "o", stop), Cancelled);
+    EXPECT_EQ(std::exchange(asked, 0), most);
+    EXPECT_THROW(from_ply(ply, "p", stop), Cancelled);
+  }
 }
 
 }  // namespace

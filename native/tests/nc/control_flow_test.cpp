@@ -128,5 +128,28 @@ TEST(NcControlFlow, RestoresModesThatASubroutineChanged) {
   EXPECT_EQ(xs("M70\nG91 X5\nX5\nM72\nX5\nM71"), (Xs{5, 10, 5}));
 }
 
+TEST(NcControlFlow, LinesThatEveryTurnPassesOverAreCountedToo) {
+  std::string text = "o1 repeat [999990]\no2 if [0]\n";
+  for (int k = 0; k < 20'000; ++k) text += "G1 X1\n";
+  text += "o2 endif\no1 endrepeat\nM2\n";
+  EXPECT_NE(nc_error(text, "tcp", {{"max_turns", 1000.0}}).find("endless"), std::string::npos);
+  int asked = 0;
+  EXPECT_THROW(parse_nc(text, "a.ngc", {"tcp", {}, [&](double) { return ++asked < 3; }}), Cancelled);
+  EXPECT_EQ(asked, 3);
+}
+
+TEST(NcControlFlow, ALongProgramWithoutLoopsHasNoSuchBound) {
+  std::string text = "G1 F100\n";
+  for (int k = 0; k < 20'000; ++k) text += "X1\n";
+  double last = 0;
+  const Program p = parse_nc(text, "a.ngc", {"tcp", {{"max_turns", 1.0}}, [&](double share) {
+                                               EXPECT_GE(share, last);
+                                               last = share;
+                                               return true;
+                                             }});
+  EXPECT_EQ(p.size(), 20'000U);
+  EXPECT_GT(last, 0.5);
+}
+
 }  // namespace
 }  // namespace riffler::control_flow_test

@@ -195,5 +195,16 @@ TEST(LeastTilt, NamesTheFirstPointWithoutAWay) {
   EXPECT_NE(answer.reason.find("no orientation is free"), std::string::npos) << answer.reason;
 }
 
+TEST(CutterLocations, SillyTolerancesAreRefusedAndLongWaysCanBeStopped) {
+  const Corner c = corner(3, 30, 3);
+  const PencilPath path = oriented(c.path, {{0, glm::normalize(Vec3(-0.6, 0, 1))}}, Interpolation::Smooth);
+  LocationRule rule;
+  rule.tolerance = 1e-9;
+  EXPECT_THROW(cutter_locations(path, Assembly(cutters::ball(6, 30)), Collider(c.part), rule), std::invalid_argument);
+  rule.tolerance = 1e-6;
+  rule.max_inserted = 1 << 30;
+  EXPECT_THROW(cutter_locations(path, Assembly(cutters::ball(6, 30)), Collider(c.part), rule), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace riffler::cutter_locations_test

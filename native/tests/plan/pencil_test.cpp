@@ -420,5 +420,13 @@ TEST(Pencil, BallsOfAnySizeComeToAnEnd) {
   }
 }
 
+TEST(Pencil, ABallThatCannotBeMeantForThePartIsRefused) {
+  const Mesh part = groove(1.5);
+  EXPECT_THROW(pencil(part, 5e5, {.tolerance = 0.01, .passes = 2}), std::invalid_argument);
+  EXPECT_THROW(pencil(part, 1e-7, {.tolerance = 0.01}), std::invalid_argument);
+  EXPECT_THROW(pencil(part, 3, {.tolerance = 1e-9}), std::invalid_argument);
+  EXPECT_THROW(pencil(part, 3, {.tolerance = 0.01, .stepover = 1e300}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace riffler::pencil_test

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <random>
 
 #include "dexel/volumes.hpp"
 #include "reference/swept_distance.hpp"
+#include "sweep/move_carver.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::carve_test {
@@ -373,6 +375,31 @@ TEST(Carve, NormalsOfNewSurfacesLookIntoTheTool) {
           }
       }
   EXPECT_GT(seen, 200);
+}
+
+/// One move took minutes and gigabytes, or never ended, with these.
+TEST(Carve, TolerancesAndTimesThatAskForWorkWithoutEndAreRefused) {
+  const std::vector<Pose> turning{{{5, 5, 3}, {0, 0, 1}}, {{15, 5, 3}, glm::normalize(Vec3(1, 0, 1))}};
+  for (const double tolerance : {1e-7, 1e-12, 1e-16, 1e-22, 5e-324}) {
+    Volume volume = Volume::block({{{0, 0, 0}, {20, 10, 5}}, 0.5, "z"});
+    const std::uint64_t revision = volume.revision();
+    CarveOptions options;
+    options.tolerance = tolerance;
+    EXPECT_THROW(carve(volume, cutters::ball(6, 30), turning, options), std::invalid_argument);
+    EXPECT_THROW(MoveCarver(volume, cutters::ball(6, 30), {tolerance, 0.05}), std::invalid_argument);
+    EXPECT_EQ(volume.revision(), revision);
+  }
+  Volume volume = Volume::block({{{0, 0, 0}, {20, 10, 5}}, 0.5, "z"});
+  CarveOptions options;
+  options.tolerance = 1e-6;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_GT(carve(volume, cutters::ball(6, 30), turning, options).removed[0], 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_THROW(carve(volume, cutters::ball(1e6, 2e6), turning, options), std::invalid_argument)
+      << "too fine for the tool";
+  options = {};
+  options.dt = {5e-324};
+  EXPECT_THROW(carve(volume, cutters::ball(6, 30), turning, options), std::invalid_argument);
 }
 
 }  // namespace

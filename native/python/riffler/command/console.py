@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .. import Cancelled
+from .. import files
 
 Rows = list[tuple[str, str]]
 
@@ -99,41 +97,22 @@ class Console:
 
     @contextmanager
     def writing(self, out: Path) -> Iterator[Path]:
-        """Yields a name to write to, beside `out`; it becomes `out` at the end, or is removed after an error or Ctrl-C.
+        """Yields a path to write to; what is there becomes `out` at the end, or is removed after an error or Ctrl-C.
 
         The library's writers leave no half file either, but a Ctrl-C that comes while they write shows only after it.
         """
-        beside = out.with_name(f".{out.stem}.{os.getpid()}{out.suffix}")
-        try:
+
+        def written() -> None:
+            self.written = out.name
+
+        with files.drafting(out, written) as beside:
             yield beside
-            with uninterrupted():
-                os.replace(beside, out)
-                self.written = out.name
-        except Cancelled:
-            raise
-        except RuntimeError as error:
-            raise RuntimeError(str(error).replace(beside.name, out.name)) from None
-        finally:
-            beside.unlink(missing_ok=True)
 
     @staticmethod
     def _print_json(data: Mapping[str, Any]) -> None:
         json.dump(data, sys.stdout, indent=2, ensure_ascii=False, allow_nan=False)
         sys.stdout.write("\n")
         sys.stdout.flush()
-
-
-@contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Ctrl-C is ignored; for moments only."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def number(value: float, unit: str = "") -> str:

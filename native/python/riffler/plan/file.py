@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .. import _core
+from .. import _core, files
 
 FORMAT, VERSION = "riffler-plan", 1
 RULES = ("", "linear", "slerp", "smooth")
@@ -92,15 +91,8 @@ def _compact(value) -> str:
 
 
 def save(path, plan: Plan) -> None:
-    """Writes a plan; the file is whole or not there. ValueError for no plan, OSError with the system's reason."""
-    data = dumps(plan)
-    target = Path(path)
-    beside = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
-    try:
-        beside.write_bytes(data)
-        os.replace(beside, target)
-    finally:
-        beside.unlink(missing_ok=True)
+    """Writes a plan; the file is whole or not there. ValueError for no plan, RuntimeError with the system's reason."""
+    files.write(path, dumps(plan))
 
 
 def _from_path(path, cl, number: int) -> dict[str, Any]:
@@ -138,7 +130,7 @@ def loads(data, name: str = "plan") -> Plan:
 def load(path) -> Plan:
     """Reads a plan. FormatError names the file and the place in it, and what was expected there."""
     target = Path(path)
-    return loads(target.read_bytes(), target.name)
+    return loads(files.read(target), target.name)
 
 
 class _WrongPlaceError(ValueError):
@@ -158,9 +150,12 @@ def _get(table: Any, key: str, place: str) -> Any:
 
 
 def _number(value: Any, place: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise _WrongPlaceError(f"{place}: a number expected")
-    return float(value)
+    try:
+        if not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value):
+            return float(value)
+    except OverflowError:  # of a whole number
+        pass
+    raise _WrongPlaceError(f"{place}: a number expected")
 
 
 def _array(value: Any, shape: tuple[int, ...], place: str) -> np.ndarray:

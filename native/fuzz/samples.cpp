@@ -1,0 +1,104 @@
+#include "fuzz/samples.hpp"
+
+#include "dexel/file.hpp"
+#include "mesh/obj.hpp"
+#include "mesh/ply.hpp"
+#include "mesh/stl.hpp"
+#include "nc/program_file.hpp"
+#include "nc/shipped_machines.hpp"
+#include "pen/shipped_pens.hpp"
+#include "session/journal_file.hpp"
+#include "sweep/carve.hpp"
+#include "tool/cutters.hpp"
+#include "verify/slab_packets.hpp"
+
+namespace riffler::fuzz {
+
+namespace {
+
+const Vec3 kUp(0, 0, 1);
+
+Mesh tetrahedron(double size) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return mesh;
+}
+
+Volume carved(const char* directions) {
+  Volume volume = Volume::block({{{0, 0, 0}, {6, 5, 3}}, 0.5, directions});
+  carve(volume, cutters::ball(2, 20), std::vector<Pose>{{{1, 1, 2}, kUp}, {{5, 4, 1.5}, kUp}});
+  return volume;
+}
+
+Samples texts(std::span<const ShippedText> all) {
+  Samples out;
+  for (const ShippedText& one : all) out.emplace_back(one.toml.begin(), one.toml.end());
+  return out;
+}
+
+}  // namespace
+
+Samples stl_samples() {
+  return {to_stl(tetrahedron(1))};
+}
+
+Samples obj_samples() {
+  return {to_obj(tetrahedron(1))};
+}
+
+Samples ply_samples() {
+  return {to_ply(tetrahedron(1)), to_ply(tetrahedron(0.1))};  // float and double
+}
+
+Samples volume_samples() {
+  return {to_bytes(carved("z")), to_bytes(carved("xyz")), to_bytes(Volume({{{0, 0, 0}, {40, 1, 1}}, 1, "x"}))};
+}
+
+Samples program_samples() {
+  Program program;
+  for (int k = 0; k < 5; ++k)
+    program.append({{{k * 1.5, 2.0 - k, 3}, kUp}, k == 0 ? 0.0 : 600.0, 9000, 1, k + 1, k == 0});
+  program.provenance = {{"source", "part.ngc"}};
+  program.tools.emplace(1, cutters::fillet(6, 1, 30));
+  return {to_bytes(program), to_bytes(Program())};
+}
+
+Samples journal_samples() {
+  Journal journal;
+  journal.add_note("by", "a sample");
+  journal.set_stock({{{0, 0, 0}, {6, 5, 3}}, 0.5, "z", "", ""});
+  journal.add_tool(1, R"({"kind": "ball", "diameter": 2, "length": 20})");
+  JournalStroke stroke;
+  stroke.tool = 1, stroke.tolerance = 0.01, stroke.name = "first";
+  stroke.poses = {{{1, 1, 2}, kUp}, {{5, 4, 1.5}, kUp}};
+  stroke.times = {0, 0.5};
+  journal.add_stroke(stroke);
+  journal.take_back(1);
+  return {to_bytes(journal), to_bytes(Journal())};
+}
+
+Samples packet_samples() {
+  const Volume volume = carved("z");
+  const Slab slab = slabs_of(volume).front();
+  SlabContext context;
+  context.frames = {volume.frame()};
+  context.tools = {cutters::ball(2, 20)};
+  context.reach = 20, context.tolerance = 0.01, context.gouge_tolerance = 0.05, context.top = 10;
+  context.part = std::make_shared<Mesh>(tetrahedron(2));
+  const SlabTask task{-1, slab, true, 3, tiles_of(volume.grids()[0], slab), {}};
+  SlabResult result{tiles_of(volume.grids()[0], slab), {}, {}};
+  result.report.removed = {{1, 0.5}};
+  result.report.events = {{Kind::Rapid, Member::Cutter, -1, 4, 2, 3, Vec3(0)}};
+  return {to_packet(context), to_packet(task), to_packet(result)};
+}
+
+Samples machine_samples() {
+  return texts(shipped_machines());
+}
+
+Samples pen_samples() {
+  return texts(shipped_pens());
+}
+
+}  // namespace riffler::fuzz

@@ -1,0 +1,173 @@
+#include "fuzz/targets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dexel/file.hpp"
+#include "fuzz/repair.hpp"
+#include "fuzz/samples.hpp"
+#include "geom/error.hpp"
+#include "mesh/obj.hpp"
+#include "mesh/ply.hpp"
+#include "mesh/stl.hpp"
+#include "nc/description.hpp"
+#include "nc/machine.hpp"
+#include "nc/program_file.hpp"
+#include "nc/reader.hpp"
+#include "pen/geometry.hpp"
+#include "pen/hid_descriptor.hpp"
+#include "session/journal_file.hpp"
+#include "verify/slab_packets.hpp"
+
+namespace riffler::fuzz {
+
+namespace {
+
+std::string_view text_of(View bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void require(bool good, const char* what) {
+  if (!good) throw Broken(what);
+}
+
+/// Calls `read`, which may refuse the bytes in the ways that readers promise.
+template <class Read>
+void reading(const Read& read) {
+  try {
+    read();
+  } catch (const FormatError& error) {
+    require(std::string_view(error.what()).starts_with("fuzz"), "a message without the file's name");
+  }
+}
+
+void check(const Program& p) {
+  for (std::size_t row = 0; row < p.size(); ++row) {
+    require(finite(p.poses()[row].tip), "a tip that is not finite");
+    require(std::abs(glm::length(p.poses()[row].axis) - 1) < 1e-9, "an axis that is not of unit length");
+    require(std::isfinite(p.feed()[row]) && p.feed()[row] >= 0, "a feed that is none");
+    require(std::isfinite(p.spindle()[row]), "a spindle speed that is none");
+  }
+}
+
+/// Coarse chords and few turns: what is asked for in one block, kilometres of arcs, is not what is looked for.
+void nc(View bytes, const char* machine, bool skips) {
+  reading([&] {
+    ReadOptions options{machine, {{"chord_tolerance", 0.1}}};
+    if (options.machine != "apt") options.options["max_turns"] = 1000.0;
+    if (skips) options.options["unknown"] = std::string("skip");
+    check(parse_nc(text_of(bytes), "fuzz", options));
+  });
+}
+
+template <Mesh (*From)(std::span<const std::uint8_t>, const std::string&)>
+void mesh(View bytes) {
+  reading([&] {
+    const Mesh read = From(bytes, "fuzz");
+    require(!read.empty(), "a mesh without triangles");
+    validate(read);
+  });
+}
+
+void program(View bytes) {
+  reading([&] {
+    const Program read = parse_program(bytes, "fuzz");
+    check(read);
+    require(parse_program(to_bytes(read), "fuzz").size() == read.size(), "a program that does not come back");
+  });
+}
+
+void volume(View bytes) {
+  reading([&] {
+    const Volume read = from_bytes(bytes, "fuzz");
+    require(to_bytes(from_bytes(to_bytes(read), "fuzz")) == to_bytes(read), "a volume that does not come back");
+  });
+}
+
+void journal(View bytes) {
+  reading([&] {
+    const Journal read = parse_journal(bytes, "fuzz");
+    const Journal again = parse_journal(to_bytes(read), "fuzz");
+    require(again.strokes().size() == read.strokes().size(), "a journal that does not come back");
+  });
+}
+
+void machine(View bytes) {
+  reading([&] { machine_summary(text_of(bytes), "fuzz"); });
+  reading([&] {
+    try {
+      OptionReader options({}, "machine fuzz");
+      describe_machine(text_of(bytes), "fuzz", "fuzz", options);
+    } catch (const std::invalid_argument&) {  // an option that has to be given
+    }
+  });
+}
+
+void pen(View bytes) {
+  reading([&] { pen_summary(text_of(bytes), "fuzz"); });
+  reading([&] { describe_pen(text_of(bytes), "fuzz", "fuzz"); });
+}
+
+void hid(View bytes) {
+  try {
+    parse_descriptor(bytes);
+  } catch (const std::invalid_argument&) {
+  }
+}
+
+/// Of a packet: its messages name the packet's kind.
+template <class Read>
+void packet(const Read& read) {
+  try {
+    read();
+  } catch (const FormatError&) {
+  } catch (const std::invalid_argument&) {  // a tool that cannot be
+  }
+}
+
+void packets(View bytes) {
+  packet([&] { context_of(bytes); });
+  packet([&] { task_of(bytes); });
+  packet([&] { result_of(bytes); });
+  packet([&] {
+    SlabMoves moves;
+    add_moves(bytes, moves);
+  });
+}
+
+std::vector<Bytes> nothing() {
+  return {};
+}
+
+const Target kTargets[] = {
+    {"rs274", [](View b) { nc(b, "tcp", b.size() % 2 == 1); }, &nothing, nullptr},
+    {"rs274-axes", [](View b) { nc(b, b.size() % 2 == 1 ? "3-axis" : "linuxcnc-xyzac", false); }, &nothing, nullptr},
+    {"apt", [](View b) { nc(b, "apt", b.size() % 2 == 1); }, &nothing, nullptr},
+    {"stl", &mesh<&from_stl>, &stl_samples, nullptr},
+    {"obj", &mesh<&from_obj>, &obj_samples, nullptr},
+    {"ply", &mesh<&from_ply>, &ply_samples, nullptr},
+    {"rvol", &volume, &volume_samples, &repair_volume},
+    {"rprog", &program, &program_samples, &repair_program},
+    {"rjournal", &journal, &journal_samples, &repair_journal},
+    {"machine", &machine, &machine_samples, nullptr},
+    {"pen", &pen, &pen_samples, nullptr},
+    {"hid", &hid, &nothing, nullptr},
+    {"packet", &packets, &packet_samples, &repair_packet},
+};
+
+}  // namespace
+
+std::span<const Target> targets() {
+  return kTargets;
+}
+
+const Target& target(std::string_view name) {
+  std::string known;
+  for (const Target& t : kTargets) {
+    if (name == t.name) return t;
+    known += std::string(known.empty() ? "" : ", ") + t.name;
+  }
+  throw std::invalid_argument("there is no target \"" + std::string(name) + "\"; there are " + known);
+}
+
+}  // namespace riffler::fuzz

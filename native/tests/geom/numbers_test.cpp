@@ -1,0 +1,26 @@
+#include "geom/numbers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/error_of.hpp"
+
+namespace riffler::numbers_test {
+namespace {
+
+TEST(Numbers, AreRefusedByNameWithTheirRange) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {0.0, -1.0, 1e-7, 5e-324, kInfinity, kNaN})
+    EXPECT_EQ(test::error_of([&] { require_tolerance(bad); }),
+              "tolerance must be a positive length in mm, from 1e-06 to 1e+30");
+  require_tolerance(1e-6);
+  require_tolerance_for(1e-6, 100);
+  EXPECT_NE(test::error_of([] { require_tolerance_for(1e-6, 1e5); }), "");
+  EXPECT_NE(test::error_of([&] { require_angle(kNaN, "tilt"); }).find("tilt"), std::string::npos);
+  EXPECT_NE(test::error_of([&] { require_time(5e-324, "dt"); }).find("dt"), std::string::npos);
+  EXPECT_EQ(test::error_of([&] { require_finite(kNaN, "height"); }), "height must be finite");
+}
+
+}  // namespace
+}  // namespace riffler::numbers_test
