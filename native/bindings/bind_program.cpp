@@ -387,7 +387,7 @@ as cuts touch the part. ValueError names the path, the row, the place and the re
           },
           py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::kw_only(),
           py::arg("progress") = py::none(),
-          R"(Reads NC code (RS-274 as LinuxCNC has it); ``machine`` is a name of machines(), or "apt" for an APT file.
+          R"(Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT or Heidenhain's Klartext.
 
 Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
 given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the
@@ -396,7 +396,8 @@ poses on its way are in ``via``;
 is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
 centre); ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
 end may miss its circle; ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes
-lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
+lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters;
+``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
 programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.)")
       .def_static(
           "stream",

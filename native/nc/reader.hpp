@@ -1,4 +1,4 @@
-// NC code (RS-274, or an APT cutter location file) → Program.
+// NC code (RS-274, an APT cutter location file, a Heidenhain conversational program) → Program.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace riffler {
 
 struct ReadOptions {
-  std::string machine = "tcp";  ///< a name of machines(): what the axis words mean; "apt": an APT file
+  std::string machine = "tcp";  ///< a name of machines(): what the axis words mean; its control says in which language
   /// Of the machine, and of the reader:
   /// "chord_tolerance" (mm, curves as chords; default 0.002); "axis_tolerance" (rad): where it is given, a feed move
   /// whose rotary axes, moving linearly, leave the great circle between its ends by more becomes several rows; without

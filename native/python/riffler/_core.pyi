@@ -699,7 +699,7 @@ class Program:
     @staticmethod
     def read(path: os.PathLike | str | bytes, machine: str = 'tcp', options: typing.Any = None) -> Program:
         """
-        Reads NC code (RS-274 as LinuxCNC has it); ``machine`` is a name of machines(), or "apt" for an APT file.
+        Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT or Heidenhain's Klartext.
 
         Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
         given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the

@@ -292,6 +292,21 @@ TEST(HeidenhainReader, TheControlKeepsTheTip) {
   EXPECT_EQ(error("L B3 FMAX").substr(0, 57), "line 2: unknown letter B: the machine has no such axis; r");
 }
 
+TEST(HeidenhainReader, FollowsTheAxesWhereTheirToleranceIsGiven) {
+  const std::string moves = "L X0 Y0 Z0 A0 C0 FMAX\nL X10 A40 C90 F100";
+  EXPECT_EQ(read("M128\n" + moves).size(), 2U);
+  const Program fine = read("M128\n" + moves, {{"axis_tolerance", 0.001}});
+  ASSERT_GT(fine.size(), 10U);
+  for (std::size_t row = 1; row < fine.size(); ++row) {
+    const double t = static_cast<double>(row) / static_cast<double>(fine.size() - 1), k = std::acos(-1.0) / 180;
+    const double a = 40 * t * k, c = 90 * t * k;
+    expect_near(fine.poses()[row].axis, {std::sin(c) * std::sin(a), -std::cos(c) * std::sin(a), std::cos(a)}, 1e-12);
+    expect_near(fine.poses()[row].tip, {10 * t, 0, 0}, 1e-12);
+  }
+  EXPECT_EQ(read("FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\n" + moves, {{"axis_tolerance", 0.001}}).size(), 2U)
+      << "PATHCTRL VECTOR is the great circle";
+}
+
 TEST(HeidenhainReader, PositionsOfTheMachineKeepThePose) {
   const Program p = read(
       "M140 MB MAX\nL X5 Y6 R0 FMAX M3\nL Z20 FMAX\nL Z-1 F300\nL Z0 R0 FMAX M91\nL X7 FMAX\nL Y0 FMAX\nL Z15 FMAX\n"

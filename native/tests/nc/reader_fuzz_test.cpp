@@ -16,7 +16,8 @@ namespace {
 const std::string kSeeds[] = {
     "0 BEGIN PGM A MM\n1 BLK FORM 0.1 Z X0 Y0 Z-9\nTOOL DEF 3 L+0 R+4\nTOOL CALL 3 Z S900 F80 DL+0\nL X1 Y2,5 Z30 R0 "
     "FMAX M3\nL "
-    "IZ-9 F100 M8\nCC X+0 Y+0\nC X2 Y-1 DR-\nCP IPA+400 IZ-1 DR+\nLP PR+3 PA45\nCT X9 Y9\nCR X5 Y5 R+9 DR+\nL X20\nRND "
+    "IZ-9 F100 M8\nCC X+0 Y+0\nC X2,5 Y1 DR-\nCP IPA+400 IZ-1 DR+\nLP PR+3 PA45\nCT X9 Y8\nCR X5 Y5 R+9 DR+\nL "
+    "X20\nRND "
     "R1\nL Y20\nCHF 2\nL X0\n* - MORE\nQ1 = 2 * ( 3 + SIN 30 ) ^ 2\nFN 9: IF +Q1 EQU +5 GOTO LBL 3\nLBL 1\nL "
     "IX+Q1\nCALL LBL "
     "1 REP 2/2\nLBL 3\nCALL LBL \"S\"\nL Z0 R0 FMAX M91\nM140 MB MAX\nL X0 Y0 Z9 FMAX\nM30\nLBL \"S\"\nFN 18: SYSREAD "
@@ -115,6 +116,11 @@ TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
   }
   EXPECT_GT(read, 1000) << "the seeds are too fragile to test what is read";
   EXPECT_GT(refused, 1000);
+}
+
+TEST(ReaderFuzz, BeginsWithConversationalProgramsThatAreRead) {
+  for (std::size_t seed = 0; seed < 2; ++seed)
+    EXPECT_GT(parse_nc(kSeeds[seed], "seed.h", {"heidenhain", {}}).size(), 20U);
 }
 
 TEST(ReaderFuzz, SurvivesBytesOfAnyKind) {
