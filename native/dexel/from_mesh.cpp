@@ -14,6 +14,7 @@
 #include "dexel/flatness.hpp"
 #include "dexel/openings.hpp"
 #include "geom/parallel.hpp"
+#include "mesh/measure.hpp"
 #include "mesh/orient.hpp"
 
 namespace riffler {
@@ -379,8 +380,7 @@ bool holds(const Box3& outer, const Box3& inner) {
 
 /// What the reference's rays miss of a closed mesh. Where they hold less than the mesh encloses it may also enclose
 /// something more than once, which only a second look tells.
-MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3& box) {
-  const double meant = volume(mesh);
+MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3& box, double meant) {
   if (!holds(result.frame().box, box) || !(meant > 0) || result.volume() >= (1 - kMissed) * meant) return {};
   const char axis = "xyz"[static_cast<int>(result.reference().axis())];
   Volume again(Frame{result.frame().box, result.frame().pitch, std::string(1, axis)});
@@ -463,7 +463,7 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
     riffler::report(progress, kCounted);
   }
   const Progress rest = part(progress, report ? kCounted : 0, 1);
-  const Box3 box = bounds(mesh);
+  const auto [box, enclosed] = measure(mesh);
   Solid solid(mesh);
   // Coordinates may have been rounded to single precision on their way here.
   const double rounding =
@@ -483,7 +483,9 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
   if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(solid.mesh(), solid.loops(), box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
   if (report) conclude(solid, findings, inside_out, *report);
-  if (missed) *missed = solid.loops().empty() ? missed_by_rays(result, solid.mesh(), box) : MissedMaterial{};
+  if (missed) *missed = {};
+  if (missed && solid.loops().empty())
+    *missed = missed_by_rays(result, solid.mesh(), box, &solid.mesh() == &mesh ? enclosed : volume(solid.mesh()));
   riffler::report(progress, 1);
   return result;
 }

@@ -1,8 +1,8 @@
 #include "marching/thin.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -26,17 +26,41 @@ bool misses(const PointsOfSpan& points, const Span& s) {
   return range.first > range.last;
 }
 
-bool any_missing(const Grid& grid, const PointsOfSpan& points) {
-  std::atomic<bool> any{false};
-  parallel_for(grid.tile_count(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end && !any.load(std::memory_order_relaxed); ++t)
-      for (const Span& s : grid.tile(t).spans)
-        if (misses(points, s)) {
-          any.store(true, std::memory_order_relaxed);
-          break;
-        }
+/// What one tile's rays miss, mm³, and whether three rows of three rays miss something beside each other.
+struct TileMiss {
+  double volume = 0;
+  bool sheet = false;
+};
+
+TileMiss look(const Grid& grid, std::size_t index, const PointsOfSpan& points) {
+  TileMiss out;
+  const Tile& tile = grid.tile(index);
+  if (std::none_of(tile.spans.begin(), tile.spans.end(), [&](const Span& s) { return misses(points, s); })) return out;
+  const int i0 = static_cast<int>(index) / grid.tiles_v() * kTileSide,
+            j0 = static_cast<int>(index) % grid.tiles_v() * kTileSide;
+  std::uint32_t rows[kTileSide] = {};  // a bit for each ray
+  for (int r = 0; r < kTileRays; ++r)
+    for (const Span& s : tile.ray(r))
+      if (misses(points, s)) {
+        out.volume += s.length() * grid.area(i0 + r / kTileSide, j0 + r % kTileSide);
+        rows[r / kTileSide] |= std::uint32_t{1} << r % kTileSide;
+      }
+  for (int a = 0; a + 2 < kTileSide; ++a) {
+    const std::uint32_t common = rows[a] & rows[a + 1] & rows[a + 2];
+    out.sheet |= (common & common >> 1 & common >> 2) != 0;
+  }
+  return out;
+}
+
+TileMiss look(const Grid& grid, const PointsOfSpan& points) {
+  std::vector<TileMiss> tiles(grid.tile_count());
+  parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) tiles[t] = look(grid, t, points);
   });
-  return any;
+  TileMiss out;
+  for (const TileMiss& t : tiles) out.volume += t.volume, out.sheet |= t.sheet;
+  out.sheet |= out.volume > 0 && (grid.nu() < 3 || grid.nv() < 3);
+  return out;
 }
 
 /// What one direction sees.
@@ -61,7 +85,6 @@ class Missing {
     if (grid_.nu() < 3 || grid_.nv() < 3) out.sheets = true;
     return out;
   }
-  double volume() const { return volume_; }
 
  private:
   void add(int i, int j, const Span& s) {
@@ -115,9 +138,10 @@ ThinMaterial thin_material(const Volume& volume) {
   const Lattice lattice(volume);
   for (const Grid& grid : volume.grids()) {
     const PointsOfSpan points(lattice, along(grid));
-    if (!any_missing(grid, points)) continue;
-    const Missing missing(grid, points);
-    if (missing.volume() > out.volume) out = missing.result();
+    const TileMiss seen = look(grid, points);
+    if (seen.volume <= out.volume) continue;
+    out = {seen.volume, {}, 0, false};
+    if (seen.sheet || seen.volume > kCrumbs * volume.volume()) out = Missing(grid, points).result();
   }
   return out;
 }

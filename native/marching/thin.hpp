@@ -5,10 +5,13 @@
 
 namespace riffler {
 
+/// Share of a volume that may be thin without sheets of it and counts as crumbs: edges, and roundings that rays graze.
+inline constexpr double kCrumbs = 0.01;
+
 struct ThinMaterial {
   double volume = 0;    ///< mm³
-  Box3 box;             ///< where it is; empty where there is none
-  double pitch = 0;     ///< mm: one that keeps nine tenths of it
+  Box3 box;             ///< where it is; empty where there are crumbs only
+  double pitch = 0;     ///< mm: one that keeps nine tenths of it; 0 where there are crumbs only
   bool sheets = false;  ///< some of it is wide: three rays and more across, both ways
 };
 
