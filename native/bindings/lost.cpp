@@ -32,7 +32,7 @@ Lost thin_in(const Volume& volume) {
     return out;  // too far from the origin for a mesh, which to_mesh says
   }
   out.volume = thin.volume, out.pitch = thin.pitch, out.box = thin.box;
-  if (thin.volume > 0 && (thin.sheets || thin.volume > kCrumbs * out.of))
+  if (thin.notable)
     out.note = format("%.6g mm³ of material (of %.6g) is thinner than the pitch of %.6g mm and no part of the mesh: ",
                       out.volume, std::max(out.of, out.volume), out.used) +
                where(out);
