@@ -7,9 +7,6 @@ namespace riffler {
 
 namespace {
 
-/// Share of a volume that may be thin without sheets of it and without a word: edges and grazed roundings.
-constexpr double kCrumbs = 0.01;
-
 template <class... Numbers>
 std::string format(const char* text, Numbers... numbers) {
   char out[400];
@@ -35,7 +32,7 @@ Lost thin_in(const Volume& volume) {
     return out;  // too far from the origin for a mesh, which to_mesh says
   }
   out.volume = thin.volume, out.pitch = thin.pitch, out.box = thin.box;
-  if (thin.volume > 0 && (thin.sheets || thin.volume > kCrumbs * out.of))
+  if (thin.notable)
     out.note = format("%.6g mm³ of material (of %.6g) is thinner than the pitch of %.6g mm and no part of the mesh: ",
                       out.volume, std::max(out.of, out.volume), out.used) +
                where(out);
@@ -79,7 +76,8 @@ void tell(const Lost& lost, std::optional<py::dict>& report) {
   d["lost"] = lost.volume, d["lost_note"] = lost.note;
   d["lost_pitch"] = lost.volume > 0 && lost.pitch > 0 ? py::object(py::float_(lost.pitch)) : py::none();
   d["lost_box"] = py::none();
-  if (lost.volume > 0) d["lost_box"] = py::make_tuple(corner(lost.box.lower), corner(lost.box.upper));
+  if (lost.volume > 0 && !lost.box.empty())
+    d["lost_box"] = py::make_tuple(corner(lost.box.lower), corner(lost.box.upper));
 }
 
 }  // namespace riffler

@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "dexel/boundary.hpp"
 #include "dexel/crossing_lanes.hpp"
 #include "dexel/crossings.hpp"
 #include "dexel/flatness.hpp"
+#include "dexel/mesh_findings.hpp"
 #include "dexel/openings.hpp"
+#include "dexel/solid_mesh.hpp"
 #include "geom/parallel.hpp"
-#include "mesh/orient.hpp"
+#include "mesh/measure.hpp"
 
 namespace riffler {
 
@@ -44,34 +44,11 @@ double most(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// What the winding numbers of columns tell about a mesh.
-struct Tally {
-  double inside = 0, overlap = 0, inside_out = 0;  // mm of rays
-  double enclosed = 0;                             // mm³: winding numbers × lengths × areas
-  std::size_t rays = 0, doubtful = 0;
-
-  void operator+=(const Tally& o) {
-    inside += o.inside, overlap += o.overlap, inside_out += o.inside_out, enclosed += o.enclosed;
-    rays += o.rays, doubtful += o.doubtful;
-  }
-};
-
-/// The tally of all grids, and the triangles at which negative winding numbers begin or end.
-struct Findings {
-  explicit Findings(const Mesh& mesh) : flipped(mesh.triangles.size()) {}
-
-  Tally tally;
-  std::vector<std::uint8_t> flipped;
-
-  /// Of the rays' lengths within the material, 1 at most.
-  double share(double length) const { return tally.inside > 0 ? std::min(1.0, length / tally.inside) : 0; }
-};
-
 /// Fills one grid from the crossings of its columns.
 class Filler {
  public:
   Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress,
-         Findings* findings);
+         MeshFindings* findings);
 
   /// Entries of triangles in bands: the triangles tested.
   std::size_t triangles_tested() const { return bands_.size(); }
@@ -87,11 +64,11 @@ class Filler {
   };
 
   int rows_per_band() const;
-  void tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders, Tally& tally) const;
+  void tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders, ColumnTally& tally) const;
   void add_passages(int first, int last, BandCrossings& out) const;
   void fill(std::span<const Crossing> crossings, TileBuilder& builder) const;
   bool repair(int row, int column, std::span<const Crossing> crossings, std::vector<Crossing>& out) const;
-  void look(std::span<const Crossing> crossings, double area, Tally& tally) const;
+  void look(std::span<const Crossing> crossings, double area, ColumnTally& tally) const;
   void emit(End near, End far, TileBuilder& builder) const;
   PackedNormal normal(const End& end) const;
   double thinnest(const End& a, const End& b) const {
@@ -105,12 +82,12 @@ class Filler {
   Projection projection_;
   std::vector<Passage> passages_;
   Bands bands_;
-  Findings* findings_;
+  MeshFindings* findings_;
   mutable std::atomic<bool> negative_{false};
 };
 
 Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress,
-               Findings* findings)
+               MeshFindings* findings)
     : mesh_(mesh),
       loops_(loops),
       box_(loops.empty() ? Box3{} : bounds(mesh)),
@@ -128,7 +105,7 @@ int Filler::rows_per_band() const {
 }
 
 void Filler::run(const Progress& progress) {
-  std::vector<Tally> tallies(static_cast<std::size_t>(grid_.tiles_u()));
+  std::vector<ColumnTally> tallies(static_cast<std::size_t>(grid_.tiles_u()));
   parallel_for(
       static_cast<std::size_t>(grid_.tiles_u()), 1,
       [&](std::size_t begin, std::size_t end) {
@@ -138,10 +115,10 @@ void Filler::run(const Progress& progress) {
       },
       progress);
   if (findings_)
-    for (const Tally& tally : tallies) findings_->tally += tally;
+    for (const ColumnTally& tally : tallies) findings_->tally += tally;
 }
 
-void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders, Tally& tally) const {
+void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& builders, ColumnTally& tally) const {
   const int first_row = tile_u * kTileSide, end_row = std::min(grid_.nu(), first_row + kTileSide), nv = grid_.nv();
   for (int first = first_row; first < end_row; first += bands_.rows()) {
     const int last = std::min(end_row, first + bands_.rows());
@@ -212,7 +189,7 @@ void Filler::fill(std::span<const Crossing> crossings, TileBuilder& builder) con
 }
 
 /// Notes what a column tells about the mesh.
-void Filler::look(std::span<const Crossing> crossings, double area, Tally& tally) const {
+void Filler::look(std::span<const Crossing> crossings, double area, ColumnTally& tally) const {
   const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
   const double before = tally.inside;
   bool doubtful = false;
@@ -328,7 +305,7 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
 
 /// Fills all grids. Returns whether some column has material where the winding number is negative.
 bool fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress,
-          Findings* findings = nullptr) {
+          MeshFindings* findings = nullptr) {
   bool negative = false;
   Stats stats;
   const double grids = static_cast<double>(result.grids().size());
@@ -379,58 +356,16 @@ bool holds(const Box3& outer, const Box3& inner) {
 
 /// What the reference's rays miss of a closed mesh. Where they hold less than the mesh encloses it may also enclose
 /// something more than once, which only a second look tells.
-MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3& box) {
-  const double meant = volume(mesh);
+MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3& box, double meant) {
   if (!holds(result.frame().box, box) || !(meant > 0) || result.volume() >= (1 - kMissed) * meant) return {};
   const char axis = "xyz"[static_cast<int>(result.reference().axis())];
   Volume again(Frame{result.frame().box, result.frame().pitch, std::string(1, axis)});
-  Findings findings(mesh);
+  MeshFindings findings(mesh);
   fill(again, mesh, {}, {}, &findings);
   const double lost = meant - findings.tally.enclosed;
   if (lost <= kMissed * meant) return {};
   return {lost, 2 * meant / area(mesh), box};
 }
-
-/// A mesh on its way to a volume: as it was given, or repaired.
-class Solid {
- public:
-  explicit Solid(const Mesh& given) : used_(&given), boundary_(find_boundary(given)) {
-    // With all edges paired the winding numbers are whole, and they tell whether a shell faces inwards.
-    if (!boundary_.empty()) orient();
-  }
-
-  const Mesh& mesh() const { return *used_; }
-  const std::vector<std::vector<int>>& loops() const { return boundary_.loops; }
-  const Orientation& orientation() const { return orientation_; }
-
-  /// Returns whether triangles were turned.
-  bool orient() {
-    if (asked_) return false;
-    asked_ = true;
-    std::optional<Mesh> better = oriented(*used_, orientation_);
-    if (!better) return false;
-    take(*std::move(better));
-    return true;
-  }
-
-  void join_cracks(double tolerance) {
-    if (boundary_.empty()) return;
-    if (std::optional<Mesh> better = riffler::join_cracks(*used_, boundary_, tolerance)) take(*std::move(better));
-  }
-
- private:
-  void take(Mesh&& mesh) {
-    storage_ = std::move(mesh);
-    used_ = &storage_;
-    boundary_ = find_boundary(*used_);
-  }
-
-  Mesh storage_;
-  const Mesh* used_;
-  Boundary boundary_;
-  Orientation orientation_;
-  bool asked_ = false;
-};
 
 /// What the shells that were turned enclose, mm of rays in all grids.
 double turned_lengths(const Orientation& orientation, const Volume& volume) {
@@ -438,9 +373,9 @@ double turned_lengths(const Orientation& orientation, const Volume& volume) {
   return orientation.turned_volume / (pitch * pitch) * static_cast<double>(volume.grids().size());
 }
 
-void conclude(const Solid& solid, const Findings& findings, double inside_out, MeshReport& report) {
+void conclude(const SolidMesh& solid, const MeshFindings& findings, double inside_out, MeshReport& report) {
   report.openings = solid.loops().size();
-  const Tally& t = findings.tally;
+  const ColumnTally& t = findings.tally;
   report.inside_out = inside_out, report.overlap = findings.share(t.overlap);
   if (t.rays > 0) report.doubtful_rays = static_cast<double>(t.doubtful) / static_cast<double>(t.rays);
   const Orientation& o = solid.orientation();
@@ -463,27 +398,29 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
     riffler::report(progress, kCounted);
   }
   const Progress rest = part(progress, report ? kCounted : 0, 1);
-  const Box3 box = bounds(mesh);
-  Solid solid(mesh);
+  const auto [box, enclosed] = measure(mesh);
+  SolidMesh solid(mesh);
   // Coordinates may have been rounded to single precision on their way here.
   const double rounding =
       std::max(std::ldexp(most(box.size()), -22), std::ldexp(std::max(most(box.lower), most(box.upper)), -24));
   if (!solid.loops().empty() && is_flat(mesh, rounding))
     throw std::invalid_argument("the mesh is a flat sheet: it has no volume");
   solid.join_cracks(std::min(std::ldexp(most(box.size()), -20), 1e-3 * frame.pitch));
-  Findings findings(solid.mesh());
+  MeshFindings findings(solid.mesh());
   const bool negative = fill(result, solid.mesh(), solid.loops(), rest, report ? &findings : nullptr);
   double inside_out = findings.share(findings.tally.inside_out + turned_lengths(solid.orientation(), result));
   if (negative && solid.orient()) {
     inside_out = findings.share(findings.tally.inside_out);
-    findings = Findings(solid.mesh());
+    findings = MeshFindings(solid.mesh());
     result = Volume(frame);
     fill(result, solid.mesh(), solid.loops(), part(progress, 0.999, 1), report ? &findings : nullptr);
   }
   if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(solid.mesh(), solid.loops(), box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
   if (report) conclude(solid, findings, inside_out, *report);
-  if (missed) *missed = solid.loops().empty() ? missed_by_rays(result, solid.mesh(), box) : MissedMaterial{};
+  if (missed) *missed = {};
+  if (missed && solid.loops().empty())
+    *missed = missed_by_rays(result, solid.mesh(), box, &solid.mesh() == &mesh ? enclosed : volume(solid.mesh()));
   riffler::report(progress, 1);
   return result;
 }

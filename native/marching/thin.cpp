@@ -1,7 +1,6 @@
 #include "marching/thin.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -26,86 +25,88 @@ bool misses(const PointsOfSpan& points, const Span& s) {
   return range.first > range.last;
 }
 
-bool any_missing(const Grid& grid, const PointsOfSpan& points) {
-  std::atomic<bool> any{false};
-  parallel_for(grid.tile_count(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end && !any.load(std::memory_order_relaxed); ++t)
-      for (const Span& s : grid.tile(t).spans)
-        if (misses(points, s)) {
-          any.store(true, std::memory_order_relaxed);
-          break;
-        }
+/// A span without a lattice point, on ray (i, j).
+struct Miss {
+  int i, j;
+  Span span;
+};
+
+/// Those of one direction, tile by tile.
+std::vector<Miss> missing(const Grid& grid, const PointsOfSpan& points) {
+  std::vector<std::vector<Miss>> tiles(grid.tile_count());
+  parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Tile& tile = grid.tile(t);
+      if (std::none_of(tile.spans.begin(), tile.spans.end(), [&](const Span& s) { return misses(points, s); }))
+        continue;
+      const int i0 = static_cast<int>(t) / grid.tiles_v() * kTileSide,
+                j0 = static_cast<int>(t) % grid.tiles_v() * kTileSide;
+      for (int r = 0; r < kTileRays; ++r)
+        for (const Span& s : tile.ray(r))
+          if (misses(points, s)) tiles[t].push_back({i0 + r / kTileSide, j0 + r % kTileSide, s});
+    }
   });
-  return any;
+  std::vector<Miss> out;
+  for (const std::vector<Miss>& tile : tiles) out.insert(out.end(), tile.begin(), tile.end());
+  return out;
+}
+
+/// Calls visit(i, j) for the rays around one, until it returns true; whether it did.
+template <class Visit>
+bool any_around(const Grid& grid, const Miss& m, const Visit& visit) {
+  for (int i = std::max(0, m.i - 1); i <= std::min(grid.nu() - 1, m.i + 1); ++i)
+    for (int j = std::max(0, m.j - 1); j <= std::min(grid.nv() - 1, m.j + 1); ++j)
+      if ((i != m.i || j != m.j) && visit(i, j)) return true;
+  return false;
+}
+
+/// Whether a ray beside it holds a lattice point in the same material: then the mesh reaches there, or nearly.
+bool is_edge(const Grid& grid, const PointsOfSpan& points, const Miss& m) {
+  return any_around(grid, m, [&](int i, int j) {
+    for (const Span& s : grid.ray(i, j))
+      if (s.near <= m.span.far && s.far >= m.span.near && !misses(points, s)) return true;
+    return false;
+  });
+}
+
+/// A little less than the length that nine tenths of the volume have at least, to two figures.
+double kept_by(std::vector<std::pair<double, double>> lengths, double total) {
+  std::sort(lengths.begin(), lengths.end());
+  double sum = 0, length = 0;
+  for (const auto& [l, volume] : lengths) {
+    length = l;
+    if ((sum += volume) > 0.1 * total) break;
+  }
+  const double unit = std::pow(10, std::floor(std::log10(length)) - 1);
+  return std::floor(0.99 * length / unit) * unit;
 }
 
 /// What one direction sees.
-class Missing {
- public:
-  Missing(const Grid& grid, const PointsOfSpan& points)
-      : grid_(grid), spans_(static_cast<std::size_t>(grid.nu()) * grid.nv(), Span{0, 0}) {
-    for (int i = 0; i < grid.nu(); ++i)
-      for (int j = 0; j < grid.nv(); ++j)
-        for (const Span& s : grid.ray(i, j))
-          if (misses(points, s)) add(i, j, s);
+ThinMaterial seen_by(const Grid& grid, const PointsOfSpan& points) {
+  const std::vector<Miss> found = missing(grid, points);
+  ThinMaterial out;
+  std::vector<std::size_t> lost;  // places of the rays
+  const auto place = [&](int i, int j) { return static_cast<std::size_t>(i) * grid.nv() + j; };
+  for (const Miss& m : found)
+    if (!is_edge(grid, points, m)) lost.push_back(place(m.i, m.j));
+  if (lost.empty()) return out;
+  std::sort(lost.begin(), lost.end());
+  const auto is_lost = [&](int i, int j) { return std::binary_search(lost.begin(), lost.end(), place(i, j)); };
+  std::vector<std::pair<double, double>> lengths;  // with their volumes
+  Box3 box;
+  for (const Miss& m : found) {
+    if (!is_lost(m.i, m.j) && !any_around(grid, m, is_lost)) continue;
+    const double volume = m.span.length() * grid.area(m.i, m.j);
+    out.volume += volume;
+    lengths.emplace_back(m.span.length(), volume);
+    const double u = grid.u(m.i) - 0.5 * grid.pitch(), v = grid.v(m.j) - 0.5 * grid.pitch();
+    box.add({u, v, m.span.near}), box.add({u + grid.width_u(m.i), v + grid.width_v(m.j), m.span.far});
   }
-
-  ThinMaterial result() const {
-    ThinMaterial out{volume_, {}, 0, false};
-    if (!(volume_ > 0)) return out;
-    out.box.add(to_world(grid_.axis(), box_.lower)), out.box.add(to_world(grid_.axis(), box_.upper));
-    out.pitch = kept_by();
-    for (int i = 1; i + 1 < grid_.nu() && !out.sheets; ++i)
-      for (int j = 1; j + 1 < grid_.nv() && !out.sheets; ++j) out.sheets = is_middle(i, j);
-    // A plate that is one or two rays wide is all there is of it.
-    if (grid_.nu() < 3 || grid_.nv() < 3) out.sheets = true;
-    return out;
-  }
-  double volume() const { return volume_; }
-
- private:
-  void add(int i, int j, const Span& s) {
-    spans_[place(i, j)] = s;
-    const double volume = s.length() * grid_.area(i, j);
-    volume_ += volume;
-    lengths_.emplace_back(s.length(), volume);
-    const double u = grid_.u(i) - 0.5 * grid_.pitch(), v = grid_.v(j) - 0.5 * grid_.pitch();
-    box_.add({u, v, s.near}), box_.add({u + grid_.width_u(i), v + grid_.width_v(j), s.far});
-  }
-
-  std::size_t place(int i, int j) const { return static_cast<std::size_t>(i) * grid_.nv() + j; }
-
-  /// Whether all eight neighbours lack material beside that of ray (i, j), too.
-  bool is_middle(int i, int j) const {
-    const Span& s = spans_[place(i, j)];
-    if (!(s.near < s.far)) return false;
-    for (int a = i - 1; a <= i + 1; ++a)
-      for (int b = j - 1; b <= j + 1; ++b) {
-        const Span& o = spans_[place(a, b)];
-        if (!(o.near < o.far) || o.near > s.far + grid_.pitch() || o.far < s.near - grid_.pitch()) return false;
-      }
-    return true;
-  }
-
-  /// A little less than the length that nine tenths of the volume have at least, to two figures.
-  double kept_by() const {
-    std::vector<std::pair<double, double>> sorted = lengths_;
-    std::sort(sorted.begin(), sorted.end());
-    double sum = 0, length = 0;
-    for (const auto& [l, volume] : sorted) {
-      length = l;
-      if ((sum += volume) > 0.1 * volume_) break;
-    }
-    const double unit = std::pow(10, std::floor(std::log10(length)) - 1);
-    return std::floor(0.99 * length / unit) * unit;
-  }
-
-  const Grid& grid_;
-  std::vector<Span> spans_;  // the last of each ray that is missing
-  std::vector<std::pair<double, double>> lengths_;
-  Box3 box_;
-  double volume_ = 0;
-};
+  out.box.add(to_world(grid.axis(), box.lower)), out.box.add(to_world(grid.axis(), box.upper));
+  out.pitch = kept_by(std::move(lengths), out.volume);
+  out.notable = lost.size() >= 4 || out.volume > 0.01 * grid.volume();
+  return out;
+}
 
 }  // namespace
 
@@ -114,10 +115,8 @@ ThinMaterial thin_material(const Volume& volume) {
   if (volume.grids().size() != 3) return out;
   const Lattice lattice(volume);
   for (const Grid& grid : volume.grids()) {
-    const PointsOfSpan points(lattice, along(grid));
-    if (!any_missing(grid, points)) continue;
-    const Missing missing(grid, points);
-    if (missing.volume() > out.volume) out = missing.result();
+    const ThinMaterial seen = seen_by(grid, PointsOfSpan(lattice, along(grid)));
+    if (seen.volume > out.volume) out = seen;
   }
   return out;
 }

@@ -87,6 +87,20 @@ class Mesh:
         """
         (n,) float64: how far (mm) each vertex is from the surface of `other`; with signed=True negative inside.
         """
+    def oriented(self, report: dict | None = None, *, hollow: bool = False) -> Mesh:
+        """
+        This mesh as the surface of a solid: the mesh itself, or one in which triangles are turned.
+
+        What takes a mesh as a solid (Volume.from_mesh, Collider, verify, plan.pencil, plan.engrave, deviation with signs) does
+        this by itself. In closed pieces orientation is carried over edges that two triangles share, the larger area decides, and
+        they then face outwards, but for cavities: pieces within another that are oriented the other way round. Open pieces, and
+        pieces with one side only, stay as they are. ``hollow``: leave closed pieces that all face inwards, as
+        plans and Collider do: room in endless material.
+
+        ``report``: a dict that is filled with ``turned`` triangles; ``turned_shells``, closed pieces that faced inwards as a
+        whole; ``left_out``, repeated triangles that tear the surface open, which name one vertex three times in the result;
+        ``one_sided``, pieces like a Möbius strip.
+        """
     def smooth(self, iterations: typing.SupportsInt = 10, tolerance: typing.SupportsFloat | None = None, *, feature_angle: typing.SupportsFloat = 0.7, progress: typing.Any = None) -> Mesh:
         """
         A smoother mesh of the same triangles (Taubin) and the same volume; no vertex moves farther than `tolerance`
@@ -289,14 +303,18 @@ class Volume:
         The points whose absolute generalized winding number in ``mesh`` exceeds 1/2.
 
         Covers the mesh's box, or ``lower`` to ``upper`` (clipping what lies outside). Inside-out, overlapping, touching and open
-        parts are fine; a mesh without volume is a ValueError.
+        parts are fine, as are triangles that face the other way than their neighbours and repeated ones (Mesh.oriented); a mesh
+        without volume is a ValueError.
 
         ``report``: a dict that is filled with what was wrong with the mesh, all 0 but ``triangles`` for one that is closed and
         well oriented: ``degenerate`` and ``duplicates``, triangles; ``open_edges`` of one triangle, ``nonmanifold_edges`` of
-        three or more, ``inconsistent_edges`` of two that run it in the same direction; ``openings``, walks along which the
-        surface ends; ``flipped_shells`` that face into the material; of the volume, the shares ``inside_out``, where the
+        three or more, ``inconsistent_edges`` of two that run it in the same direction; ``turned`` triangles, turned to agree with
+        their neighbours, ``left_out``, repeated ones that tear the surface open, ``one_sided`` pieces, like a Möbius strip;
+        ``openings``, walks along which the surface ends; ``flipped_shells`` that face into the material; of the volume, the shares ``inside_out``, where the
         winding number is negative, and ``overlap``, where it is 2 or more; ``doubtful_rays``, the share of the rays with
-        material that end within an opening instead of on the surface.
+        material that end within an opening instead of on the surface; and with ``lost``, ``lost_box``, ``lost_pitch`` and
+        ``lost_note`` as by to_mesh(): what rays miss, or a mesh of the volume will lack. Without a report the note is a
+        UserWarning.
         """
     @staticmethod
     def load(path: os.PathLike | str | bytes, progress: typing.Any = None) -> Volume:
@@ -404,9 +422,13 @@ class Volume:
         """
         The bytes of the .rvol file.
         """
-    def to_mesh(self, progress: typing.Any = None) -> Mesh:
+    def to_mesh(self, progress: typing.Any = None, report: dict | None = None) -> Mesh:
         """
         The surface: closed, outward, two-manifold, and still so in a binary STL.
+
+        ``report``: a dict that is filled with what is no part of it, since it is thinner than the pitch: ``lost`` (mm³),
+        ``lost_box``, where, as two corners, or None; ``lost_pitch`` (mm) that keeps it, or None; ``lost_note``, a sentence where
+        there is more than crumbs, otherwise empty. Without a report that sentence is a UserWarning.
         """
     @property
     def directions(self) -> str:
@@ -438,7 +460,7 @@ class Volume:
     @property
     def volume(self) -> float:
         """
-        mm³: lengths of the z rays × h² (of the only rays, where there are no z rays).
+        mm³: lengths of the z rays × their areas (of the only rays, where there are no z rays). An area is h², but for the last rays, whose cells end with the box.
         """
 class Softened:
     """

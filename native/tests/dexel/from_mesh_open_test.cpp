@@ -301,11 +301,11 @@ TEST(FromOpenMesh, RandomHolesCracksAndSoups) {
   for (int round = 0; round < test::cases(6); ++round) {
     Mesh mesh = sphere({0, 0, 0}, 10, 10);
     mesh = joined(mesh, moved(box({-6, -6, -6}, {6, 6, 6}), rotation({1, 2, round + 0.1}, round), Vec3(4, 3, 2)));
-    // Triangles lost, turned round and doubled.
+    // Triangles lost, turned round and doubled; one of the box's is always lost, as closed pieces would be mended.
     Triangles kept;
     for (const Vec3i& t : mesh.triangles) {
       const double dice = uniform(random);
-      if (dice > 0.9) continue;
+      if (dice > 0.9 || &t == &mesh.triangles.back()) continue;
       kept.push_back(dice < -0.97 ? Vec3i(t.x, t.z, t.y) : t);
       if (dice > 0.87) kept.push_back(t);
     }

@@ -192,7 +192,7 @@ TEST(Orient, OpenPiecesStay) {
   EXPECT_FALSE(orient(cup).any);
   EXPECT_FALSE(orient(flipped(cup)).any);
   EXPECT_FALSE(orient(turned(cup, {5})).any);
-  const Result r = orient(joined(turned(cup, {5}), turned(kCube, {3})));
+  const Result r = orient(joined(turned(cup, {5}), turned(box({20, 0, 0}, {30, 10, 10}), {3})));
   EXPECT_EQ(r.found.turned, 1U);
   EXPECT_EQ(r.mesh.triangles[5], turned(cup, {5}).triangles[5]);
 }
