@@ -6,7 +6,7 @@
 
 namespace {
 
-constexpr std::size_t kPlaces = 1 << 18;
+constexpr std::size_t kPlaces = 1 << 16;
 std::array<std::uint8_t, kPlaces> taken;  // by hash of a branch: how often; threads may lose a count
 std::array<std::uint8_t, kPlaces> known;  // classes of counts, one bit each
 std::uint64_t found = 0;

@@ -1,7 +1,6 @@
 #include "fuzz/mutator.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <string_view>
 
@@ -168,7 +167,7 @@ void Mutator::change(Bytes& bytes, std::span<const std::uint8_t> other) {
                                                  0xFFFFFFFFFFFFFFFF};
       const std::uint64_t value = kEdges[below(std::size(kEdges))] + below(3) - 1;
       const std::size_t size = std::min(bytes.size() - at, std::size_t{1} << below(4));
-      std::memcpy(bytes.data() + at, &value, size);
+      for (std::size_t k = 0; k < size; ++k) bytes[at + k] = static_cast<std::uint8_t>(value >> (8 * k));
       break;
     }
     case 7:  // another digit: most of these can still be read

@@ -1,6 +1,7 @@
 #include "nc/heidenhain_interpreter.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <stdexcept>
 #include <utility>
@@ -31,7 +32,7 @@ Program parse_heidenhain(std::string_view text, const std::string& file, const R
 }
 
 HeidenhainInterpreter::HeidenhainInterpreter(std::string_view text, const std::string& file, const ReadOptions& options)
-    : place_{file, 0, {}}, values_(place_), source_(file) {
+    : place_{file, 0, {}}, values_(place_), source_(file), progress_(options.progress) {
   take_options(options);
   NcSource source(text, file);
   if (check_header_) riffler::check_header(source, rows_->machine());
@@ -60,8 +61,10 @@ void HeidenhainInterpreter::take_options(const ReadOptions& options) {
 }
 
 Program HeidenhainInterpreter::run() {
+  constexpr std::uint64_t kBlocksAReport = 1024;
   begin_program();
-  while (!ended_ && next_ < text_->size()) {
+  for (std::uint64_t n = 0; !ended_ && next_ < text_->size(); ++n) {
+    if (n % kBlocksAReport == 0) report(progress_, static_cast<double>(next_) / static_cast<double>(text_->size()));
     const HeidenhainBlock& block = (*text_)[next_++];
     if (block.optional && block_delete_) continue;
     execute(block);

@@ -165,6 +165,7 @@ class HeidenhainInterpreter {
   double max_turns_ = 0, turns_ = 0, arc_miss_ = 0;
   std::size_t more_skipped_ = 0;
 
+  const Progress& progress_;
   std::size_t next_ = 0;             // block
   std::vector<std::size_t> calls_;   // blocks to return to
   std::map<std::size_t, int> left_;  // repetitions, by the block that asks for them

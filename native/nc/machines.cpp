@@ -22,7 +22,7 @@ std::vector<DescriptionEntry> machines() {
 std::string machines_with(char axis) {
   std::string out;
   for (const DescriptionEntry& entry : machines()) {
-    OptionReader options({}, entry.name);
+    OptionReader options({{"tcp", true}}, entry.name);  // with which no pivot is asked for
     try {
       const std::unique_ptr<Machine> machine = make_machine(entry.name, options);
       if (machine->control().language != "rs274" || machine->axes().find(axis) == std::string_view::npos) continue;
@@ -43,7 +43,7 @@ std::string machines_of_language(std::string_view language) {
   std::string out;
   for (const DescriptionEntry& entry : machines()) {
     try {
-      OptionReader none({}, entry.name);
+      OptionReader none({{"tcp", true}}, entry.name);
       if (make_machine(entry.name, none)->control().language == language) out += (out.empty() ? "" : ", ") + entry.name;
     } catch (const std::exception&) {
       // A description that cannot be read, or needs options, is not among those that are named.

@@ -31,8 +31,6 @@ void Program::append(const Move& move) {
   if (!move.rapid) {
     if (!(move.feed >= 0 && move.feed <= kMaxFeed)) fail("feed", row, "must be positive and finite");
     if (move.feed == 0 && row > 0 && pose.tip != poses_.back().tip) fail("feed", row, "0, but the tip moves");
-    if (move.feed > 0 && row > 0 && !(glm::length(pose.tip - poses_.back().tip) / move.feed <= kMaxMinutes))
-      fail("feed", row, "so small that the move takes more than a thousand years");
   }
   if (move.at_machine && leading_ == row)
     ++leading_;

@@ -1,6 +1,10 @@
 #include "verify/timing.hpp"
 
+#include <stdexcept>
+#include <string>
+
 #include "geom/directions.hpp"
+#include "nc/limits.hpp"
 
 namespace riffler {
 
@@ -12,7 +16,11 @@ double seconds_of(const Pose& from, const Program& program, std::size_t row, dou
     const double angle = angle_between(from.axis, to.axis);
     return 60 * angle * degrees / kRotaryRate;
   }
-  return 60 * way / (program.rapid()[row] ? rapid_feed : program.feed()[row]);
+  const double minutes = way / (program.rapid()[row] ? rapid_feed : program.feed()[row]);
+  if (!(minutes <= kMaxMinutes))
+    throw std::invalid_argument("program, row " + std::to_string(row) +
+                                ": its feed is so small that the move takes more than a thousand years");
+  return 60 * minutes;
 }
 
 }  // namespace riffler

@@ -86,7 +86,7 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
       {"G1 X1 F-5", "F is negative"},
       {"S-1 M3", "S is negative"},
       {"X1 F1", "axis words without a motion (G0, G1, G2, G3)"},
-      {"G0 X1\nG80\nX2", "axis words without a motion (G0, G1, G2, G3)"},
+      {"G80\nX2", "axis words without a motion (G0, G1, G2, G3)"},
       {"G4", "G4 needs P"},
       {"G4 P1 X1", "axis words beside G4"},
       {"G0 X1 R1", "R has no meaning in this block"},

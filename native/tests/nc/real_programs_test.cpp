@@ -133,7 +133,7 @@ TEST(RealPrograms, TheMotionFromBeforeACycleHoldsAfterIt) {
   EXPECT_EQ(p.poses().back().tip, Vec3(7, 2, 15));
   EXPECT_TRUE(p.rapid().back());
   EXPECT_EQ(kinds(p), std::vector<std::string>{"motion"});
-  EXPECT_EQ(read_nc_text("G21 G0 X1 Y2 Z9\nG82 X5 Z-3 R2 F100").size(), 4U) << "a dwell is only time";
+  EXPECT_EQ(read_nc_text("G21 G0 X1 Y2 Z9\nG82 X5 Z-3 R2 F100").size(), 5U) << "a dwell is only time";
   EXPECT_EQ(nc_error("G80\nX1"), "line 2: axis words without a motion (G0, G1, G2, G3) [X1]");
 }
 

@@ -59,7 +59,7 @@ TEST_F(NcStreamFile, GivesAptRowsToo) {
 }
 
 TEST_F(NcStreamFile, SaysWhatIsWrongWhenItGetsThere) {
-  write("G0 X1\nX2\nX3\nX\n");
+  write("G0 X1 Y0 Z0\nX2\nX3\nX\n");
   NcStream stream(path_, {}, 3);
   Program chunk;
   ASSERT_TRUE(stream.next(chunk));

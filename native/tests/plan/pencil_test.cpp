@@ -410,11 +410,11 @@ TEST(Pencil, WrongCallsAreRefusedAndCancelledOnesStop) {
   EXPECT_EQ(last, 1);
 }
 
-TEST(Pencil, BallsOfAnySizeComeToAnEnd) {
+TEST(Pencil, BallsOfManySizesComeToAnEnd) {
   const Mesh part = groove(kPi / 2);
-  for (const double radius : {1e-2, 0.3, 10.0, 1e3, 1e6}) {
+  for (const double radius : {1e-2, 0.3, 10.0, 1e3}) {
     const PencilResult result = pencil(part, radius, {.tolerance = 0.01});
-    // The gap of the smallest one is within the tolerance, the contacts of the largest two are beyond the walls.
+    // The gap of the smallest one is within the tolerance, the contacts of the largest are beyond the walls.
     EXPECT_EQ(result.paths.size(), radius > 0.1 && radius < 11 ? 1U : 0U) << radius << " " << result.reason;
     EXPECT_EQ(result.stats.cut, 0U);
   }
@@ -422,6 +422,7 @@ TEST(Pencil, BallsOfAnySizeComeToAnEnd) {
 
 TEST(Pencil, ABallThatCannotBeMeantForThePartIsRefused) {
   const Mesh part = groove(1.5);
+  EXPECT_THROW(pencil(part, 1e6, {.tolerance = 0.01}), std::invalid_argument);
   EXPECT_THROW(pencil(part, 5e5, {.tolerance = 0.01, .passes = 2}), std::invalid_argument);
   EXPECT_THROW(pencil(part, 1e-7, {.tolerance = 0.01}), std::invalid_argument);
   EXPECT_THROW(pencil(part, 3, {.tolerance = 1e-9}), std::invalid_argument);

@@ -38,8 +38,9 @@ CALLS = {
     "carve_constant": (lambda x: block().carve(BALL, MOVE, removal_constant=x), [*NEVER, -1.0, 1e308]),
     "verify_rapid": (lambda x: riffler.verify(PROGRAM, block(), rapid_feed=x), [*NEVER, 0.0, 5e-324, 1e300]),
     "verify_tolerance": (lambda x: riffler.verify(PROGRAM, block(), tolerance=x), [*NEVER, 0.0, 1e-12]),
-    "program_feed": (lambda x: riffler.Program(np.array(MOVE), x), [*NEVER, 0.0, 5e-324, 1e-300]),
-    "retimed": (lambda x: PROGRAM.retimed(x), [*NEVER, 0.0, 1e-300]),
+    "program_feed": (lambda x: riffler.Program(np.array(MOVE), x), [*NEVER, 0.0]),
+    "verify_feed": (lambda x: riffler.verify(fed(x), block()), [5e-324, 1e-300]),
+    "retimed": (lambda x: PROGRAM.retimed(x), [*NEVER, 0.0]),
     "soften": (lambda x: block("xyz").soften([5, 5, 10], x), [*NEVER, 0.0]),
     "soften_strength": (lambda x: block("xyz").soften([5, 5, 10], 2, x), [*NEVER, 1.5, -1]),
     "parts": (lambda x: block().parts(x), NEVER),
@@ -59,6 +60,10 @@ CALLS = {
     "session_force": (lambda x: riffler.Session(block(), BALL, max_force=x), [*NEVER, -1]),
     "session_tolerance": (lambda x: riffler.Session(block(), BALL, tolerance=x), [*NEVER, 0.0, 1e-12]),
 }
+
+
+def fed(feed):
+    return riffler.Program(np.array(MOVE), feed, spindle=1000.0, tools={1: BALL})
 
 
 def corner():

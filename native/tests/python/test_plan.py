@@ -288,7 +288,7 @@ def test_cutter_locations_can_be_cancelled_and_refuse_a_path_without_axes():
         )
     with pytest.raises(ValueError, match="has no axes"):
         plan.cutter_locations(corner(), riffler.Tool.ball(6, 30), collider)
-    with pytest.raises(ValueError, match="tolerance must be positive"):
+    with pytest.raises(ValueError, match="tolerance must be a positive length"):
         plan.cutter_locations(corner().oriented({0: UP}), riffler.Tool.ball(6, 30), collider, tolerance=0)
 
 

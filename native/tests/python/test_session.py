@@ -183,9 +183,9 @@ def test_the_volume_is_the_sessions_while_it_runs():
     volume = stock()
     with riffler.Session(volume, BALL) as session:
         volume.carve(BALL, [(0, 0, -1, 0, 0, 1), (5, 0, -1, 0, 0, 1)])
-        with pytest.raises(RuntimeError, match="changed by somebody else"):
+        with pytest.raises(RuntimeError, match="changed by something else"):
             session.frame()
-        with pytest.raises(RuntimeError, match="changed by somebody else"):
+        with pytest.raises(RuntimeError, match="changed by something else"):
             session.stop()
 
 

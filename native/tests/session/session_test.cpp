@@ -288,7 +288,7 @@ TEST(Session, WhoChangesTheVolumeMeanwhileIsTold) {
     bench.session->frame(bench.shown);
     FAIL();
   } catch (const std::runtime_error& e) {
-    EXPECT_NE(std::string(e.what()).find("changed by somebody else"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("changed by something else"), std::string::npos);
   }
 }
 
