@@ -1,6 +1,11 @@
 """Programs of a plan, of a file, of a sculpt's cuts; and as they are simulated and verified: in the frame of the stock,
 and on the timeline."""
 
+<<<<<<< ours
+=======
+import json
+import re
+>>>>>>> theirs
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,23 +58,22 @@ def of_plan(context, ob, plan, feed, spindle):
     """The riffler.Program of all paths that are to be cut, in their order, in the scene's millimetres."""
     taken, chosen = ready(context, ob, plan), plan_store.wanted(plan)
     settings = context.scene.riffler.plan
-    return riffler.Program.from_cl(
-        [plan.cl[k] for k in chosen],
-        tools=[plan.tool] * len(chosen),
-        feed=feed,
-        spindle=spindle,
-        occupied=taken.bounds,
-        collider=taken.result().collider,
-        contact_tolerance=touch(plan),
-        **_links(settings),
-        provenance={
-            "plan": ob.name,
-            "part": f"{taken.who[0]} {taken.prints[0][:16]}",
-            "paths": f"{len(chosen)}, {names.trim(sum(plan.paths[k].length for k in chosen), 1)} mm",
-            "clearance": f"{names.trim(units.clean(settings.clearance), 4)} mm",
-            "plan id": plan_store.identity(ob)[:16],
-        },
-    )
+    collider = taken.result().collider
+    provenance = {
+        "plan": ob.name,
+        "part": f"{taken.who[0]} {taken.prints[0][:16]}",
+        "paths": f"{len(chosen)}, {names.trim(sum(plan.paths[k].length for k in chosen), 1)} mm",
+        "clearance": f"{names.trim(units.clean(settings.clearance), 4)} mm",
+        "plan id": plan_store.identity(ob)[:16],
+    }
+    how = {"feed": feed, "spindle": spindle, "occupied": taken.bounds, "provenance": provenance}
+    how |= {"collider": collider, "contact_tolerance": touch(plan), **_links(settings)}
+    try:
+        return riffler.Program.from_cl([plan.cl[k] for k in chosen], tools=[plan.tool] * len(chosen), **how)
+    except ValueError as error:
+        # The numbers of the panel, and the names of its fields.
+        text = re.sub(r"^path (\d+)\b", lambda found: f"Path {chosen[int(found[1])] + 1}", str(error))
+        raise ValueError(text.replace("safe_height", "Clearance Plane")) from None
 
 
 def touch(plan):

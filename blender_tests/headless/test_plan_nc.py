@@ -1,5 +1,6 @@
 """A plan's paths resolved, and written as NC code that says what the timeline plays."""
 
+import itertools
 import json
 import os
 import re
@@ -182,6 +183,74 @@ def test_a_cutter_nearer_to_a_fixture_than_the_clearance_is_said():
         said = support.printed(bpy.ops.riffler.plan_resolve)
         assert programs.content(ob).cl[0] is not None
         assert ("mm of Stop, nearer than the clearance" in said) == words, said
+
+
+def clamped(location, scale):
+    """A resolved plan of the leaning tool, with a box of the scene as its fixture."""
+    ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
+    settings = bpy.context.scene.riffler.plan
+    settings.fixtures = bpy.data.collections.new("Fixtures")
+    bpy.ops.mesh.primitive_cube_add(size=1, location=location)
+    bpy.context.object.name, bpy.context.object.scale = "Clamp", scale
+    settings.fixtures.objects.link(bpy.context.object)
+    bpy.context.view_layer.update()
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.riffler.plan_resolve()
+    assert programs.content(ob).cl[0] is not None
+    return ob, settings
+
+
+def test_a_clamp_that_the_holder_would_meet_on_the_way_in_is_gone_round():
+    ob, _ = clamped((30, -66.5, 75), (140, 17, 30))
+    (rows,) = programs.content(ob).cl
+    near = support.part("bl.surroundings").take(bpy.context, ob).result()
+    plain = riffler.Program.from_cl([rows], tools=[plans.TOOL], feed=600, safe_height=150)
+    away = support.out("away.ngc")
+    try:
+        plain.write(away, collider=near.collider)
+    except ValueError as error:
+        assert "the holder meets a fixture" in str(error)
+    else:
+        raise AssertionError("the scene is not as it is meant to be")
+    read = riffler.Program.read(write("clamped.ngc"))
+    assert max(np.linalg.norm(read.poses - row, axis=1).min() for row in rows) < 2e-4
+    share = np.linspace(0, 1, 40)[:, None]
+    between = np.concatenate([a + share * (b - a) for a, b in itertools.pairwise(read.poses)])
+    between[:, 3:] /= np.linalg.norm(between[:, 3:], axis=1)[:, None]
+    assert near.clearance(plans.TOOL, between).min() > -0.03
+
+
+def test_how_a_tool_gets_into_its_cuts_is_said_in_the_panel():
+    ob, settings = clamped((30, -300, 5), (10, 10, 10))
+    (rows,) = programs.content(ob).cl
+
+    def before_the_cut():
+        poses = riffler.Program.read(write("links.ngc")).poses
+        return poses[: int(np.linalg.norm(poses - rows[0], axis=1).argmin())]
+
+    assert np.allclose(np.cross(before_the_cut()[-1, :3] - rows[0, :3], programs.LEANING), 0, atol=1e-3)
+    settings.lead_in = 4
+    assert np.isclose(np.linalg.norm(before_the_cut()[-1, :3] - rows[0, :3]), 4, atol=1e-4)
+    settings.lead_in, settings.leave, settings.retract = 0, "UP", 6
+    assert np.allclose(before_the_cut()[-1, :3] - rows[0, :3], (0, 0, 6), atol=1e-4)
+    settings.plane = 60
+    assert before_the_cut()[0, 2] >= 60
+    settings.plane = 12
+    support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "Clearance Plane must be above")
+
+
+def test_what_cannot_be_linked_is_refused_with_its_place_until_the_fixture_is_moved():
+    _, settings = clamped((30, 20, 100), (900, 900, 10))
+    path = support.out("roofed.ngc")
+    Path(path).unlink(missing_ok=True)
+    support.refused(
+        lambda: bpy.ops.riffler.plan_nc(filepath=path), "Path 1, row 0: no approach is clear", "mm deep, at ["
+    )
+    assert not Path(path).exists()
+    settings.fixtures.objects["Clamp"].location.y = 900  # move the fixture
+    bpy.context.view_layer.update()
+    bpy.ops.riffler.plan_resolve()
+    write("roofed.ngc")
 
 
 def test_a_key_that_was_refused_is_said_with_the_code():

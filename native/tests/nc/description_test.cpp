@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <random>
 #include <stdexcept>
@@ -13,6 +14,7 @@
 #include "geom/io.hpp"
 #include "nc/machines.hpp"
 #include "nc/post.hpp"
+#include "nc/writer.hpp"
 #include "support/damaged.hpp"
 
 namespace riffler::description_test {
@@ -53,6 +55,32 @@ MachineDescription describe(const std::string& toml, Options options = {}) {
   take_post_options(reader);
   reader.done();
   return out;
+}
+
+TEST(Description, SaysHowToRetractWhichCoolantAndWhatMustBeGiven) {
+  const std::string more = "retract = [\"G91 G28 Z0\", \"G90\"]\ncoolant = \"mist\"\n" + std::string(kMill);
+  const MachineDescription own = describe(more);
+  EXPECT_EQ(own.control.retract, (std::vector<std::string>{"G91 G28 Z0", "G90"}));
+  EXPECT_EQ(own.control.coolant, "mist");
+  EXPECT_TRUE(describe(kMill).control.retract.empty());
+  EXPECT_EQ(describe(kMill).control.coolant, "off");
+  // A program by this file, with its coolant where its user says nothing.
+  const auto file = std::filesystem::temp_directory_path() / "riffler_description_test.toml";
+  {
+    std::ofstream(file) << more;
+  }
+  Program p;
+  p.append({{{1, 2, 3}, {0, 0, 1}}, 0, 1000, 1, 0, true});
+  p.append({{{1, 2, 0}, {0, 0, 1}}, 100, 1000, 1, 0, false});
+  WriteOptions how;
+  how.post = file.string();
+  const std::string text = to_nc(p, how);
+  EXPECT_NE(text.find("\nG91 G28 Z0\nG90\nT1 M6\nS1000 M3\nM7\n"), text.npos) << text;
+  EXPECT_NE(text.find("\nM9\n"), text.npos);
+  EXPECT_TRUE(text.find("\nG91 G28 Z0\nG90\n", text.find("M9")) != text.npos) << text;
+  how.options["coolant"] = std::string("off");
+  EXPECT_EQ(to_nc(p, how).find("M7"), std::string::npos);
+  std::filesystem::remove(file);
 }
 
 TEST(Description, SaysWhatItsFileAndOptionsSay) {
@@ -121,6 +149,10 @@ TEST(Description, NamesTheLineThatIsWrong) {
   EXPECT_EQ(error(with("{ table", "{ chair")), "mill.toml, line 21: at: there is no option chair");
   EXPECT_EQ(error(with("\"G53 G0 Z0\"", "\"G0\\nG1\"")),
             "mill.toml, line 4: start must be a list of texts in printable ASCII, one block each");
+  EXPECT_EQ(error(with("raised = 5", "raised = { needed = \"joints\", numbers = 2, about = \"x\" }")),
+            "mill.toml, line 15: numbers must be 1 or 3");
+  EXPECT_EQ(error(with("start", "coolant = \"air\"\nstart")),
+            "mill.toml, line 4: coolant must be one of off, flood, mist");
   EXPECT_EQ(error("description = \"x\"\ncontrol = \"siemens\""),
             "mill.toml, line 2: control must be one of rs274, heidenhain, apt");
   EXPECT_EQ(error(kMill, {{"pivot", 1.0}}).substr(0, 36), "machine mill: unknown option 'pivot'");

@@ -97,8 +97,8 @@ TEST(Rs274Post, RetractsThenTurnsThenGoesAcrossThenDown) {
 }
 
 TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
-  // Where the tool is between the machine's own retract and the first Z is not in the program: no row of the part, and no
-  // rapid through the part's zero.
+  // Where the tool is between the machine's own retract and the first Z is not in the program: no row of the part, and
+  // no rapid through the part's zero.
   const Program p = two_tools();
   const Options table{{"rot_point", std::vector<double>{3, 4, -50}}};
   for (const char* post : {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head", "head-table"})

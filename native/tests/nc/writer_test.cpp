@@ -179,10 +179,11 @@ TEST(Writer, NamesWhatIsWrong) {
   EXPECT_TRUE(error_of(p, options).starts_with("unknown post lathe; known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, "));
   options = {};
   options.options["offset"] = 1.0;
-  EXPECT_EQ(error_of(p, options),
-            "post tcp: unknown option 'offset'; known: tcp, max_rotary, limits_x, rate_x, limits_y, rate_y, limits_z, "
-            "rate_z, limits_a, rate_a, limits_c, rate_c, tool_length, feed, rapids, line_numbers, coolant, vectors, retract, "
-            "safe_start, safe_height, arcs");
+  EXPECT_EQ(
+      error_of(p, options),
+      "post tcp: unknown option 'offset'; known: tcp, max_rotary, limits_x, rate_x, limits_y, rate_y, limits_z, "
+      "rate_z, limits_a, rate_a, limits_c, rate_c, tool_length, feed, rapids, line_numbers, coolant, vectors, retract, "
+      "safe_start, safe_height, arcs");
   options = {};
   options.tolerance = 0;
   EXPECT_NE(error_of(p, options).find("tolerance"), std::string::npos);

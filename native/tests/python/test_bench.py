@@ -316,7 +316,7 @@ def test_code_is_read_written_and_true_between_its_blocks(quick):
 def test_the_judge_of_code_sees_blocks_that_are_wrong(tmp_path, post):
     poses, file = nc_programs.paths(60)["smooth"], tmp_path / "p.ngc"
     program = riffler.Program.from_cl([poses], tools=[nc.TOOL], feed=800)
-    options = {} if post == "tcp" else nc.TABLE
+    options = nc.AS_ROWS if post == "tcp" else nc.TABLE | nc.AS_ROWS
     program.write(file, post=post, tolerance=1e-3, axis_tolerance=1e-4, options=options)
     joints = nc_judge.joints_of(file.read_text())
     found = nc_judge.between(joints, poses, nc.KINEMATICS[post])

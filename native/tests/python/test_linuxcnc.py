@@ -247,7 +247,9 @@ def test_the_first_blocks_retract_turn_go_across_and_come_down(tmp_path, post):
     """As the interpreter says it: no rotary axis turns, and nothing goes across, below where the retract has ended."""
     poses = path("smooth")
     tools = [riffler.Tool.ball(6, 30), riffler.Tool.ball(4, 30)]
-    program = riffler.Program.from_cl([poses, poses + [5, 0, 0, 0, 0, 0]], tools=tools, feed=600, spindle=8000)
+    program = riffler.Program.from_cl(
+        [poses, poses + np.array([5, 0, 0, 0, 0, 0])], tools=tools, feed=600, spindle=8000
+    )
     name, own, axes = POSTS[post]
     file = tmp_path / "p.ngc"
     program.write(file, post=name, options=own)

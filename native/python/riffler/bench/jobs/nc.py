@@ -20,6 +20,7 @@ TOOL = Tool.ball(6, 30)
 AXIS_SHARE = 0.1  # rad of the axis for every mm of the tip, where both are asked for
 PRINTED = 2e-5  # mm: what lengths of 5 decimals and angles of 6 leave of a tip 200 mm off the axes
 TABLE = {"rot_point": nc_programs.ROT_POINT.tolist(), "offset": nc_programs.OFFSET.tolist()}
+AS_ROWS = {"safe_start": False}  # without the blocks that bring the tool to its first row
 KINEMATICS = {
     "linuxcnc-xyzac": nc_judge.tilting_table("A", **TABLE),
     "linuxcnc-xyzbc": nc_judge.tilting_table("B", **TABLE),
@@ -138,7 +139,7 @@ def write(out: Report, count: int, settings: Settings, folder: Path, progress: P
         file = folder / "w.ngc"
 
         def work(program=program, file=file, post=post, options=options) -> dict:
-            return program.write(file, post=post, options=options)
+            return program.write(file, post=post, options=options | AS_ROWS)
 
         figures, wrote = beside_interpreter(file, work, settings)
         figures.pop("ratio", None)
@@ -211,7 +212,7 @@ def divide(out: Report, settings: Settings, folder: Path, progress: Progress) ->
 def divided(post: str, poses: np.ndarray, tolerance: float, settings: Settings, folder: Path) -> dict[str, Any]:
     program = Program.from_cl([poses], tools=[TOOL], feed=800)
     file, axis_tolerance = folder / "d.ngc", AXIS_SHARE * tolerance
-    options = {} if post == "tcp" else TABLE
+    options = AS_ROWS if post == "tcp" else TABLE | AS_ROWS
 
     def work() -> dict:
         return program.write(file, post=post, tolerance=tolerance, axis_tolerance=axis_tolerance, options=options)
