@@ -1,11 +1,7 @@
 """Programs of a plan, of a file, of a sculpt's cuts; and as they are simulated and verified: in the frame of the stock,
 and on the timeline."""
 
-<<<<<<< ours
-=======
-import json
 import re
->>>>>>> theirs
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
