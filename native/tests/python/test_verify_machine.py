@@ -70,7 +70,7 @@ def test_the_reader_names_the_line_at_which_an_axis_would_leave_its_limits(tmp_p
 
 
 def test_a_swing_of_the_rotary_axes_is_the_machines(tmp_path):
-    """A table that turns half way round takes the leaning holder round the side, where the clamp is, not over the top."""
+    """A table that turns half way round takes the leaning holder round the side, where the clamp is, not over it."""
     file = tmp_path / "swing.ngc"
     tool = riffler.Tool.ball(4, 20).with_shank([(20, 2, 40, 2)]).with_holder([(40, 15, 90, 15)])
     block = riffler.Volume.block([-10, -10, -20], [10, 10, 0], 0.5)
