@@ -101,7 +101,7 @@ def test_bytes_that_are_no_text_are_named(tmp_path):
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(ValueError, match=r"^gone\.json: No such file or directory: choose"):
+    with pytest.raises(ValueError, match=r"^gone\.json: cannot be opened: No such file or directory: choose"):
         library.read(tmp_path / "gone.json", riffler.Tool.from_dict)
 
 
@@ -158,7 +158,7 @@ def test_a_disk_that_is_full_leaves_the_file_before(tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(os, "replace", full)
+    monkeypatch.setattr(library.files, "write", full)
     with pytest.raises(ValueError, match="No space left on device"):
         library.write(tmp_path, {**BALL, "length": 40.0})
     assert os.listdir(tmp_path) == ["Six.json"] and json.loads(path.read_text()) == BALL

@@ -4,9 +4,10 @@ import collections.abc
 import numpy
 import numpy.typing
 import os
+import pathlib
 import typing
 import types
-__all__: list[str] = ['Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'contact_locations', 'cutter_locations', 'drop', 'engrave', 'least_tilt', 'lift', 'machines', 'orientation_maps', 'pencil', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -42,6 +43,22 @@ class Task:
         """
         The finished share, in [0, 1]: never goes back, and 1 only where the call came to its end.
         """
+class AtomicFileWriter:
+    """
+    A file that takes the place of ``path`` at ``commit``.
+
+    Links are followed; permissions and owner of a file that is there are kept; RuntimeError for what is no regular file.
+    """
+    def __init__(self, path: os.PathLike | str | bytes) -> None:
+        ...
+    def commit(self) -> None:
+        """
+        Once.
+        """
+    def fileno(self) -> int:
+        """
+        Of the draft, which is written to; -1 after ``commit``.
+        """
 class Mesh:
     """
     A triangle mesh, mm. It never changes: what changes a mesh returns a new one.
@@ -51,11 +68,12 @@ class Mesh:
     range. Vertices are not welded; files are, when they are read.
     """
     @staticmethod
-    def read(path: os.PathLike | str | bytes) -> Mesh:
+    def read(path: os.PathLike | str | bytes, *, progress: typing.Any = None) -> Mesh:
         """
         The mesh in a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one. A .3mf file gives
         all that it says to build, placed, in mm whatever its unit; it needs the package lib3mf. FormatError naming the byte or
         line for a bad file (for .3mf what was expected), among them those with no triangle; ValueError for another extension.
+        ``progress`` is called with a share of the part of the file at hand, of .stl and .3mf not after the beginning.
         """
     def __copy__(self) -> Mesh:
         ...
@@ -719,7 +737,7 @@ class Program:
         Reads a .rprog file; FormatError naming the byte where it is damaged or not one.
         """
     @staticmethod
-    def read(path: os.PathLike | str | bytes, machine: str = 'tcp', options: typing.Any = None) -> Program:
+    def read(path: os.PathLike | str | bytes, machine: str = 'tcp', options: typing.Any = None, *, progress: typing.Any = None) -> Program:
         """
         Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT or Heidenhain's Klartext.
 
@@ -730,7 +748,8 @@ class Program:
         is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
         centre); ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
         end may miss its circle; ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes
-        lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
+        lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters;
+        ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
         programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.
         """
     @staticmethod
@@ -1405,7 +1424,7 @@ class Journal:
     Replaying the strokes on the stock gives the session again. Files end in .rjournal.
     """
     @staticmethod
-    def read(path: os.PathLike | str | bytes) -> Journal:
+    def read(path: os.PathLike | str | bytes, *, progress: typing.Any = None) -> Journal:
         """
         Reads a file. One that a crash has cut gives all whole records, and ``cut_at`` says where it was cut; a
         damaged record that others follow is a FormatError naming the byte.
@@ -1911,10 +1930,18 @@ def _pens() -> dict:
     ...
 def _play_pen(strokes: collections.abc.Sequence[tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collections.abc.Sequence[typing.SupportsFloat]]], speed: typing.SupportsFloat) -> PenDevice:
     ...
+def clear_drafts(path: os.PathLike | str | bytes) -> None:
+    """
+    Removes drafts of ``path`` that nobody has locked: of processes that were killed.
+    """
 def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def cutter_locations(path: PencilPath, tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: typing.Any) -> dict:
     ...
+def draft_prefix(path: os.PathLike | str | bytes) -> pathlib.Path:
+    """
+    Path with which the names of drafts of ``path`` begin.
+    """
 def drop(tool: Tool, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], part: Mesh, axis: typing.Any, progress: typing.Any) -> tuple:
     ...
 def engrave(part: Mesh, curves: collections.abc.Sequence, tool: Tool, *, depth: typing.SupportsFloat, inclination: typing.SupportsFloat, tilt: typing.SupportsFloat, tolerance: typing.SupportsFloat, turn: typing.SupportsFloat, crease: typing.SupportsFloat, reach: typing.SupportsFloat, progress: typing.Any) -> list:
@@ -1934,6 +1961,18 @@ def orientation_maps(path: PencilPath, points: collections.abc.Sequence[typing.S
 def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangency_angle: typing.SupportsFloat | None, minimum_length: typing.SupportsFloat, passes: typing.SupportsInt, stepover: typing.SupportsFloat | None, overthickness: typing.SupportsFloat, progress: typing.Any) -> dict:
     """
     For riffler.plan.pencil.
+    """
+def read_file(path: os.PathLike | str | bytes) -> bytes:
+    """
+    The file's bytes. FormatError where there is none, and for a folder, a pipe or a device.
+    """
+def replace_file(draft: os.PathLike | str | bytes, path: os.PathLike | str | bytes) -> None:
+    """
+    ``draft``, on the same file system, takes the place of ``path`` as an AtomicFileWriter's does.
+    """
+def replaceable(path: os.PathLike | str | bytes) -> pathlib.Path:
+    """
+    Where a path leads, links followed. RuntimeError for what is no regular file.
     """
 def set_threads(n: typing.SupportsInt | None) -> None:
     """
