@@ -10,7 +10,7 @@
 
 namespace riffler {
 
-inline constexpr double kMinTolerance = 1e-6;         // mm: of cutting and planning
+inline constexpr double kMinTolerance = 1e-8;         // mm: of cutting and planning
 inline constexpr double kMinToleranceOfSize = 1e-10;  // and as a share of the tool's size: doubles have no more to give
 inline constexpr double kMaxSize = 1e30;              // mm: of tolerances and distances
 inline constexpr double kMinTime = 1e-12;             // s: of a move

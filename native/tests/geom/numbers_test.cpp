@@ -11,9 +11,9 @@ namespace {
 
 TEST(Numbers, AreRefusedByNameWithTheirRange) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (const double bad : {0.0, -1.0, 1e-7, 5e-324, kInfinity, kNaN})
+  for (const double bad : {0.0, -1.0, 1e-9, 5e-324, kInfinity, kNaN})
     EXPECT_EQ(test::error_of([&] { require_tolerance(bad); }),
-              "tolerance must be a positive length in mm, from 1e-06 to 1e+30");
+              "tolerance must be a positive length in mm, from 1e-08 to 1e+30");
   require_tolerance(1e-6);
   require_tolerance_for(1e-6, 100);
   EXPECT_NE(test::error_of([] { require_tolerance_for(1e-6, 1e5); }), "");

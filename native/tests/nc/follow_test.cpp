@@ -141,7 +141,8 @@ TEST(Follow, RapidsGoAsTheMachineMoves) {
   };
   EXPECT_EQ(kinds({}), std::vector<std::string>{"rapid"});
   EXPECT_TRUE(kinds({{"rapids", std::string("straight")}}).empty() && kinds(independent).empty());
-  EXPECT_TRUE(kinds({}, "linuxcnc-xyzac").empty()) << "LinuxCNC's are straight";
+  EXPECT_TRUE(kinds({{"rot_point", std::vector<double>{0, 0, 0}}}, "linuxcnc-xyzac").empty())
+      << "LinuxCNC's are straight";
 }
 
 TEST(Follow, RotaryAxesOfADogLegTurnAtTheirOwnRate) {

@@ -113,7 +113,8 @@ TEST(HeidenhainReader, ReadsBackWhatThePostWrites) {
   for (const std::string machine : {"heidenhain", "heidenhain-bc"})
     for (const bool vectors : {false, true})
       for (const std::string coolant : {"off", "mist"}) {
-        WriteOptions options{machine, 0.01, 0.00175, {{"vectors", vectors}, {"coolant", coolant}}};
+        WriteOptions options{
+            machine, 0.01, 0.00175, {{"vectors", vectors}, {"coolant", coolant}, {"safe_start", false}}};
         const std::string text = to_nc(p, options);
         const Program q = test::read_nc_text(text, machine, options.options);
         expect_holds(p, q, machine + (vectors ? " by vectors" : " by angles"));

@@ -17,9 +17,17 @@ using test::nc_error;
 using test::read_nc_text;
 using Numbers = std::vector<double>;
 
+const Options kTable{{"rot_point", Numbers{0, 0, -50}}};
+
+Options own_options(const std::string& machine) {
+  return machine.starts_with("linuxcnc") ? kTable : Options{};
+}
+
+/// Without the blocks that bring a tool to its first row.
 WriteOptions for_machine(const std::string& name) {
   WriteOptions out;
-  out.post = name;
+  out.post = name, out.options = own_options(name);
+  out.options["safe_start"] = false;
   return out;
 }
 
@@ -97,10 +105,10 @@ TEST(MachinePositions, AreKnownWhereOptionsSayWhereTheyAre) {
 
 TEST(MachinePositions, OfRotaryAxesAreThoseOfThePart) {
   const std::string text = "G0 X0 Y0 Z50 B30 C90\nG53 G0 Z0\nG28 B0 C0\nG0 X1 Y2\nZ5";
-  const Program p = read_nc_text("G21\n" + text, "linuxcnc-xyzbc");
+  const Program p = read_nc_text("G21\n" + text, "linuxcnc-xyzbc", kTable);
   EXPECT_EQ(rows(p).back(), (Row{{1, 2, 5}, false}));
   EXPECT_NEAR(p.poses().back().axis.z, 1, 1e-12);
-  EXPECT_EQ(kinds(text, {}, "linuxcnc-xyzbc"), (Kinds{"machine position", "machine position"}));
+  EXPECT_EQ(kinds(text, kTable, "linuxcnc-xyzbc"), (Kinds{"machine position", "machine position"}));
 }
 
 TEST(MachinePositions, AreNoStartOfACut) {
@@ -175,9 +183,9 @@ TEST(MachinePositions, AreWrittenAsSafeHeightByEveryPost) {
       ADD_FAILURE() << entry.name << ": " << e.what();
     }
     EXPECT_FALSE(text.empty()) << entry.name;
-    OptionReader taken({}, "machine");
+    OptionReader taken(own_options(entry.name), "machine");
     if (make_machine(entry.name, taken)->control().language != "rs274") continue;
-    const Program back = read_nc_text(text, entry.name);
+    const Program back = read_nc_text(text, entry.name, own_options(entry.name));
     for (std::size_t row = 1; row < back.size(); ++row) {
       const Vec3 a = back.poses()[row - 1].tip, b = back.poses()[row].tip;
       const bool crosses = (a.x > 49) != (b.x > 49) && (a.x < -59 || b.x < -59);
