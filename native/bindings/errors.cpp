@@ -46,7 +46,8 @@ PyObject* kind_of(const std::exception& e) {
   if (is(dynamic_cast<const std::out_of_range*>(&e)) || is(dynamic_cast<const py::index_error*>(&e)))
     return PyExc_IndexError;
   if (is(dynamic_cast<const std::overflow_error*>(&e))) return PyExc_OverflowError;
-  if (is(dynamic_cast<const std::logic_error*>(&e)) || is(dynamic_cast<const std::range_error*>(&e)) ||
+  if (is(dynamic_cast<const std::invalid_argument*>(&e)) || is(dynamic_cast<const std::domain_error*>(&e)) ||
+      is(dynamic_cast<const std::length_error*>(&e)) || is(dynamic_cast<const std::range_error*>(&e)) ||
       is(dynamic_cast<const py::value_error*>(&e)))
     return PyExc_ValueError;
   if (is(dynamic_cast<const py::type_error*>(&e))) return PyExc_TypeError;

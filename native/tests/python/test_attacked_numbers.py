@@ -116,13 +116,15 @@ def interrupted(script, seconds=30):
     return float(done.stdout)
 
 
-@pytest.mark.parametrize("call", ["riffler.Program.read(name)", "next(riffler.Program.stream(name))"])
+@pytest.mark.parametrize(
+    "call", ["riffler.Program.read(name, options=how)", "next(riffler.Program.stream(name, options=how))"]
+)
 def test_reading_nc_code_hears_a_ctrl_c(call, tmp_path):
     path = tmp_path / "a.ngc"
     path.write_text("o1 repeat [999990]\no2 if [0]\n" + "G1 X1\n" * 20_000 + "o2 endif\no1 endrepeat\nM2\n")
     assert (
         interrupted(f"""
-        name = {str(path)!r}
+        name, how = {str(path)!r}, {{"max_turns": 1e9}}
         def work():
             {call}
     """)

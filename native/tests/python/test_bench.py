@@ -431,7 +431,7 @@ def test_without_a_blender_the_job_says_so(quick):
 
 def test_haptic_work_does_not_follow_the_grid(quick):
     table = rows(quick, "haptic", "steps")
-    small, large = (next(r for r in table if r["side"] == side and r["axis"] == "upright") for side in (512, 640))
+    small, large = (next(r for r in table if r["side"] == side and r["axis"] == "upright") for side in (1024, 1280))
     assert small["rays_tested"] == large["rays_tested"] >= small["rays_changed"] > 5_000
     assert len(small["times_s"]) == small["count"]
 

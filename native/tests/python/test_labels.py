@@ -25,7 +25,18 @@ BLENDERS = {
         "Export",
         "Item",
     ),
-    *("Horizontal", "Measure", "Paragraph", "Plain Axes", "Rings", "Segments", "Select Box", "UV Sphere", "Vertical"),
+    *(
+        "Horizontal",
+        "Measure",
+        "Paragraph",
+        "Plain Axes",
+        "Recalculate Outside",
+        "Rings",
+        "Segments",
+        "Select Box",
+        "UV Sphere",
+        "Vertical",
+    ),
 }
 OURS = {"Clamp", "Sphere Stock"}
 LONGEST = 60  # of a label; what is longer is a sentence

@@ -1,5 +1,7 @@
 """The programs that LinuxCNC ships for its five-axis simulators, cut from a stock and compared with dense sampling."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import riffler
@@ -43,6 +45,15 @@ def on_rays(volume, n, rng):
     return np.column_stack([across, rng.uniform(volume.lower[2], volume.upper[2], n)])
 
 
+def swept(program):
+    """The poses of all motions in the part: a run of rows ends at a position of the machine."""
+    whole = program.followed()
+    away = np.asarray(whole.at_machine)
+    ends = [0, *(np.flatnonzero(np.diff(away)) + 1).tolist(), len(whole)]
+    runs = [whole.poses[a:b] for a, b in pairwise(ends) if not away[a] and b - a > 1]
+    return np.concatenate([dense(run, STEP, STEP / 40)[0] for run in runs])
+
+
 @pytest.mark.parametrize("name", ["boat-xyzac", "boat-xyzbc", "impeller-7bl-xyzac", "xyzac_switchkins"])
 def test_a_stock_is_cut_as_the_cutter_at_all_poses_cuts_it(name):
     program = linuxcnc.demonstration(name)
@@ -51,7 +62,7 @@ def test_a_stock_is_cut_as_the_cutter_at_all_poses_cuts_it(name):
     stock = riffler.Volume.block(lower, lower + np.ceil((upper - lower) / PITCH) * PITCH, PITCH)
     tool = riffler.Tool.ball(DIAMETER, LENGTH)
     report = riffler.verify(program, stock, tools=dict.fromkeys(np.unique(program.tool).tolist(), tool))
-    poses, _ = dense(program.poses, STEP, STEP / 40)
+    poses = swept(program)
     points = on_rays(stock, 4000, np.random.default_rng(90))
     near = poses[(np.abs(poses[:, :3] - (lower + upper) / 2) < (upper - lower) / 2 + DIAMETER).all(1)]
     distance = removed(points, near)

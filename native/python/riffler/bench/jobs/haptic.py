@@ -20,7 +20,7 @@ COUNTERS = ("steps", "tiles_visited", "rays_tested", "rays_changed", "bytes_copi
 
 
 def run(settings: Settings, progress: Progress = None) -> Report:
-    sides, steps = ((512, 640), 60) if settings.quick else ((1024, 4096), 600)
+    sides, steps = ((1024, 1280), 60) if settings.quick else ((1024, 4096), 600)
     out = Report("haptic", {"steps": steps, "target_s": TARGET})
     table = out.section(
         "steps",
