@@ -73,7 +73,7 @@ def test_what_cannot_be_written_leaves_the_file_that_was_there(tmp_path):
     with pytest.raises(ValueError, match="not finite"):
         write(path, np.asarray(mesh.vertices) * np.nan, mesh.triangles)
     assert path.read_text() == "before" and len(list(tmp_path.iterdir())) == 1
-    with pytest.raises(OSError):
+    with pytest.raises((OSError, RuntimeError)):
         write(tmp_path / "none" / "a.3mf", mesh.vertices, mesh.triangles)
 
 

@@ -181,7 +181,7 @@ def test_a_device_that_fails_ends_it_and_what_was_made_stays():
     try:
         hand.session.look()
     except RuntimeError as error:
-        assert "somebody else" in str(error)
+        assert "something else" in str(error)
         hand.session.fail(error)
     no_session()
     support.push("spoiled")
