@@ -86,7 +86,12 @@ Program joined(std::span<const Program* const> programs) {
   for (const Program* p : programs) rows += p->size();
   out.reserve(rows);
   for (const Program* p : programs) {
-    for (std::size_t row = 0; row < p->size(); ++row) out.append((*p)[row]);
+    for (std::size_t row = 0; row < p->size(); ++row) {
+      Move move = (*p)[row];
+      // Rapids before the first place that is known are where the program before has ended.
+      if (move.at_machine && !out.empty()) move.pose = out.poses().back();
+      out.append(move);
+    }
     for (const auto& [number, tool] : p->tools) add_tool(out.tools, number, tool);
     out.notes.insert(out.notes.end(), p->notes.begin(), p->notes.end());
     for (const auto& [key, value] : p->provenance)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "nc/edit.hpp"
 #include "nc/machines.hpp"
 #include "nc/program_file.hpp"
 #include "nc/writer.hpp"
@@ -150,6 +151,13 @@ TEST(MachinePositions, StayWithTheProgram) {
   Program other;
   other.append({{{1, 2, 3}, {0, 0, 1}}, 0, 0, 1, 0, true});
   EXPECT_THROW(other.append({{{1, 2, 4}, {0, 0, 1}}, 0, 0, 1, 0, true, true}), std::invalid_argument);
+  // Of two programs the second comes from where nobody knows.
+  const Program later = read_nc_text("G21 G0 Z9\nX1 Y2\nG1 X5 F100");
+  const Program* both[] = {&p, &later};
+  const Program one = joined(both);
+  EXPECT_TRUE(one.at_machine()[p.size()]);
+  EXPECT_EQ(one.poses()[p.size()].tip, p.poses().back().tip);
+  EXPECT_EQ(one.poses()[p.size() + 1].tip, Vec3(1, 2, 9));
 }
 
 TEST(MachinePositions, AreWrittenAsSafeHeight) {
