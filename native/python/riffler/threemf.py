@@ -13,11 +13,11 @@ import hashlib
 import io
 import locale
 import re
+import threading
 import uuid
 import zipfile
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -46,15 +46,28 @@ def library() -> Any:
     return lib3mf
 
 
-@contextmanager
-def locale_kept() -> Iterator[None]:
-    """lib3mf leaves the whole process in the locale "C" when it writes: text in other languages would no longer be read
-    as what it is."""
-    before = locale.setlocale(locale.LC_ALL)
-    try:
-        yield
-    finally:
-        locale.setlocale(locale.LC_ALL, before)
+class LocaleKeeper:
+    """lib3mf leaves the whole process in the locale "C" when it reads and writes: text in other languages would no
+    longer be read as what it is. Of several threads the first one keeps the locale, and the last one brings it back.
+    """
+
+    def __init__(self) -> None:
+        self.lock, self.threads, self.before = threading.Lock(), 0, ""
+
+    def __enter__(self) -> None:
+        with self.lock:
+            if self.threads == 0:
+                self.before = locale.setlocale(locale.LC_ALL)
+            self.threads += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self.lock:
+            self.threads -= 1
+            if self.threads == 0:
+                locale.setlocale(locale.LC_ALL, self.before)
+
+
+LOCALE = LocaleKeeper()
 
 
 def read(path: str) -> tuple[np.ndarray, np.ndarray]:
@@ -68,7 +81,7 @@ def read(path: str) -> tuple[np.ndarray, np.ndarray]:
     try:
         model = lib.get_wrapper().CreateModel()
         reader = model.QueryReader("3mf")
-        with locale_kept():
+        with LOCALE:
             reader.ReadFromBuffer((ctypes.c_uint8 * len(data)).from_buffer_copy(data) if data else [])
         # lib3mf goes on without what it does not know: a misspelt triangle would be missing, a misspelt unit be mm.
         # What stands in a namespace of its own, as slicers' additions do, is no reason to warn.
@@ -244,7 +257,7 @@ def write(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
     try:
         writer = model.QueryWriter("3mf")
         writer.SetDecimalPrecision(DECIMALS)
-        with files.drafting(target) as draft, locale_kept():
+        with files.drafting(target) as draft, LOCALE:
             writer.WriteToFile(str(draft))
     except (OSError, lib.ELib3MFException) as error:
         reason = error.strerror if isinstance(error, OSError) else said(error)

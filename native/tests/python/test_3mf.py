@@ -3,6 +3,7 @@
 import locale
 import sys
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -166,6 +167,11 @@ def test_the_process_keeps_its_locale(tmp_path):
         scenes.box_mesh([0, 0, 0], [4, 5, 6]).write(tmp_path / "box.3mf")
         riffler.Mesh.read(tmp_path / "box.3mf")
         assert locale.setlocale(locale.LC_ALL) == before != "C"
+        # Threads that are in it at once leave it as the first one met it.
+        box = scenes.box_mesh([0, 0, 0], [4, 5, 6])
+        with ThreadPoolExecutor(4) as pool:
+            list(pool.map(lambda k: box.write(tmp_path / f"box{k % 4}.3mf"), range(60)))
+        assert locale.setlocale(locale.LC_ALL) == before
     finally:
         locale.setlocale(locale.LC_ALL, found)
 

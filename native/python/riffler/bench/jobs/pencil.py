@@ -311,7 +311,7 @@ def scale(out: Report, settings: Settings, progress: Progress) -> None:
         for part, many in watched(chosen, progress):
             upon = sized(part.surface, many)
             save(upon, path)
-            for count in (2,) if settings.quick else (1, 2):
+            for count in (1, 2):
                 found = child("pencil", count, path=path, diameter=2 * valleys.R, tolerance=TOLERANCE)
                 table.row(part=part.name, triangles=len(upon.triangles), threads=count, **found)
                 out.check(found["paths"] == len(part.curves), f"{part.name}, {len(upon.triangles)}: {found}")
