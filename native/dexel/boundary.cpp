@@ -6,18 +6,13 @@
 #include <utility>
 
 #include "geom/each_once.hpp"
+#include "geom/mix.hpp"
 #include "mesh/near_points.hpp"
 #include "mesh/weld.hpp"
 
 namespace riffler {
 
 namespace {
-
-std::uint64_t mix(std::uint64_t x) {  // the finaliser of MurmurHash3
-  x ^= x >> 33, x *= 0xff51afd7ed558ccdULL;
-  x ^= x >> 33, x *= 0xc4ceb9fe1a85ec53ULL;
-  return x ^ x >> 33;
-}
 
 struct HalfEdge {
   int from, to;
@@ -30,8 +25,8 @@ class Pairing {
   explicit Pairing(std::size_t vertices) : sums_(vertices, 0) {}
 
   void add(int from, int to) {
-    if (from < to) sums_[from] += mix(static_cast<std::uint64_t>(to) + 1);
-    if (to < from) sums_[to] -= mix(static_cast<std::uint64_t>(from) + 1);
+    if (from < to) sums_[from] += mix_bits(static_cast<std::uint64_t>(to) + 1);
+    if (to < from) sums_[to] -= mix_bits(static_cast<std::uint64_t>(from) + 1);
   }
   bool paired(int from, int to) const { return sums_[std::min(from, to)] == 0; }
   bool all_paired() const {

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/mix.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/weld.hpp"
 
 namespace riffler {
 
 namespace {
-
-std::uint64_t mix(std::uint64_t x) {  // the finaliser of MurmurHash3
-  x ^= x >> 33, x *= 0xff51afd7ed558ccdULL;
-  x ^= x >> 33, x *= 0xc4ceb9fe1a85ec53ULL;
-  return x ^ x >> 33;
-}
 
 /// Vertices at edges of one triangle, ascending.
 std::vector<int> open_vertices(const Mesh& mesh) {
@@ -48,8 +43,8 @@ int NearPoints::find_or_add(const Vec3& p) {
 
 std::size_t NearPoints::slot(const Vec3& cell) const {
   const Vec3 c = cell + 0.0;  // −0 becomes 0
-  std::uint64_t h = mix(std::bit_cast<std::uint64_t>(c.x));
-  h = mix(h + std::bit_cast<std::uint64_t>(c.y)), h = mix(h + std::bit_cast<std::uint64_t>(c.z));
+  std::uint64_t h = mix_bits(std::bit_cast<std::uint64_t>(c.x));
+  h = mix_bits(h + std::bit_cast<std::uint64_t>(c.y)), h = mix_bits(h + std::bit_cast<std::uint64_t>(c.z));
   return h & (heads_.size() - 1);
 }
 

@@ -151,6 +151,7 @@ class NcInterpreter final : private NcPredefined {
   void check_feed() const;
   Joints target();
   void line_to(const Joints& to, bool rapid);
+  void straight_to(const Joints& to, const NcRowWords& words);
   void arc_to(const Joints& to, bool clockwise);
   Arc the_arc(const Vec2& from, const Vec2& end, bool clockwise);
   void spline_to(const Joints& to, int code);

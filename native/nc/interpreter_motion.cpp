@@ -158,7 +158,12 @@ NcRowWords NcInterpreter::row_words(bool rapid) {
 void NcInterpreter::line_to(const Joints& to, bool rapid) {
   const NcRowWords words = row_words(rapid);
   if (rapid && !rapid_noted_) note_rapid(to);
-  if (moves_in_part(rapid))
+  straight_to(to, words);
+}
+
+/// A row in the part, or at a position of the machine.
+void NcInterpreter::straight_to(const Joints& to, const NcRowWords& words) {
+  if (moves_in_part(words.rapid))
     rows_->line(at_, to, words);
   else
     rows_->at_machine(words);
@@ -295,11 +300,7 @@ void NcInterpreter::drill_at(int code) {
   const auto go = [&](const Joints& to, bool rapid) {
     if (to == at_ && !away) return;
     words.rapid = rapid;
-    if (moves_in_part(rapid))
-      rows_->line(at_, to, words);
-    else
-      rows_->at_machine(words);
-    at_ = to;
+    straight_to(to, words);
   };
   const auto height = [&](double z) {
     Joints to = at_;
