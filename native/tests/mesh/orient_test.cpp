@@ -8,45 +8,16 @@
 
 #include "mesh/audit.hpp"
 #include "mesh/shapes.hpp"
+#include "mesh/solids.hpp"
 
 namespace riffler::orient_test {
 namespace {
 
-Mesh box(const Vec3& lower, const Vec3& upper) {
-  Mesh m;
-  for (int k = 0; k < 8; ++k)
-    m.vertices.emplace_back(k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z);
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return m;
-}
+using shapes::box, shapes::flipped, shapes::joined, shapes::unwelded;
 
 Mesh turned(Mesh m, const std::vector<int>& rows) {
   for (const int t : rows) std::swap(m.triangles[t].y, m.triangles[t].z);
   return m;
-}
-
-Mesh flipped(Mesh m) {
-  for (Vec3i& t : m.triangles) std::swap(t.y, t.z);
-  return m;
-}
-
-Mesh joined(Mesh a, const Mesh& b) {
-  const int n = static_cast<int>(a.vertices.size());
-  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const Vec3i& t : b.triangles) a.triangles.push_back(t + Vec3i(n));
-  return a;
-}
-
-/// Every triangle with vertices of its own.
-Mesh unwelded(const Mesh& m) {
-  Mesh out;
-  for (const Vec3i& t : m.triangles) {
-    const int n = static_cast<int>(out.vertices.size());
-    for (int k = 0; k < 3; ++k) out.vertices.push_back(m.vertices[t[k]]);
-    out.triangles.emplace_back(n, n + 1, n + 2);
-  }
-  return out;
 }
 
 struct Result {
