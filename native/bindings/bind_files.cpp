@@ -36,7 +36,7 @@ Links are followed; permissions and owner of a file that is there are kept; Runt
         "``draft``, on the same file system, takes the place of ``path`` as an AtomicFileWriter's does.");
   m.def("draft_prefix", &draft_prefix, py::arg("path"), "Path with which the names of drafts of ``path`` begin.");
   m.def("clear_drafts", &clear_drafts, py::arg("path"),
-        "Removes drafts of ``path`` that nobody has locked: of processes that were killed.");
+        "Removes drafts of ``path`` that nobody has locked: processes that were killed left them.");
 }
 
 }  // namespace riffler

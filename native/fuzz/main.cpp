@@ -35,7 +35,7 @@ constexpr unsigned kSlowest = 10;             // s of one input
 constexpr std::size_t kMostBytes = 1 << 16;   // of one input
 constexpr std::size_t kMostInputs = 1 << 16;  // that are held
 
-/// What is running, for whoever ends the process.
+/// The input that runs; `save` writes it before the process ends.
 Bytes running;
 std::string found_path;
 

@@ -48,7 +48,7 @@ void replace_file(const std::filesystem::path& draft, const std::filesystem::pat
 /// What the name of a draft of `path` begins with, in the same folder.
 std::filesystem::path draft_prefix(const std::filesystem::path& path);
 
-/// Removes drafts of `path`, files and folders, that nobody has locked: of processes that were killed.
+/// Removes drafts of `path`, files and folders, that nobody has locked: processes that were killed left them.
 void clear_drafts(const std::filesystem::path& path) noexcept;
 
 }  // namespace riffler

@@ -1932,7 +1932,7 @@ def _play_pen(strokes: collections.abc.Sequence[tuple[typing.Annotated[numpy.typ
     ...
 def clear_drafts(path: os.PathLike | str | bytes) -> None:
     """
-    Removes drafts of ``path`` that nobody has locked: of processes that were killed.
+    Removes drafts of ``path`` that nobody has locked: processes that were killed left them.
     """
 def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
