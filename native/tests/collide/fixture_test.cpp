@@ -59,7 +59,7 @@ Dense dense_force(const Assembly& assembly, const Pose& pose, const Box3& box, d
 TEST(Fixture, ForceIsThatOfTheVolumeInTheToolForAnyPitch) {
   const std::vector<Assembly> tools{Assembly(cutters::ball(6, 20)), Assembly(held(cutters::fillet(8, 1, 12))),
                                     Assembly(cutters::flat(5, 20).with_holder({{20, 15, 40, 15}}))};
-  for (const double pitch : {0.5, 0.2, 0.1}) {
+  for (const double pitch : {0.47, 0.2, 0.13}) {  // the block ends within a cell of 0.47 and of 0.13
     const Collider collider = beside(kBlock, pitch, 0.3);
     Random random(3);
     double worst = 0, sum = 0;
@@ -104,6 +104,7 @@ TEST(Fixture, ForceAndItsDerivativeHaveNoStepsAsASideMovesOverDexels) {
   const Assembly assembly(cutters::flat(6, 20).with_holder({{20, 15, 40, 15}}));
   const double step = 2e-3;
   for (const double pitch : {0.5, 0.2}) {
+    if (test::kSanitized && pitch < 0.5) continue;
     const Collider collider = beside(kBlock, pitch, 0.3);
     const auto force = [&](double x) { return collider.query(assembly, {{x, 10, -25}, {0, 0, 1}}).force.x; };
     // A cylinder's side in a wall: the volume's derivative is as wide as the chord, times the height.
