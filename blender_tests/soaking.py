@@ -19,7 +19,7 @@ HERE = Path(__file__).resolve().parent / "soak"
 STROKES = {(3, 4), (4, 5)}  # the Blenders that are carved in: the oldest, and the one in the middle
 FUZZED = {(4, 5)}
 LIBRARIES = ("hypothesis", "sortedcontainers")  # pure Python, whatever Blender runs it
-SHORT = {"strokes": 1000, "undos": 100, "examples": 40}
+SHORT = {"strokes": 500, "undos": 60, "examples": 30}
 LONG = {"strokes": 10_000, "undos": 1000, "examples": 1000}
 LIMITS = {False: 900, True: 4 * 3600}  # s for one process of a short run, and of a long one
 

@@ -95,7 +95,7 @@ TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
     const OutlineRuns runs(outline.edges());
     Random random(++seed);
     std::size_t most = 0, all = 0;
-    for (int n = 0; n < 1500; ++n) {
+    for (int n = 0; n < test::cases(1500); ++n) {
       const Corners t = triangle_near(outline, random);
       TriangleSearch search(runs);
       search_all(search, t);
@@ -118,7 +118,7 @@ TEST(TriangleSearch, BoundsFromOneLookAreNeverAboveTheLeast) {
     const Outline outline(tool);
     const OutlineRuns runs(outline.edges());
     Random random(++seed);
-    for (int n = 0; n < 3000; ++n) {
+    for (int n = 0; n < test::cases(3000); ++n) {
       const Corners t = triangle_near(outline, random);
       TriangleSearch one(runs), search(runs);
       search_all(search, t);
@@ -281,7 +281,7 @@ TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
       continue;  // hollows: their balls are of use within them only
     Random random(++seed);
     std::size_t looked = 0, sharp = 0;
-    for (int n = 0; n < 1500; ++n) {
+    for (int n = 0; n < test::cases(1500); ++n) {
       const ToolFrame frame({10.0 * random.direction(), random.direction()});
       const Group group(outline, frame, [&] {
         const Vec3 p = place_near(outline, random);
@@ -295,7 +295,7 @@ TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
         sharp += group.low[k] >= sampled(outline, group.in_tool(k, frame), random) - radius * radius;
       }
     }
-    EXPECT_GT(looked, 300U);
+    EXPECT_GT(looked, static_cast<std::size_t>(test::cases(300)));
     EXPECT_GT(static_cast<double>(sharp), 0.7 * static_cast<double>(looked));
   }
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "dexel/shapes.hpp"
+#include "support/effort.hpp"
 #include "sweep/kernels.hpp"
 
 namespace riffler::from_mesh_test {
@@ -203,9 +204,9 @@ TEST(FromMesh, RandomClosedMeshesAgreeWithTheirWindingNumber) {
 
 TEST(FromMesh, SameBytesForAnyNumberOfThreadsAndInstructionSet) {
   const Mesh mesh = joined(sphere({0, 0, 0}, 10, 50), box({5, 5, 5}, {12, 12, 12}));
-  expect_same_everywhere(mesh, frame_of(mesh, 150, "xyz"));
+  expect_same_everywhere(mesh, frame_of(mesh, test::kSanitized ? 75 : 150, "xyz"));
   const Mesh open = open_box({0, 0, 0}, {10, 8, 6});
-  expect_same_everywhere(open, frame_of(open, 100, "xyz", 3));
+  expect_same_everywhere(open, frame_of(open, test::kSanitized ? 50 : 100, "xyz", 3));
   Mesh torn = mesh;
   std::mt19937_64 random(3);
   std::erase_if(torn.triangles, [&](const Vec3i&) { return random() % 30 == 0; });

@@ -122,6 +122,7 @@ TEST(Mesher, FollowsABarFullOfEdges) {
 /// entangled folds and vertices that fall back, everywhere.
 TEST(Mesher, FollowsGridsThatContradictEachOther) {
   for (unsigned seed = 0; seed < 9; ++seed) {
+    if (test::kSanitized && seed % 5 != 3) continue;  // one of each kind of box, far away and not
     Random random(seed);
     const double h = 0.25, offset = seed % 4 == 3 ? 4e5 : 0;
     const Vec3 lower(offset, 0, -offset);

@@ -13,6 +13,7 @@
 
 #include "nc/reader.hpp"
 #include "stress/random.hpp"
+#include "support/effort.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::arc_fit_test {
@@ -318,7 +319,7 @@ Points random_run(stress::Random& random) {
 TEST(ArcFit, RandomRunsStayWithinTheToleranceBothWays) {
   stress::Random random(71);
   std::size_t found = 0;
-  for (int round = 0; round < 400; ++round) {
+  for (int round = 0; round < test::cases(400); ++round) {
     const Points points = random_run(random);
     const double tolerance = random.power_of_ten(-4, -0.7);
     const auto pieces = fit_arcs(points, tolerance);
@@ -326,7 +327,7 @@ TEST(ArcFit, RandomRunsStayWithinTheToleranceBothWays) {
     found += arcs(pieces);
     EXPECT_LE(hausdorff(points, pieces), tolerance) << round;
   }
-  EXPECT_GT(found, 400U);
+  EXPECT_GT(found, static_cast<std::size_t>(test::cases(400)));
 }
 
 TEST(ArcFit, RoundedToFiveDecimalsTheEndIsOnTheCircle) {

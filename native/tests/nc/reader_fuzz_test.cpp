@@ -9,6 +9,7 @@
 #include "geom/error.hpp"
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::reader_fuzz_test {
 namespace {
@@ -85,7 +86,7 @@ std::string mutated(std::size_t seed, std::mt19937& random) {
 TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
   std::mt19937 random(20);
   int read = 0, refused = 0;
-  for (int round = 0; round < 20'000; ++round) {
+  for (int round = 0; round < test::cases(20'000); ++round) {
     const std::size_t seed = static_cast<std::size_t>(round) % kSeedCount;
     const std::string text = mutated(seed, random);
     Program p;
@@ -114,8 +115,8 @@ TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
       ASSERT_GE(p.line()[row], 1);
     }
   }
-  EXPECT_GT(read, 1000) << "the seeds are too fragile to test what is read";
-  EXPECT_GT(refused, 1000);
+  EXPECT_GT(read, test::cases(4000)) << "the seeds are too fragile to test what is read";
+  EXPECT_GT(refused, test::cases(4000));
 }
 
 TEST(ReaderFuzz, BeginsWithConversationalProgramsThatAreRead) {

@@ -8,6 +8,7 @@
 #include "plan/point_lift.hpp"
 #include "reference/cutter_distance.hpp"
 #include "stress/random.hpp"
+#include "support/effort.hpp"
 
 namespace riffler::lift_test {
 namespace {
@@ -162,7 +163,7 @@ TEST(Lift, IsTheLeastFreeHeightOfADenseSearch) {
     SCOPED_TRACE(tool.name());
     const reference::CutterDistance reference(tool.profile());
     const Assembly assembly(tool);
-    for (int n = 0; n < 2; ++n) {
+    for (int n = 0; n < test::cases(2); ++n) {
       const Pose pose{{random.uniform(8, 22), random.uniform(8, 22), random.uniform(-3, 0)},
                       glm::normalize(Vec3(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), 1))};
       const Lift l = lift(collider, assembly, pose, {});

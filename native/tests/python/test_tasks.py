@@ -88,7 +88,7 @@ CALLS = {
     "least_tilt": (plan.least_tilt, (PATH, BALL, COLLIDER), GRID | {"limit": (UP, 1.0)}),
     "verify": (riffler.verify, (passes(), stock(), PART, [PART, VOLUME]), {"rest_tolerance": 0.1}),
     "run": (lambda *args, **kwargs: verification().run(*args, **kwargs), (passes(),), {}),
-    "collider": (riffler.Collider.made, (STEP,), {"fixtures": [VOLUME], "spacing": 0.5}),
+    "collider": (riffler.Collider.made, (STEP,), {"fixtures": [stock()], "spacing": 0.5}),
     "from_mesh": (riffler.Volume.from_mesh, (SURFACE, 0.7, "xyz"), {"lower": [0, 0, -1]}),
     "to_mesh": (riffler.Volume.to_mesh, (VOLUME,), {}),
     "parts": (riffler.Volume.parts, (VOLUME,), {"least": 1.0}),

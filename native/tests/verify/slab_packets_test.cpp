@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/effort.hpp"
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 #include "verify/toolset.hpp"
@@ -135,7 +136,7 @@ TEST(SlabPackets, DamageUnderARightChecksumIsNoCrash) {
   const Slab slab = slabs_of(volume).front();
   const Bytes good = to_packet(SlabTask{-1, slab, true, 0, tiles_of(volume.grids()[0], slab), {}});
   int refused = 0;
-  for (std::size_t at = 4; at + 4 < good.size(); at += 1 + at / 256)
+  for (std::size_t at = 4; at + 4 < good.size(); at += (test::kSanitized ? 4 : 1) * (1 + at / 256))
     for (const unsigned by : {0x01U, 0x80U, 0xFFU}) {
       Bytes bad = good;
       bad[at] ^= static_cast<std::uint8_t>(by);
