@@ -139,7 +139,7 @@ TEST(HeidenhainReader, KnowsForWhichMachineTheCodeIs) {
   EXPECT_EQ(test::nc_error(text, "apt").substr(0, 40), "line 1: a Heidenhain conversational prog");
   const std::string other = test::nc_error("G0 X1\nM2\n", "heidenhain");
   EXPECT_TRUE(other.starts_with("line 1: not a Heidenhain conversational program")) << other;
-  EXPECT_NE(other.find("machines that read rs274: tcp, linuxcnc-xyzac"), other.npos) << other;
+  EXPECT_NE(other.find("machines that read rs274: tcp, tcp-bc, linuxcnc-xyzac"), other.npos) << other;
   EXPECT_THROW(read("L X1 FMAX", {{"tcp", false}}), std::invalid_argument);
   EXPECT_THROW(read("L X1 FMAX", {{"subroutines", std::string("x")}}), std::invalid_argument);
 }

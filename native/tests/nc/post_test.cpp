@@ -101,7 +101,7 @@ TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
   // no rapid through the part's zero.
   const Program p = two_tools();
   const Options table{{"rot_point", std::vector<double>{3, 4, -50}}};
-  for (const char* post : {"tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head", "head-table"})
+  for (const char* post : {"tcp", "tcp-bc", "linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head", "head-table"})
     for (const double step : {0.0, 10.0}) {
       const Options options = std::string(post).starts_with("linuxcnc") ? table : Options{};
       Options how = options;
@@ -134,7 +134,7 @@ TEST(Rs274Post, MakesArcsOfStraightRunsWithinTheTolerance) {
   }
   for (int i = 1; i <= 20; ++i) path.poses.push_back({path.poses[300].tip + Vec3(i, 0, 0), path.poses[300].axis});
   const Program p = program_from_paths(std::vector{path}, {});
-  for (const char* post : {"tcp", "linuxcnc-xyzac", "heidenhain"}) {
+  for (const char* post : {"tcp", "tcp-bc", "linuxcnc-xyzac", "heidenhain"}) {
     Options table{{"safe_start", false}}, options;
     if (post == std::string("linuxcnc-xyzac")) options["rot_point"] = table["rot_point"] = std::vector<double>{0, 0, 0};
     const std::string straight = text_of(p, post, table);

@@ -60,7 +60,9 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
       {"T-1 M6", "T must be a whole number"},
       {"T999999999999 M6", "T is out of range"},
       {"G1 U1 F1", "unknown letter U: second linear axes are not read; have the CAM system write X, Y and Z alone"},
-      {"G1 B1 F1", "unknown letter B: the machine has no such axis; these have: linuxcnc-xyzbc, head-head, head-table"},
+      {"G1 B1 F1",
+       "unknown letter B: the machine has no such axis; these have: tcp-bc, linuxcnc-xyzbc, head-head, "
+       "head-table"},
       {"G5.5 X1", "unknown code G5.5"},
       {"G43.5 H1", "unknown code G43.5"},
       {"G1.05 X1 F1", "unknown code G1.05"},
@@ -138,10 +140,9 @@ TEST(Reader, RefusesUnknownMachinesAndOptions) {
     }
     return "";
   };
-  EXPECT_EQ(
-      error("lathe", {}),
-      "unknown machine lathe; known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, head-head, head-table, 3-axis, heidenhain, "
-      "heidenhain-bc, apt, or the path of a .toml file that describes your machine");
+  EXPECT_EQ(error("lathe", {}),
+            "unknown machine lathe; known: tcp, tcp-bc, linuxcnc-xyzac, linuxcnc-xyzbc, head-head, head-table, 3-axis, "
+            "heidenhain, heidenhain-bc, apt, or the path of a .toml file that describes your machine");
   const std::string unknown = error("tcp", {{"chord", 1.0}});
   EXPECT_TRUE(unknown.starts_with("machine tcp: unknown option 'chord'; known: tcp, max_rotary")) << unknown;
   EXPECT_TRUE(

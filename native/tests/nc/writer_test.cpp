@@ -176,7 +176,7 @@ TEST(Writer, NamesWhatIsWrong) {
   EXPECT_EQ(error_of(p, {}), "");
   WriteOptions options;
   options.post = "lathe";
-  EXPECT_TRUE(error_of(p, options).starts_with("unknown post lathe; known: tcp, linuxcnc-xyzac, linuxcnc-xyzbc, "));
+  EXPECT_TRUE(error_of(p, options).starts_with("unknown post lathe; known: tcp, tcp-bc, linuxcnc-xyzac, "));
   options = {};
   options.options["offset"] = 1.0;
   EXPECT_EQ(

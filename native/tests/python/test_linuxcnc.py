@@ -39,6 +39,7 @@ POSTS = {
     ),
     # LinuxCNC has no G43.4; the words are the same under G43.
     "tcp": ("tcp", {"tool_length": "G43"}, Axes(heads=[("C", Z, [0, 0, 0]), ("A", X, [0, 0, 0])], tip=True)),
+    "tcp-bc": ("tcp-bc", {"tool_length": "G43"}, Axes(heads=[("C", Z, [0, 0, 0]), ("B", Y, [0, 0, 0])], tip=True)),
 }  # fmt: skip
 JOINTS = ["linuxcnc-xyzac", "linuxcnc-xyzbc", "head-head, its axes", "head-table, its axes"]
 PRINTED = 2e-4  # rs274 prints 4 decimals

@@ -209,7 +209,8 @@ def test_tcp_blocks_hold_the_poses_and_the_way_between_them(tmp_path_factory, cl
 
 
 @pytest.mark.parametrize(
-    ("post", "options"), [("tcp", {}), ("heidenhain", {}), ("heidenhain-bc", {}), ("heidenhain", {"vectors": True})]
+    ("post", "options"),
+    [("tcp", {}), ("tcp-bc", {}), ("heidenhain", {}), ("heidenhain-bc", {}), ("heidenhain", {"vectors": True})]
 )
 @FIXED
 @given(cl=path)
@@ -282,13 +283,13 @@ def test_programs_are_edited_into_new_ones(ball):
 
 
 def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball):
-    machines = "tcp linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc apt"
+    machines = "tcp tcp-bc linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc apt"
     assert list(riffler.machines()) == machines.split() and all(riffler.machines().values())
     p = riffler.Program.from_cl([spiral(3)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"
-    with pytest.raises(ValueError, match=r"known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
+    with pytest.raises(ValueError, match=r"known: tcp, tcp-bc, .*, apt, or the path of a .toml"):
         p.write(file, post="lathe")
-    with pytest.raises(ValueError, match=r"known: tcp, linuxcnc-xyzac, .*, apt, or the path of a .toml"):
+    with pytest.raises(ValueError, match=r"known: tcp, tcp-bc, .*, apt, or the path of a .toml"):
         riffler.Program.read(__file__, machine="lathe")
     with pytest.raises(ValueError, match="unknown option 'direction'"):
         p.write(file, options={"direction": "iso"})
