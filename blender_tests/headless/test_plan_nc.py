@@ -240,7 +240,7 @@ def test_how_a_tool_gets_into_its_cuts_is_said_in_the_panel():
 
 
 def test_what_cannot_be_linked_is_refused_with_its_place_until_the_fixture_is_moved():
-    _, settings = clamped((30, 20, 100), (900, 900, 10))
+    _, settings = clamped((30, 20, 100), (300, 300, 10))
     path = support.out("roofed.ngc")
     Path(path).unlink(missing_ok=True)
     support.refused(

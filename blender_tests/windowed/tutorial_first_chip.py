@@ -98,7 +98,7 @@ def feather(x, z):
 def carved(screen, ob, way, radius, depth, **more):
     scene = bpy.context.scene.riffler
     scene.tool.kind, scene.sculpt.radius, scene.sculpt.depth = "ball", radius, depth
-    yield from lessons.brushed(screen, ob, way, steps=1, together=6, **more)
+    yield from lessons.brushed(screen, ob, way, steps=1, together=24, **more)
 
 
 def owl(screen):

@@ -90,7 +90,7 @@ def no_recording(screen):
 
 def recording(screen):
     """Strokes from a file: behind the window, and one step of undo."""
-    name = cut.spiral(2, 20_000, "Spiral")
+    name = cut.spiral(2, 6_000, "Spiral")
     path = Path(support.out("chosen.rjournal"))
     with screen.override():
         bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
