@@ -51,11 +51,11 @@ class CutterCompensation {
   CutterCompensation(const NcPlace& place, std::function<void(const CentreMove&)> emit)
       : place_(place), emit_(std::move(emit)) {}
 
-  /// Begins at `at`, where the tool's centre is, or, between an off() and the move after it, is programmed to be.
+  /// Starts at the programmed position `at`, which is that of the tool's centre unless is_leaving().
   void on(const CutterOffset& offset, const Joints& at);
   bool is_on() const { return on_; }
   const CutterOffset& offset() const { return offset_; }
-  /// Where the tool's centre is after what was emitted.
+  /// Position of the tool's centre after the emitted moves.
   const Joints& centre() const { return centre_; }
 
   /// A straight move to `to`. Without motion in the plane the other joints move beside the contour's last point.
@@ -63,14 +63,14 @@ class CutterCompensation {
   /// Along `arc`, which begins at the programmed point.
   void arc(const Joints& to, const Arc& arc, const NcRowWords& words);
 
-  /// Emits what waits, and ends the compensation. The tool stays beside the last point until the next move.
+  /// Emits the pending element and ends the compensation. The tool stays beside the last point until the next move.
   void off();
-  /// Whether the tool still stands where off() left it, beside the programmed point. Ends with left().
-  bool leaves() const { return leaves_; }
-  void left() { leaves_ = false; }
+  /// Whether the tool is still where off() left it, beside the programmed point. True until end_leaving().
+  bool is_leaving() const { return leaving_; }
+  void end_leaving() { leaving_ = false; }
 
  private:
-  struct Standing {
+  struct StationaryMove {
     Joints to;
     NcRowWords words;
   };
@@ -79,20 +79,20 @@ class CutterCompensation {
     Joints to{};
     NcRowWords words;
     bool entry = false;
-    Vec2 corner{0};                        // programmed end
-    Vec2 first{0}, last{0};                // unit tangents of the contour at its ends
-    double first_bend = 0, last_bend = 0;  // curvature there, 1/mm, > 0 to the left
-    Vec2 start{0}, end{0};                 // of the centre: square to the contour's ends, until a corner moves them
-    std::optional<Arc> arc;                // of the centre
-    double late = 0, early = 0;            // rad by which an arc begins later and ends earlier than that
-    std::vector<Standing> standing;        // moves at its end without motion in the plane
+    Vec2 corner{0};                                 // programmed end
+    Vec2 start_tangent{0}, end_tangent{0};          // unit tangents of the contour at its ends
+    double start_curvature = 0, end_curvature = 0;  // curvature there, 1/mm, > 0 to the left
+    Vec2 start{0}, end{0};                   // of the centre: square to the contour's ends, until a corner moves them
+    std::optional<Arc> arc;                  // of the centre
+    double trim_start = 0, trim_end = 0;     // rad by which an arc begins later and ends earlier than that
+    std::vector<StationaryMove> stationary;  // moves at its end without motion in the plane
   };
 
-  Element straight(const Joints& to, const NcRowWords& words) const;
-  Element round(const Joints& to, const Arc& arc, const NcRowWords& words) const;
+  Element line_element(const Joints& to, const NcRowWords& words) const;
+  Element arc_element(const Joints& to, const Arc& arc, const NcRowWords& words) const;
   Element entry_line(const Joints& to, const NcRowWords& words) const;
   Element entry_arc(const Joints& to, const Arc& arc, const NcRowWords& words) const;
-  void follow(Element next);
+  void append(Element next);
   void join(Element& before, Element& next);
   double turn(const Element& before, const Element& next) const;
   void round_corner(const Element& before, const Element& next);
@@ -101,7 +101,7 @@ class CutterCompensation {
   void end_at(Element& element, const Vec2& at, bool beyond) const;
   void finish(const Element& element);
   void go(const Joints& to, const std::optional<Arc>& arc, const NcRowWords& words);
-  Joints beside(const Joints& joints, const Vec2& centre) const;
+  Joints with_centre(const Joints& joints, const Vec2& centre) const;
   Vec2 normal(const Vec2& tangent) const;
   double side() const { return static_cast<double>(offset_.side); }
   [[noreturn]] void fail_fit(const Element& element, const std::string& what) const;
@@ -109,10 +109,10 @@ class CutterCompensation {
   const NcPlace& place_;
   std::function<void(const CentreMove&)> emit_;
   CutterOffset offset_;
-  bool on_ = false, begun_ = false, leaves_ = false;
+  bool on_ = false, begun_ = false, leaving_ = false;
   Vec2 point_{0};  // programmed
   Joints centre_{};
-  std::optional<Element> waiting_;
+  std::optional<Element> pending_;
 };
 
 }  // namespace riffler

@@ -182,7 +182,7 @@ void HeidenhainInterpreter::arc_to(const Vec3& to, const Arc& arc, std::size_t u
 
 void HeidenhainInterpreter::arc_rows(const Vec3& to, const Arc& arc, std::size_t u, std::size_t v, const Joints& rotary,
                                      const NcRowWords& words) {
-  if (compensation_->leaves()) place_.fail("an arc after R0: write a line before it");
+  if (compensation_->is_leaving()) place_.fail("an arc after R0: write a line before it");
   if (compensates()) {
     if (u != 0) place_.fail("an arc outside the working plane in radius compensation: a line with R0 before it");
     return contour_to(to, &arc, rotary, words);

@@ -113,17 +113,17 @@ void HeidenhainInterpreter::refuse_in_compensation(const char* what) {
 /// After R0 the tool stands beside the contour until a move in the working plane. Where `to` is one of its axis alone,
 /// the tool stays beside it.
 Vec3 HeidenhainInterpreter::leave_contour(const Vec3& to) {
-  if (!compensation_->leaves()) return to;
+  if (!compensation_->is_leaving()) return to;
   if (to.x == at_.x && to.y == at_.y) return {compensation_->centre()[0], compensation_->centre()[1], to.z};
-  compensation_->left();
+  compensation_->end_leaving();
   return to;
 }
 
 /// Where the tool is counts from now on, not what was programmed.
 void HeidenhainInterpreter::stay_beside_contour() {
-  if (!compensation_->leaves()) return;
+  if (!compensation_->is_leaving()) return;
   at_.x = compensation_->centre()[0], at_.y = compensation_->centre()[1];
-  compensation_->left();
+  compensation_->end_leaving();
 }
 
 }  // namespace riffler

@@ -45,7 +45,7 @@ void HeidenhainInterpreter::leave_part(const NcRowWords& words) {
   position_noted_ |= begun;
   check_no_corner();
   refuse_in_compensation("a position of the machine");
-  compensation_->left();
+  compensation_->end_leaving();
   leaving_.reset();
   rows_->at_machine(words);
 }

@@ -130,17 +130,17 @@ void NcInterpreter::refuse_in_compensation(const std::string& what) const {
 
 /// Between G40 and the move after it the tool stands beside the programmed point.
 void NcInterpreter::leave_contour(const Joints& to, bool in_part) {
-  if (!compensation_->leaves()) return;
+  if (!compensation_->is_leaving()) return;
   const CutterOffset& by = compensation_->offset();
   if (in_part && to[by.u] == at_[by.u] && to[by.v] == at_[by.v])
     note("cutter compensation",
          "the move after G40 has no motion in the plane: it goes from beside the contour to the contour's last point, "
          "as on LinuxCNC; other controls stay beside it");
-  compensation_->left();
+  compensation_->end_leaving();
 }
 
 void NcInterpreter::check_not_leaving() const {
-  if (compensation_->leaves()) place_.fail("the move after G40 is not straight: write G0 or G1 before it");
+  if (compensation_->is_leaving()) place_.fail("the move after G40 is not straight: write G0 or G1 before it");
 }
 
 }  // namespace riffler

@@ -9,7 +9,7 @@
 
 namespace riffler {
 
-/// What a control does with a program's G41, G42, RL and RR.
+/// How a reader treats cutter radius compensation: G41, G42, RL, RR, CUTCOM.
 enum class CompensationRule : std::uint8_t {
   Error,   ///< refuse them
   Ignore,  ///< take points for those of the tool's centre
@@ -25,7 +25,7 @@ class ToolDiameters {
   /// numbers of tools each with its diameter. A negative diameter changes the side. std::invalid_argument.
   void take(const Options& given, OptionReader& options);
 
-  /// mm; none: not known.
+  /// Diameter of a tool or offset, mm; none where the option does not give it.
   std::optional<double> of(int number) const;
 
  private:

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -315,6 +315,36 @@ TEST(CutterCompensation, LeavesForTheProgrammedPathAfterG40) {
   // The end of the program ends it, too.
   for (const char* end : {"", "M2", "%"})
     EXPECT_EQ(read(std::string(kStart) + "G1 X0\nX10\n" + end).poses().back().tip, Vec3(10, 1, 0)) << end;
+}
+
+TEST(CutterCompensation, OfDamagedProgramsGivesRowsOrAFormatError) {
+  const std::string seeds[] = {
+      "G21 G90 F100 T1 M6\nG0 X-5 Y0 Z0\nG41 D1\nG1 X0\nG3 X8 Y8 J8\nZ-1\nG2 X12 Y12 I4\nG1 X20 Y12\nX30 Z-2\nY0\nG0 "
+      "X5\n"
+      "G40\nG0 Z5\nG18\nG42.1 D.8\nG2 X0 Z12 I-5\nG93 G1 X-9 F2\nX-10 F1\nM2\n",
+      "BEGIN PGM A MM\nTOOL CALL 1 Z S100 F100 DR+0.1\nL X-5 Y-5 Z0 R0 FMAX\nL X0 Y0 RL\nL X10\nRND R3\nL Y20\nCT X0 "
+      "Y20\n"
+      "L IZ-1\nL Y5\nCR X-6 Y0 R9 DR-\nCC X-6 Y-9\nCP IPA-90 DR-\nL X-30 R0\nL Z+50 FMAX\nEND PGM A MM\n"};
+  std::mt19937 random(7);
+  int read = 0;
+  for (int round = 0; round < 6'000; ++round) {
+    std::string text = seeds[round % 2];
+    for (std::size_t k = 0, count = random() % 4; k < count; ++k) {
+      const std::size_t at = random() % text.size();
+      if (text[at] >= '0' && text[at] <= '9') text[at] = static_cast<char>('0' + random() % 10);
+      if (random() % 5 == 0) text.erase(text.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    Options options = with(kOffset, "tool_diameters", static_cast<double>(random() % 100) / 20 - 1);
+    options["chord_tolerance"] = 0.1;
+    try {
+      const Program p = read_nc_text(text, round % 2 ? "heidenhain" : "tcp", options);
+      ++read;
+      for (const Vec3& tip : tips(p)) ASSERT_TRUE(std::isfinite(tip.x) && std::isfinite(tip.y)) << text;
+    } catch (const FormatError&) {
+      continue;
+    }
+  }
+  EXPECT_GT(read, 1000);
 }
 
 }  // namespace

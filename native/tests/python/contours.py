@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import random
 
@@ -89,7 +90,7 @@ def distance(points: np.ndarray, path: np.ndarray) -> np.ndarray:
 def dense(path: np.ndarray, step: float) -> np.ndarray:
     """Points of a polyline that are at most so far apart."""
     out = [path[:1]]
-    for a, b in zip(path[:-1], path[1:], strict=True):
+    for a, b in itertools.pairwise(path):
         parts = max(1, int(np.ceil(np.linalg.norm(b - a) / step)))
         out.append(a + np.linspace(0, 1, parts + 1)[1:, None] * (b - a))
     return np.concatenate(out)
