@@ -110,7 +110,7 @@ def test_the_tool_touches_each_element_and_enters_none_of_its_neighbours(tmp_pat
         assert "cutter compensation by" in str(e)
         return
     moving = [k for k, points in enumerate(contour.points) if points is not None]
-    radius, near = diameter / 2, max(2, int(diameter / 4 / 0.01))
+    radius, near = diameter / 2, 10  # 0.1 mm of an element
     for row in range(1, len(program)):
         block = program.line[row] - Contour.FIRST_LINE
         if block not in moving or program.rapid[row]:
