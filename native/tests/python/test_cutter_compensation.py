@@ -128,7 +128,7 @@ def test_the_tool_touches_each_element_and_enters_none_of_its_neighbours(tmp_pat
         if at > 0 and turns_less(before := contour.points[moving[at - 1]], own):
             by = way[distance(way, own[:near]) < apart + 1e-9]
             assert not len(by) or distance(by, before[-near:]).min() > radius - 0.005
-        if at + 1 < len(moving) and turns_less(own, after := contour.points[moving[at + 1]]):
+        if not corner and at + 1 < len(moving) and turns_less(own, after := contour.points[moving[at + 1]]):
             by = way[distance(way, own[-near:]) < apart + 1e-9]
             assert not len(by) or distance(by, after[:near]).min() > radius - 0.005
 
