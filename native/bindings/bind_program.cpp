@@ -288,6 +288,24 @@ std::string repr(const Program& program) {
 
 }  // namespace
 
+namespace {
+
+/// Of a dict of numbers, such as tool_diameters: each key before its value.
+std::vector<double> to_pairs(const py::dict& dict, const std::string& name) {
+  std::vector<double> out;
+  for (const auto& [key, value] : dict) {
+    try {
+      out.push_back(py::cast<double>(py::float_(py::reinterpret_borrow<py::object>(key))));
+      out.push_back(py::cast<double>(py::float_(py::reinterpret_borrow<py::object>(value))));
+    } catch (const py::error_already_set&) {
+      throw py::value_error("option " + name + " must have numbers only");
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 Options to_options(const py::object& object) {
   Options out;
   if (object.is_none()) return out;
@@ -298,6 +316,8 @@ Options to_options(const py::object& object) {
       out[name] = py::cast<bool>(value);
     } else if (py::isinstance<py::str>(value)) {
       out[name] = py::cast<std::string>(value);
+    } else if (py::isinstance<py::dict>(value)) {
+      out[name] = to_pairs(py::reinterpret_borrow<py::dict>(value), name);
     } else {
       const Doubles array = to_doubles(value, "option " + name);
       if (array.ndim() > 1)
@@ -393,8 +413,9 @@ Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curve
 given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the
 poses on its way are in ``via``;
 ``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
-is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
-centre); ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
+is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error", "ignore" (points are those of the tool's
+centre) or "offset" (points are the contour's, and the tool's centre goes beside it); ``tool_diameters`` for that, in mm: one
+number, or a dict by the number of the offset D or of the tool; ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
 end may miss its circle; ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes
 lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters;
 ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is

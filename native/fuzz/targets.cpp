@@ -54,7 +54,11 @@ void check(const Program& p) {
 void nc(View bytes, const char* machine, bool skips) {
   reading([&] {
     ReadOptions options{machine, {{"chord_tolerance", 0.1}}};
-    if (options.machine != "apt") options.options["max_turns"] = 1000.0;
+    if (options.machine != "apt") {
+      options.options["max_turns"] = 1000.0;
+      options.options["cutter_compensation"] = std::string("offset");
+      options.options["tool_diameters"] = 1.0;
+    }
     if (skips) options.options["unknown"] = std::string("skip");
     check(parse_nc(text_of(bytes), "fuzz", options));
   });

@@ -16,6 +16,7 @@
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
 #include "nc/post.hpp"
+#include "nc/tool_diameters.hpp"
 #include "nc/units.hpp"
 
 namespace riffler {
@@ -34,7 +35,7 @@ class AptReader {
     take_post_options(taken);  // the same options write and read
     chord_tolerance_ = taken.positive("chord_tolerance").value_or(0.002);
     skip_unknown_ = taken.word("unknown", {"error", "skip"}, "error") == "skip";
-    ignore_compensation_ = taken.word("cutter_compensation", {"error", "ignore"}, "error") == "ignore";
+    compensation_ = take_compensation_rule(taken);
     taken.done();
     if (chord_tolerance_ < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
     program_.provenance.emplace_back("source", file);
@@ -253,10 +254,11 @@ class AptReader {
 
   void compensation() {
     if (word() == "OFF" || word() == "ON") return;
-    if (!ignore_compensation_)
+    if (compensation_ != CompensationRule::Ignore)
       place_.fail(
-          "cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre, or, where that is "
-          "what the file has, read it with options {'cutter_compensation': 'ignore'}");
+          "cutter radius compensation (CUTCOM) is for the control that the file is posted to: cutter location data are "
+          "points of the tool's centre as a rule; where these are, read them with options {'cutter_compensation': "
+          "'ignore'}");
     if (!std::exchange(compensation_noted_, true))
       program_.notes.push_back(
           {"cutter compensation", s_.line, "CUTCOM is ignored: points are taken for those of the tool's centre"});
@@ -388,7 +390,8 @@ class AptReader {
   const Progress& progress_;
   AptStatement s_;
   double chord_tolerance_ = 0;
-  bool skip_unknown_ = false, ignore_compensation_ = false, compensation_noted_ = false;
+  bool skip_unknown_ = false, compensation_noted_ = false;
+  CompensationRule compensation_ = CompensationRule::Error;
   Program program_;
 
   double unit_ = 1, feed_ = 0, feed_unit_ = 0, speed_ = 0;

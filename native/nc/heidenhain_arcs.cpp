@@ -182,25 +182,36 @@ void HeidenhainInterpreter::arc_to(const Vec3& to, const Arc& arc, std::size_t u
 
 void HeidenhainInterpreter::arc_rows(const Vec3& to, const Arc& arc, std::size_t u, std::size_t v, const Joints& rotary,
                                      const NcRowWords& words) {
+  if (compensation_->is_leaving()) place_.fail("an arc after R0: write a line before it");
+  if (compensates()) {
+    if (u != 0) place_.fail("an arc outside the working plane in radius compensation: a line with R0 before it");
+    return contour_to(to, &arc, rotary, words);
+  }
   check_length(to);
+  round_rows(at_, to, arc, {u, v}, {rotary_, rotary}, words);
+  at_ = to, rotary_ = rotary;
+}
+
+/// From `from` to `to` along `arc` in the axes of `plane`; the rotary axes turn evenly.
+void HeidenhainInterpreter::round_rows(const Vec3& from, const Vec3& to, const Arc& arc,
+                                       std::pair<std::size_t, std::size_t> plane,
+                                       const std::pair<Joints, Joints>& rotary, const NcRowWords& words) {
+  const auto [u, v] = plane;
   const int chords = arc.chords(rows_->chord_tolerance());
   if (chords > kMaxChords) place_.fail("an arc of too many chords");
-  const int w = static_cast<int>(3 - u - v);
-  const Vec3 from = at_;
-  const Joints before = rotary_;
+  const int x = static_cast<int>(u), y = static_cast<int>(v), w = 3 - x - y;
   rows_->curve(
-      in_part(from, before), chords, std::hypot(arc.length(), to[w] - from[w]),
+      in_part(from, rotary.first), chords, std::hypot(arc.length(), to[w] - from[w]),
       [&](double t) {
-        if (t == 1) return in_part(to, rotary);
-        Joints turning = before;
-        for (std::size_t k = 3; k < turning.size(); ++k) turning[k] += t * (rotary[k] - before[k]);
+        if (t == 1) return in_part(to, rotary.second);
+        Joints turning = rotary.first;
+        for (std::size_t k = 3; k < turning.size(); ++k) turning[k] += t * (rotary.second[k] - rotary.first[k]);
         const Vec2 p = arc.at(t);
         Vec3 at(0);
-        at[static_cast<int>(u)] = p.x, at[static_cast<int>(v)] = p.y, at[w] = from[w] + t * (to[w] - from[w]);
+        at[x] = p.x, at[y] = p.y, at[w] = from[w] + t * (to[w] - from[w]);
         return in_part(at, turning);
       },
       words);
-  at_ = to, rotary_ = rotary;
 }
 
 // --- Corners ---

@@ -182,6 +182,8 @@ void HeidenhainInterpreter::use_preset() {
 }
 
 void HeidenhainInterpreter::call_cycle() {
+  refuse_in_compensation("a cycle");
+  stay_beside_contour();
   if (cycle_ == 0) place_.fail("a call without a cycle: CYCL DEF before it");
   if (!is_heidenhain_hole(cycle_) && cycle_ != 208)
     place_.fail(std::string("cycle ") + std::to_string(cycle_) +

@@ -50,7 +50,8 @@ void HeidenhainInterpreter::take_options(const ReadOptions& options) {
   check_header_ = taken.word("header", {"check", "ignore"}, "check") == "check";
   max_turns_ = taken.positive("max_turns").value_or(1e6);
   skip_unknown_ = taken.word("unknown", {"error", "skip"}, "error") == "skip";
-  ignore_compensation_ = taken.word("cutter_compensation", {"error", "ignore"}, "error") == "ignore";
+  rule_ = take_compensation_rule(taken);
+  diameters_.take(options.options, taken);
   taken.done();
   if (machine->joint_words())
     throw std::invalid_argument("machine " + machine->name() +
@@ -58,6 +59,7 @@ void HeidenhainInterpreter::take_options(const ReadOptions& options) {
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
   rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);
+  make_compensation();
 }
 
 Program HeidenhainInterpreter::run() {
@@ -71,6 +73,8 @@ Program HeidenhainInterpreter::run() {
     flush();
   }
   if (corner_) place_.fail("RND or CHF without the line after it");
+  compensation_->off();
+  flush();
   program_.provenance = provenance();
   return std::move(program_);
 }

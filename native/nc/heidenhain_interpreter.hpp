@@ -9,9 +9,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "nc/arc.hpp"
+#include "nc/cutter_compensation.hpp"
 #include "nc/heidenhain_cycle.hpp"
 #include "nc/heidenhain_frame.hpp"
 #include "nc/heidenhain_text.hpp"
@@ -19,6 +21,7 @@
 #include "nc/heidenhain_words.hpp"
 #include "nc/reader.hpp"
 #include "nc/rows.hpp"
+#include "nc/tool_diameters.hpp"
 
 namespace riffler {
 
@@ -82,6 +85,7 @@ class HeidenhainInterpreter {
 
   // heidenhain_modes.cpp: tools, M functions, feed, functions of the control.
   void call_tool(HeidenhainCursor& cursor);
+  double take_tool_delta(HeidenhainCursor& cursor, bool noted);
   void define_tool(HeidenhainCursor& cursor);
   void control_function(HeidenhainCursor& cursor);
   void begin_codes(const HeidenhainWords& words);
@@ -89,9 +93,18 @@ class HeidenhainInterpreter {
   bool is_user_code(int code) const;
   void take_feed(const HeidenhainWords& words);
   void take_speed(double speed);
-  void compensate(char compensation);
   void keep_tip(bool on);
   NcRowWords row_words(bool rapid);
+
+  // heidenhain_compensation.cpp: R0, RL, RR.
+  void make_compensation();
+  void compensate(char compensation);
+  double compensation_radius();
+  bool compensates();
+  void contour_to(const Vec3& to, const Arc* arc, const Joints& rotary, const NcRowWords& words);
+  void refuse_in_compensation(const char* what);
+  Vec3 leave_contour(const Vec3& to);
+  void stay_beside_contour();
 
   // heidenhain_cycles.cpp: cycles that are defined, and called.
   void define_cycle(HeidenhainCursor& cursor);
@@ -148,6 +161,8 @@ class HeidenhainInterpreter {
   void arc_to(const Vec3& to, const Arc& arc, std::size_t u, std::size_t v, const HeidenhainWords& words);
   void arc_rows(const Vec3& to, const Arc& arc, std::size_t u, std::size_t v, const Joints& rotary,
                 const NcRowWords& words);
+  void round_rows(const Vec3& from, const Vec3& to, const Arc& arc, std::pair<std::size_t, std::size_t> plane,
+                  const std::pair<Joints, Joints>& rotary, const NcRowWords& words);
   bool is_clockwise(const HeidenhainWords& words);
   const Pole& pole(const char* what) const;
   void corner(HeidenhainWords& words, bool round);
@@ -161,7 +176,8 @@ class HeidenhainInterpreter {
   std::unique_ptr<NcRows> rows_;
   Program program_;
   std::string source_;
-  bool block_delete_ = false, check_header_ = true, skip_unknown_ = false, ignore_compensation_ = false;
+  bool block_delete_ = false, check_header_ = true, skip_unknown_ = false;
+  CompensationRule rule_ = CompensationRule::Error;
   double max_turns_ = 0, turns_ = 0, arc_miss_ = 0;
   std::size_t more_skipped_ = 0;
 
@@ -177,6 +193,11 @@ class HeidenhainInterpreter {
   double speed_ = 0;
   int turning_ = 0, tool_ = 0;  // 1 clockwise
   std::map<int, double> tool_radii_;
+  ToolDiameters diameters_;
+  double tool_more_ = 0;  // mm: DR of TOOL CALL
+  std::unique_ptr<CutterCompensation> compensation_;
+  char side_ = '0';  // '0', 'L' or 'R'
+  std::set<int> offsets_noted_;
   std::set<int> noted_;  // M functions, cycles (10 000 and up) and tools (negative) that were noted
   std::optional<double> preset_;
 

@@ -49,7 +49,8 @@ void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
       place_.fail(std::string("the tool axis ") + axis + " is not read: Z is; have the post write TOOL CALL n Z");
   cursor.take_if('Z');
   if (tool) {
-    tool_ = *tool, turning_ = 0;
+    refuse_in_compensation("TOOL CALL");
+    tool_ = *tool, turning_ = 0, tool_more_ = 0;
     const HeidenhainBlock& block = (*text_)[next_ - 1];
     const double diameter = block.diameter > 0 ? block.diameter : text_->diameter(tool_);
     if (diameter > 0) tool_radii_.emplace(tool_, diameter / 2 * unit_);
@@ -57,10 +58,12 @@ void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
   while (cursor.peek() != '\0') {
     if (cursor.take_if('S')) {
       take_speed(values_.value(cursor, "S"));
-    } else if (cursor.take_word("DL") || cursor.take_word("DR2") || cursor.take_word("DR")) {
-      cursor.take_if(':');
-      if (values_.value(cursor, "DL, DR") != 0)
-        note("tool length", "DL and DR of TOOL CALL are passed over: points are taken for those of the tip");
+    } else if (cursor.take_word("DL") || cursor.take_word("DR2")) {
+      take_tool_delta(cursor, true);
+    } else if (cursor.take_word("DR")) {
+      const bool counts = rule_ == CompensationRule::Offset;
+      const double more = take_tool_delta(cursor, !counts);
+      if (counts) tool_more_ = more * unit_;
     } else if (cursor.peek() == 'F') {
       HeidenhainWords words;
       words.read_feed(cursor, values_);
@@ -72,6 +75,15 @@ void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
       cursor.fail_unexpected();
     }
   }
+}
+
+/// DL, DR or DR2 of TOOL CALL: what the tool differs by from its entry in the control's table.
+double HeidenhainInterpreter::take_tool_delta(HeidenhainCursor& cursor, bool noted) {
+  cursor.take_if(':');
+  const double delta = values_.value(cursor, "DL, DR");
+  if (delta != 0 && noted)
+    note("tool length", "DL and DR of TOOL CALL are passed over: points are taken for those of the tip");
+  return delta;
 }
 
 /// Its length and radius, on controls without a table of tools.
@@ -183,18 +195,6 @@ void HeidenhainInterpreter::take_feed(const HeidenhainWords& words) {
 void HeidenhainInterpreter::take_speed(double speed) {
   if (!(speed >= 0 && speed <= kMaxSpindle)) place_.fail("S is negative or out of range");
   speed_ = speed;
-}
-
-void HeidenhainInterpreter::compensate(char compensation) {
-  if (compensation == 0 || compensation == '0') return;
-  const char* name = compensation == 'L' ? "RL" : compensation == 'R' ? "RR" : "R+, R-";
-  if (!ignore_compensation_)
-    place_.fail(std::string("cutter radius compensation (") + name +
-                ") is not read: have the CAM system write the path of the tool's centre, or, where that is what the "
-                "program has, read it with options {'cutter_compensation': 'ignore'}");
-  if (!compensation_noted_)
-    note("cutter compensation", std::string(name) + " is ignored: points are taken for those of the tool's centre");
-  compensation_noted_ = true;
 }
 
 NcRowWords HeidenhainInterpreter::row_words(bool rapid) {

@@ -44,6 +44,8 @@ void HeidenhainInterpreter::leave_part(const NcRowWords& words) {
          "of the machine");
   position_noted_ |= begun;
   check_no_corner();
+  refuse_in_compensation("a position of the machine");
+  compensation_->end_leaving();
   leaving_.reset();
   rows_->at_machine(words);
 }
@@ -167,8 +169,9 @@ void HeidenhainInterpreter::move(const HeidenhainWords& words, const Vec3& other
 }
 
 void HeidenhainInterpreter::move_to(const Vec3& to, const Joints& rotary, const NcRowWords& words) {
+  if (compensates()) return check_no_corner(), contour_to(to, nullptr, rotary, words);
   check_length(to), check_no_corner();
-  const Vec3 from = at_;
+  const Vec3 from = at_, centre = leave_contour(to);
   if (!moves_in_part(words)) {
     // With the rotary axes elsewhere every word moves the tip along all axes of the part.
     if (!keeps_tip_ && !is_upright()) lose_place();
@@ -177,7 +180,7 @@ void HeidenhainInterpreter::move_to(const Vec3& to, const Joints& rotary, const 
     const Joints joints = in_part(to, rotary);
     rows_->line_to_pose(in_part(at_, rotary_), joints, rows_->machine().pose(joints), words);
   } else {
-    rows_->line(in_part(at_, rotary_), in_part(to, rotary), words);
+    rows_->line(in_part(at_, rotary_), in_part(centre, rotary), words);
   }
   at_ = to, rotary_ = rotary;
   if (to != from && !is_away()) leaving_ = glm::normalize(to - from);
@@ -207,6 +210,8 @@ void HeidenhainInterpreter::vector_line(HeidenhainWords& words) {
 /// The rotary axes go the shortest way to hold `axis`, a unit vector in the part.
 void HeidenhainInterpreter::to_axis(const Vec3& to, const Vec3& axis, const NcRowWords& words) {
   check_no_corner();
+  refuse_in_compensation("LN");
+  stay_beside_contour();
   const Machine& machine = rows_->machine();
   std::optional<Joints> best;
   double best_way = 0;
@@ -247,6 +252,7 @@ void HeidenhainInterpreter::to_machine(const HeidenhainWords& words) {
 /// M140: along the tool, by a length or to the end of the machine's travel.
 void HeidenhainInterpreter::retract(const HeidenhainRetraction& retraction, double feed) {
   if (!retraction.given) return;
+  refuse_in_compensation("M140");
   const NcRowWords row{feed == 0, feed, false, turning_ * speed_, tool_, place_.line};
   const Vec3 axis = rows_->machine().pose(rotary_).axis;
   const bool along_z = glm::length(axis - frame_.normal()) < 1e-9;

@@ -126,6 +126,8 @@ void HeidenhainInterpreter::old_plane(HeidenhainCursor& cursor) {
 
 void HeidenhainInterpreter::use_frame(const HeidenhainFrame& frame) {
   if (frame == frame_) return;
+  refuse_in_compensation("another place or tilt of the coordinates");
+  stay_beside_contour();
   const Vec3 part = frame_.to_part(at_);
   const bool turns = !(frame.turn == frame_.turn && frame.rotation == frame_.rotation);
   frame_ = frame;
@@ -205,6 +207,8 @@ void HeidenhainInterpreter::position(const Joints& joints, const PlaneWords& wor
   bool turns = false;
   for (std::size_t k = 3; k < joints.size(); ++k) turns |= joints[k] != rotary_[k];
   if (!turns) return;
+  refuse_in_compensation("PLANE");
+  stay_beside_contour();
   NcRowWords row{words.feed == 0, words.feed, false, turning_ * speed_, tool_, place_.line};
   const bool known = !is_away();
   if (words.positioning == Positioning::Turn || !known) {

@@ -58,7 +58,8 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   given_.check_header = taken.word("header", {"check", "ignore"}, "check") == "check";
   given_.max_turns = taken.positive("max_turns").value_or(1e6);
   given_.skip_unknown = taken.word("unknown", {"error", "skip"}, "error") == "skip";
-  given_.ignore_compensation = taken.word("cutter_compensation", {"error", "ignore"}, "error") == "ignore";
+  given_.compensation = take_compensation_rule(taken);
+  diameters_.take(options.options, taken);
   if (const std::string folder = path_option(options.options, taken, "subroutines"); !folder.empty())
     given_.folders.emplace_back(folder);
   given_.parameters = path_option(options.options, taken, "parameters");
@@ -71,10 +72,12 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   if (given_.arc_miss > 1) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
   rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);
+  make_compensation();
 }
 
 bool NcInterpreter::step() {
   if (execute_line()) return true;
+  compensation_->off();
   rows_->release(true);
   return false;
 }

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,11 +14,13 @@
 
 #include "nc/arc.hpp"
 #include "nc/control_flow.hpp"
+#include "nc/cutter_compensation.hpp"
 #include "nc/frame.hpp"
 #include "nc/parameters.hpp"
 #include "nc/reader.hpp"
 #include "nc/rows.hpp"
 #include "nc/source.hpp"
+#include "nc/tool_diameters.hpp"
 #include "nc/words.hpp"
 
 namespace riffler {
@@ -54,7 +58,8 @@ class NcInterpreter final : private NcPredefined {
     double max_turns = 0;
     std::vector<std::filesystem::path> folders;
     std::string parameters;
-    bool skip_unknown = false, ignore_compensation = false;
+    bool skip_unknown = false;
+    CompensationRule compensation = CompensationRule::Error;
     double arc_miss = kArcMiss;
     bool units = false;                                          // given by an option
     std::vector<std::pair<int, std::vector<double>>> positions;  // by the first of their parameters
@@ -105,7 +110,6 @@ class NcInterpreter final : private NcPredefined {
   void kinematics();
   void dwell();
   void modes();
-  void compensate(int code);
   void tool_length();
   void paths();
   void subprograms();
@@ -127,6 +131,18 @@ class NcInterpreter final : private NcPredefined {
   void note_rapid(const Joints& to);
   void check_work_offset();
   void learn_zero(int number, std::size_t joint, bool by_position);
+
+  // interpreter_compensation.cpp: cutter radius compensation.
+  void make_compensation();
+  void compensate(int code);
+  void choose_offset();
+  double compensation_diameter();
+  CutterSide compensation_side(double diameter) const;
+  bool compensates();
+  void contour_to(const Joints& to, int code);
+  void refuse_in_compensation(const std::string& what) const;
+  void leave_contour(const Joints& to, bool in_part);
+  void check_not_leaving() const;
 
   // interpreter_offsets.cpp: where program coordinates are; parameters that say so.
   NcFrame frame_of_parameters() const;
@@ -153,6 +169,7 @@ class NcInterpreter final : private NcPredefined {
   void line_to(const Joints& to, bool rapid);
   void straight_to(const Joints& to, const NcRowWords& words);
   void arc_to(const Joints& to, bool clockwise);
+  Arc arc_of_words(const Joints& to, bool clockwise);
   Arc the_arc(const Vec2& from, const Vec2& end, bool clockwise);
   void spline_to(const Joints& to, int code);
   void drill_at(int code);
@@ -169,6 +186,7 @@ class NcInterpreter final : private NcPredefined {
   std::unique_ptr<NcControlFlow> flow_;
   std::unique_ptr<NcRows> rows_;
   std::unique_ptr<NcWords> words_;
+  std::unique_ptr<CutterCompensation> compensation_;
   std::string source_;
   std::vector<Note> notes_;
   std::size_t more_skipped_ = 0;
@@ -189,6 +207,12 @@ class NcInterpreter final : private NcPredefined {
   int tool_ = 0, next_tool_ = 0, length_number_ = 0;
   std::optional<Vec3> length_;  // of the tool at hand, as the first dynamic offset gave it
   bool length_used_ = false, length_off_ = false, compensation_noted_ = false;
+  int compensation_code_ = 400;                  // of G40 to G42.1, times ten
+  std::optional<double> compensation_diameter_;  // mm, of G41.1 and G42.1
+  std::optional<int> diameter_number_;           // D
+  ToolDiameters diameters_;
+  std::map<int, double> tool_radii_;  // mm, of G10 L1, L10 and L11
+  std::set<int> offsets_noted_;
   bool begun_ = false;  // whether every linear axis has been named, or taken for 0
   bool position_noted_ = false, rotary_noted_ = false, start_noted_ = false, away_noted_ = false, units_said_ = false;
   bool rapid_noted_ = false;

@@ -50,6 +50,7 @@ void NcInterpreter::use_positions() {
 /// By the words' position to that of the machine; without words all axes go there at once.
 void NcInterpreter::go_home(int code) {
   const std::size_t which = code == 280 ? 0 : 1;
+  refuse_in_compensation(which == 0 ? "G28" : "G30");
   const int first = which == 0 ? nc_parameter::kHome : nc_parameter::kSecondHome;
   const bool some = words_->has_axes();
   if (some) {
@@ -70,6 +71,7 @@ void NcInterpreter::go_home(int code) {
 
 /// Under G53.
 Joints NcInterpreter::machine_target() {
+  refuse_in_compensation("G53");
   Joints machine = frame_.to_machine(at_);
   for (const char letter : rows_->machine().axes()) {
     const std::size_t k = joint_index(letter);

@@ -88,6 +88,8 @@ void NcInterpreter::tool() {
   const int code = words_->code(NcGroup::ToolChange);
   if (code < 0) return;
   if (code == 610 && !words_->has('Q')) place_.fail("M61 needs Q");
+  refuse_in_compensation("a change of the tool");
+  diameter_number_.reset();
   tool_ = code == 610 ? words_->whole('Q') : next_tool_;
   if (code == 60) modes_.turning = 0;
   length_.reset();
@@ -126,6 +128,7 @@ void NcInterpreter::leave_saved_states() {
 }
 
 void NcInterpreter::restore(const Modes& modes) {
+  if (modes.plane != modes_.plane) refuse_in_compensation("another plane");
   modes_ = modes;
   use_frame(frame_of_parameters());
 }
@@ -141,6 +144,7 @@ void NcInterpreter::kinematics() {
   const bool tip_words = code == 4280;
   const Machine& machine = rows_->machine();
   if (machine.branches() == 1 || machine.joint_words() != tip_words) return;
+  refuse_in_compensation("a switch of the kinematics");
   if (tcp_given_)
     place_.fail(std::string(tip_words ? "M428 has X Y Z mean the tip" : "M429 has X Y Z mean where the axes stand") +
                 ", but option tcp says otherwise: leave the option out, and what the program says is followed");
@@ -164,6 +168,7 @@ void NcInterpreter::dwell() {
 }
 
 void NcInterpreter::modes() {
+  const auto plane = modes_.plane;
   switch (words_->code(NcGroup::Plane)) {
     case 170:
       modes_.plane = {0, 1, 2};
@@ -179,20 +184,9 @@ void NcInterpreter::modes() {
     default:
       place_.fail("planes of the axes U V W (G17.1, G18.1, G19.1) are not read");
   }
-  if (const int code = words_->code(NcGroup::CutterCompensation); code > 400) compensate(code);
+  if (modes_.plane != plane) refuse_in_compensation("another plane");
+  if (const int code = words_->code(NcGroup::CutterCompensation); code >= 0) compensate(code);
   if (words_->code(NcGroup::LatheRadius) == 70) place_.fail("G7 (diameters) is for lathes: write radii (G8)");
-}
-
-void NcInterpreter::compensate(int code) {
-  const std::string name = nc_code_name('G', code);
-  if (!given_.ignore_compensation)
-    place_.fail("cutter radius compensation (" + name +
-                ") is not read: have the CAM system write the path of the tool's centre, or, where that is what the "
-                "program has, read it with options {'cutter_compensation': 'ignore'}");
-  words_->pass_over("DL");
-  if (!compensation_noted_)
-    note("cutter compensation", name + " is ignored: points are taken for those of the tool's centre");
-  compensation_noted_ = true;
 }
 
 /// The tip is what is programmed, whatever the tool's length: G43, G43.2 and G43.4 say that the control knows it. Of
@@ -202,7 +196,7 @@ void NcInterpreter::tool_length() {
   const int code = words_->code(NcGroup::ToolLength);
   // H and D beside no code that asks for them choose offsets that other blocks switch on.
   if (words_->has('H')) length_number_ = words_->whole('H');
-  words_->pass_over("D");
+  choose_offset();
   if (code < 0) return;
   NcFrame frame = frame_;
   frame.tip = Vec3(0);
@@ -248,7 +242,9 @@ void NcInterpreter::subprograms() {
 
 void NcInterpreter::stop() {
   const int code = words_->code(NcGroup::Stop);
-  if (code == 20 || code == 300) ended_ = true;
+  if (code != 20 && code != 300) return;
+  ended_ = true;
+  compensate(400);
 }
 
 }  // namespace riffler

@@ -82,9 +82,11 @@ void NcInterpreter::move(int code) {
   if (!is_drill_cycle(code)) cycle_.code = -1;
   if (code != 50) spline_end_.reset();
   if (code != 0) check_feed();
+  const bool by_machine = words_->code(NcGroup::NonModal) == 530;
   if (is_drill_cycle(code)) return drill_at(code);
-  if (code > 10) check_stands_in_part("an arc or a spline");
-  const Joints to = words_->code(NcGroup::NonModal) == 530 ? machine_target() : target();
+  if (code > 10) check_stands_in_part("an arc or a spline"), check_not_leaving();
+  if (code <= 30 && !by_machine && compensates()) return contour_to(target(), code);
+  const Joints to = by_machine ? machine_target() : target();
   if (code <= 10)
     line_to(to, code == 0);
   else if (code <= 30)
@@ -163,14 +165,16 @@ void NcInterpreter::line_to(const Joints& to, bool rapid) {
 
 /// A row in the part, or at a position of the machine.
 void NcInterpreter::straight_to(const Joints& to, const NcRowWords& words) {
-  if (moves_in_part(words.rapid))
+  const bool in_part = moves_in_part(words.rapid);
+  leave_contour(to, in_part);
+  if (in_part)
     rows_->line(at_, to, words);
   else
     rows_->at_machine(words);
   at_ = to;
 }
 
-void NcInterpreter::arc_to(const Joints& to, bool clockwise) {
+Arc NcInterpreter::arc_of_words(const Joints& to, bool clockwise) {
   const auto [u, v, w] = modes_.plane;
   Arc arc{};
   try {
@@ -183,6 +187,12 @@ void NcInterpreter::arc_to(const Joints& to, bool clockwise) {
     if (turns < 1) place_.fail("P of an arc is its turns: 1 at least");
     arc = arc.with_turns(turns);
   }
+  return arc;
+}
+
+void NcInterpreter::arc_to(const Joints& to, bool clockwise) {
+  const auto [u, v, w] = modes_.plane;
+  const Arc arc = arc_of_words(to, clockwise);
   moves_in_part(false);
   rows_->arc(at_, to, arc, u, v, row_words(false));
   at_ = to;
@@ -209,6 +219,7 @@ Arc NcInterpreter::the_arc(const Vec2& from, const Vec2& end, bool clockwise) {
 
 /// G5: a cubic whose control points are I J from its start and P Q from its end; G5.1: a quadratic, I J from its start.
 void NcInterpreter::spline_to(const Joints& to, int code) {
+  refuse_in_compensation("a spline (G5, G5.1)");
   if (modes_.plane[2] != 2) place_.fail("splines (G5, G5.1) lie in the plane of G17");
   for (std::size_t k = 2; k < 6; ++k)
     if (to[k] != at_[k]) place_.fail("splines (G5, G5.1) move X and Y only");
@@ -282,6 +293,7 @@ void NcInterpreter::take_cycle_words(int code) {
 }
 
 void NcInterpreter::drill_at(int code) {
+  refuse_in_compensation("a canned cycle");
   if (modes_.feed_mode == 930) place_.fail("canned cycles know no inverse time (G93)");
   for (const char letter : {'A', 'B', 'C'})
     if (words_->has(letter)) place_.fail("rotary axes do not turn in canned cycles");

@@ -25,6 +25,7 @@ NcFrame NcInterpreter::frame_of_parameters() const {
 /// The machine stays where it is.
 void NcInterpreter::use_frame(const NcFrame& frame) {
   if (frame == frame_) return;
+  refuse_in_compensation("another place of the coordinates (work offset, G92, tool offset)");
   if (frame.rotation != frame_.rotation && (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine))
     stand_[0] = stand_[1] = Stand::Machine;
   at_ = frame.to_program(frame_.to_machine(at_));
@@ -57,6 +58,7 @@ void NcInterpreter::non_modal() {
     case 281:
     case 301: {
       check_stands_in_part("G28.1 and G30.1");
+      refuse_in_compensation("G28.1 and G30.1");
       const Joints machine = frame_.to_machine(at_);
       const int first = words_->code(NcGroup::NonModal) == 281 ? kHome : kSecondHome;
       for (std::size_t k = 0; k < machine.size(); ++k) {
@@ -91,7 +93,8 @@ void NcInterpreter::set_data() {
   const int number = words_->whole('P');
   if (what == 1 || what == 10 || what == 11) {
     // The tool table: lengths are the control's business, the tip is what is programmed.
-    words_->pass_over("XYZABCRIJQ");
+    words_->pass_over("XYZABCIJQ");
+    if (words_->has('R')) tool_radii_[number] = words_->value('R', kMaxLength) * modes_.unit;
   } else if (what == 2 || what == 20) {
     if (number > 9) place_.fail("G10 L" + std::to_string(what) + " takes P0 to P9");
     set_system(number == 0 ? modes_.system : number, what == 20);
@@ -160,6 +163,7 @@ std::optional<double> NcInterpreter::predefined(int number) const {
     const int k = number - 5420;
     if (k > 5) return 0;
     if (stand_[static_cast<std::size_t>(k)] == Stand::Machine) check_stands_in_part("a position is asked for");
+    refuse_in_compensation("a position is asked for");
     return at_[static_cast<std::size_t>(k)] / (k < 3 ? modes_.unit : 1);
   }
   return std::nullopt;
@@ -171,6 +175,7 @@ std::optional<double> NcInterpreter::predefined(std::string_view name) const {
   if (name.size() == 2) {
     const std::size_t k = std::string_view("xyzabc").find(name[1]);
     if (k != std::string_view::npos && stand_[k] == Stand::Machine) check_stands_in_part("a position is asked for");
+    if (k != std::string_view::npos) refuse_in_compensation("a position is asked for");
     if (k != std::string_view::npos) return at_[k] / (k < 3 ? m.unit : 1);
     return name[1] >= 'u' && name[1] <= 'w' ? std::optional(0.0) : std::nullopt;
   }
@@ -191,6 +196,7 @@ std::optional<double> NcInterpreter::predefined(std::string_view name) const {
   if (name == "_spindle_rpm_mode") return truth(!m.surface_speed);
   if (name == "_spindle_on") return truth(m.turning != 0);
   if (name == "_spindle_cw") return truth(m.turning > 0);
+  if (name == "_ccomp") return compensation_code_;
   if (name == "_cutter_comp" || name == "_remap_level" || name == "_lathe_diameter_mode" || name == "_task") return 0;
   if (name == "_lathe_radius_mode") return 1;
   if (name == "_feed") return m.feed / (m.feed_mode == 930 ? 1 : m.unit);

@@ -745,8 +745,9 @@ class Program:
         given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the
         poses on its way are in ``via``;
         ``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
-        is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error" or "ignore" (points are those of the tool's
-        centre); ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
+        is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error", "ignore" (points are those of the tool's
+        centre) or "offset" (points are the contour's, and the tool's centre goes beside it); ``tool_diameters`` for that, in mm: one
+        number, or a dict by the number of the offset D or of the tool; ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
         end may miss its circle; ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes
         lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters;
         ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is

@@ -144,9 +144,9 @@ TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
        "[CSYS/1,0,0,5,0,1,0,0,0,0,1,0]"},
       {"MSYS/0,0,0,1,0,0,0.8,0.6,0", "MSYS whose axes are not at right angles [MSYS/0,0,0,1,0,0,0.8,0.6,0]"},
       {"CUTCOM/LEFT",
-       "cutter radius compensation (CUTCOM) is not read: write the path of the tool's centre, or, where that is what "
-       "the "
-       "file has, read it with options {'cutter_compensation': 'ignore'} [CUTCOM/LEFT]"},
+       "cutter radius compensation (CUTCOM) is for the control that the file is posted to: cutter location data are "
+       "points of the tool's centre as a rule; where these are, read them with options {'cutter_compensation': "
+       "'ignore'} [CUTCOM/LEFT]"},
       {"LOADTL/1.5", "LOADTL needs the tool's number [LOADTL/1.5]"},
       {"THREAD/1", "unknown statement THREAD: correct it, or read with options {'unknown': 'skip'} [THREAD/1]"},
       {"FEDRAT/1\nGOTO/0,0,0\nCIRCLE/5,0,0,0,0,1,4\nGOTO/10,0,0",

@@ -386,7 +386,7 @@ TEST(HeidenhainReader, RefusesWhatItDoesNotRead) {
       {"L X1 F-5", "line 2: unexpected '-5' [L X1 F-5]"},
       {"L X1 FZ0.1", "line 2: a feed per tooth (FZ)"},
       {"L X1 W5 FMAX", "line 2: the axis W is not read"},
-      {"L X1 RL F100", "line 2: cutter radius compensation (RL) is not read"},
+      {"L X1 RL F100", "line 2: cutter radius compensation (RL): where the program has the contour"},
       {"L X1e9 FMAX", "line 2: unexpected 'e9'"},
       {"L X9999999 FMAX", "line 2: X is out of range"},
       {"APPR LT X1 Y2 LEN5 R5 RL F100", "line 2: APPR is not read"},

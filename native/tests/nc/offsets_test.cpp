@@ -90,8 +90,10 @@ TEST(NcOffsets, AreRefusedWhereTheyMakeNoSense) {
       {"G91 G53 G0 X1", "G53 under G91: positions of the machine are absolute (G90)"},
       {"G0 X1 G92 Y1", "two codes that both use axis words: they need a block each"},
       {"G41 D1 G1 X1 F1",
-       "cutter radius compensation (G41) is not read: have the CAM system write the path of the tool's centre, or, "
-       "where that is what the program has, read it with options {'cutter_compensation': 'ignore'}"},
+       "cutter radius compensation (G41): where the program has the contour, read it with options "
+       "{'cutter_compensation': 'offset', 'tool_diameters': 6}, the tool's diameter in mm; where it has the path of "
+       "the "
+       "tool's centre, with {'cutter_compensation': 'ignore'}"},
   };
   for (const auto& [text, what] : cases)
     EXPECT_EQ(nc_error(std::string("\n") + text), std::string("line 2: ") + what + " [" + text + "]");

@@ -146,8 +146,8 @@ TEST(Reader, RefusesUnknownMachinesAndOptions) {
   const std::string unknown = error("tcp", {{"chord", 1.0}});
   EXPECT_TRUE(unknown.starts_with("machine tcp: unknown option 'chord'; known: tcp, max_rotary")) << unknown;
   EXPECT_TRUE(
-      unknown.ends_with("cutter_compensation, subroutines, parameters, units, arc_tolerance, g54, g55, g56, g57, g58, "
-                        "g59, g59_1, g59_2, g59_3, g28, g30"))
+      unknown.ends_with("cutter_compensation, tool_diameters, subroutines, parameters, units, arc_tolerance, g54, g55, "
+                        "g56, g57, g58, g59, g59_1, g59_2, g59_3, g28, g30"))
       << unknown;
   EXPECT_NE(error("tcp", {{"chord_tolerance", -1.0}}), "");
   EXPECT_NE(error("tcp", {{"chord_tolerance", std::string("small")}}), "");

@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import re
 from pathlib import Path
 from typing import Any
 
 MESHES = (".stl", ".obj", ".ply", ".3mf")
 VOLUMES = (".rvol",)
+PAIRS = re.compile(r"\d+:[-+.\deE]+(,\d+:[-+.\deE]+)*")
 ORIGINS = ("corner", "top-centre", "bottom-centre")
 
 
@@ -106,7 +108,7 @@ def add_machine_option(parser: argparse.ArgumentParser) -> None:
 
 
 def machine_options(texts: list[str], flag: str) -> dict[str, Any]:
-    """``key=value``: a number, a list of them as in 0,0,-40, true or false, or a word."""
+    """``key=value``: a number, a list of them as in 0,0,-40, pairs as in 1:6,2:10, true or false, or a word."""
     found: dict[str, Any] = {}
     for text in texts:
         key, equals, value = text.partition("=")
@@ -121,6 +123,12 @@ def machine_options(texts: list[str], flag: str) -> dict[str, Any]:
 def option_value(value: str, what: str) -> Any:
     if value in ("true", "false"):
         return value == "true"
+    if PAIRS.fullmatch(value):
+        pairs = [part.split(":") for part in value.split(",")]
+        found = {int(number): finite(entry, f"{what}: an entry") for number, entry in pairs}
+        if len(found) < len(pairs):
+            raise ValueError(f"{what}: a number stands there twice")
+        return found
     if "," in value:
         return [finite(part, f"{what}: an entry") for part in value.split(",")]
     return finite(value, what) if value[0] in "+-.0123456789" else value
