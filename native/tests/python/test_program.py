@@ -209,7 +209,15 @@ def test_tcp_blocks_hold_the_poses_and_the_way_between_them(tmp_path_factory, cl
 
 
 @pytest.mark.parametrize(
-    ("post", "options"), [("tcp", {}), ("heidenhain", {}), ("heidenhain-bc", {}), ("heidenhain", {"vectors": True})]
+    ("post", "options"),
+    [
+        ("tcp", {}),
+        ("heidenhain", {}),
+        ("heidenhain-bc", {}),
+        ("heidenhain", {"vectors": True}),
+        ("sinumerik", {}),
+        ("sinumerik-bc", {}),
+    ],
 )
 @FIXED
 @given(cl=path)
@@ -282,7 +290,8 @@ def test_programs_are_edited_into_new_ones(ball):
 
 
 def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball):
-    machines = "tcp linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc apt"
+    machines = "tcp linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc"
+    machines += " sinumerik sinumerik-bc apt"
     assert list(riffler.machines()) == machines.split() and all(riffler.machines().values())
     p = riffler.Program.from_cl([spiral(3)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"
