@@ -29,5 +29,6 @@ endfunction()
 
 # A new description is one file and its name here.
 ship_texts(shipped_machines nc/shipped_machines.hpp native/nc/machines
-           tcp tcp-bc linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc apt)
+           tcp tcp-bc linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc
+           sinumerik sinumerik-bc apt)
 ship_texts(shipped_pens pen/shipped_pens.hpp device/geometry riffler)

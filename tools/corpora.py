@@ -2,8 +2,8 @@
 
 tools/corpora.py FOLDER [--reasons N]
 
-Each folder in FOLDER is a corpus. Files of APT statements, and those with BEGIN PGM, are read as such; others for the
-first machine that has their axes. No options are given.
+Each folder in FOLDER is a corpus. Files of APT statements, those with BEGIN PGM and those with words of Sinumerik
+controls are read as such; others for the first machine that has their axes. No options are given.
 """
 
 from __future__ import annotations
@@ -20,6 +20,11 @@ from shell import main
 
 APT = re.compile(r"^\s*(GOTO\s*/|PARTNO|TOOL PATH/|\$\$)", re.MULTILINE)
 ISO = re.compile(r"^\s*(%|[:NOGM]\s*\d)", re.MULTILINE | re.IGNORECASE)
+SINUMERIK = re.compile(
+    r"^%_N_|^;\$PATH=|\bMSG\s*\(|^\s*(N\d+ *)?R\d+ *="
+    r"|\b(SUPA|TRAORI|TRAFOOF|MCALL|GOTOF|GOTOB|CYCLE8\d|CR=|G641|G642|DEF REAL|FFWON)\b",
+    re.MULTILINE,
+)
 CONVERSATIONAL = re.compile(r"^\s*\d*\s*BEGIN PGM", re.MULTILINE | re.IGNORECASE)
 MACHINES = ("3-axis", "tcp", "linuxcnc-xyzac", "linuxcnc-xyzbc")
 PLACE = re.compile(r"^.*?, line \d+: | \[[^\[]*\]$|\d[\d.]*")
@@ -28,6 +33,8 @@ PLACE = re.compile(r"^.*?, line \d+: | \[[^\[]*\]$|\d[\d.]*")
 def machines(text: str) -> tuple[str, ...]:
     if CONVERSATIONAL.search(text):
         return ("heidenhain", "heidenhain-bc")
+    if SINUMERIK.search(re.sub(r"(?m)(^|\s)[(][^)\n]*[)]", " ", text)):
+        return ("sinumerik", "sinumerik-bc")
     return ("apt",) if APT.search(text) and not ISO.match(text) else MACHINES
 
 

@@ -18,7 +18,7 @@ from ..properties.plan import MACHINES
 from . import shared
 from .plan_work import PlanWork, part_poll, plan_poll
 
-EXTENSIONS = {"heidenhain": ".h", "heidenhain-bc": ".h", "apt": ".apt"}
+EXTENSIONS = {"heidenhain": ".h", "heidenhain-bc": ".h", "sinumerik": ".mpf", "sinumerik-bc": ".mpf", "apt": ".apt"}
 
 
 class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):

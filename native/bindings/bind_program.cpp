@@ -407,7 +407,7 @@ as cuts touch the part. ValueError names the path, the row, the place and the re
           },
           py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::kw_only(),
           py::arg("progress") = py::none(),
-          R"(Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT or Heidenhain's Klartext.
+          R"(Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT, Heidenhain's Klartext or Sinumerik.
 
 Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
 given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the

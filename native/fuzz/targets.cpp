@@ -146,6 +146,7 @@ std::vector<Bytes> nothing() {
 const Target kTargets[] = {
     {"rs274", [](View b) { nc(b, "tcp", b.size() % 2 == 1); }, &nothing, nullptr},
     {"rs274-axes", [](View b) { nc(b, b.size() % 2 == 1 ? "3-axis" : "linuxcnc-xyzac", false); }, &nothing, nullptr},
+    {"sinumerik", [](View b) { nc(b, "sinumerik", b.size() % 2 == 1); }, &nothing, nullptr},
     {"apt", [](View b) { nc(b, "apt", b.size() % 2 == 1); }, &nothing, nullptr},
     {"stl", &mesh<&from_stl>, &stl_samples, nullptr},
     {"obj", &mesh<&from_obj>, &obj_samples, nullptr},

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "geom/math.hpp"
+#include "nc/limits.hpp"
 
 namespace riffler {
 
@@ -84,6 +85,19 @@ Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwis
   // A half circle's two senses differ by rounding only: R says that it is one.
   if (height == 0) arc.sweep = clockwise ? -std::numbers::pi : std::numbers::pi;
   return arc;
+}
+
+Arc tangent_arc(const Vec2& from, const Vec2& to, const Vec2& direction, double miss) {
+  constexpr double kOnLine = 1e-9;  // mm
+  if (!(glm::length(direction) > 1e-6))
+    throw std::invalid_argument("CT without an element before it whose direction it could take");
+  const Vec2 tangent = glm::normalize(direction), left(-tangent.y, tangent.x), chord = to - from;
+  if (!(glm::length(chord) > kFullCircle)) throw std::invalid_argument("CT that ends where it begins");
+  const double aside = glm::dot(chord, left);
+  if (!(std::abs(aside) > kOnLine)) throw std::invalid_argument("CT to a point straight ahead or behind: write a line");
+  const double radius = glm::dot(chord, chord) / (2 * aside);
+  if (!(std::abs(radius) <= kMaxLength)) throw std::invalid_argument("CT of a radius that is out of range");
+  return arc_about(from, to, from + radius * left, radius < 0, miss);
 }
 
 }  // namespace riffler

@@ -30,5 +30,8 @@ inline constexpr double kFullCircle = 1e-6;
 /// radius below kLeastRadius or 0, a full circle by its radius. `radius` < 0 is the arc of more than half a turn.
 Arc arc_about(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise, double miss = kArcMiss);
 Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwise, double miss = kRadiusMiss);
+/// The arc that leaves `from` along `direction`, of any length. Throws also where there is no direction or `to` lies
+/// straight ahead or behind.
+Arc tangent_arc(const Vec2& from, const Vec2& to, const Vec2& direction, double miss = kArcMiss);
 
 }  // namespace riffler

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
+#include "geom/vec.hpp"
 #include "nc/source.hpp"
 
 namespace riffler {
@@ -14,6 +16,14 @@ struct DrillCycle {
   double bottom;   ///< Z
   double clear;    ///< where the tool goes in the end: R, or the level from before (G98)
   double peck;     ///< Q, of G73, G83 and of tapping; 0: none
+};
+
+/// A move to a height, mm, in a cycle whose parameters say each of them.
+struct HoleStroke {
+  double height;
+  double feed;                    ///< mm/min; 0: rapid
+  std::optional<double> spindle;  ///< rev/min, > 0 clockwise; none: as it turns
+  Vec2 aside{0};                  ///< mm, from the hole's axis
 };
 
 /// LinuxCNC's: what a peck keeps from the ground before (G83), or breaks the chip with (G73).

@@ -145,17 +145,10 @@ void HeidenhainInterpreter::tangent_circle(HeidenhainWords& words, bool polar) {
   const Pole at = polar ? pole("CTP") : Pole{};
   const int u = static_cast<int>(at.u), v = static_cast<int>(at.v);
   const Vec2 along = leaving_ ? Vec2((*leaving_)[u], (*leaving_)[v]) : Vec2(0, 0);
-  if (!(glm::length(along) > 1e-6)) place_.fail("CT without an element before it whose direction it could take");
-  const Vec2 tangent = glm::normalize(along), left(-tangent.y, tangent.x);
+  const Vec2 from(at_[u], at_[v]);
   const Vec3 to = polar ? polar_target(words) : linear_target(words);
-  const Vec2 from(at_[u], at_[v]), chord = Vec2(to[u], to[v]) - from;
-  if (!(glm::length(chord) > kFullCircle)) place_.fail("CT that ends where it begins");
-  const double aside = glm::dot(chord, left);
-  if (!(std::abs(aside) > kOnLine)) place_.fail("CT to a point straight ahead or behind: write a line");
-  const double radius = glm::dot(chord, chord) / (2 * aside);
-  if (!(std::abs(radius) <= kMaxLength)) place_.fail("CT of a radius that is out of range");
   try {
-    arc_to(to, arc_about(from, Vec2(to[u], to[v]), from + radius * left, radius < 0, arc_miss_), at.u, at.v, words);
+    arc_to(to, tangent_arc(from, Vec2(to[u], to[v]), along, arc_miss_), at.u, at.v, words);
   } catch (const std::invalid_argument& e) {
     place_.fail(e.what());
   }

@@ -19,7 +19,7 @@ constexpr double kRest = 1e-9;
 class Hole {
  public:
   Hole(const HeidenhainCycleSetting& setting, const HeidenhainValues& values, const NcPlace& place,
-       const std::function<void(const HeidenhainStroke&)>& move)
+       const std::function<void(const HoleStroke&)>& move)
       : setting_(setting), values_(values), place_(place), move_(move) {}
 
   void run(int number) {
@@ -298,7 +298,7 @@ class Hole {
   const HeidenhainCycleSetting& setting_;
   const HeidenhainValues& values_;
   const NcPlace& place_;
-  const std::function<void(const HeidenhainStroke&)>& move_;
+  const std::function<void(const HoleStroke&)>& move_;
   double surface_ = 0, clear_ = 0, level_ = 0, bottom_ = 0;
   std::optional<double> spindle_;
   Vec2 aside_{0};
@@ -312,7 +312,7 @@ bool is_heidenhain_hole(int number) {
 }
 
 void heidenhain_hole(int number, const HeidenhainCycleSetting& setting, const HeidenhainValues& values,
-                     const NcPlace& place, const std::function<void(const HeidenhainStroke&)>& move) {
+                     const NcPlace& place, const std::function<void(const HoleStroke&)>& move) {
   Hole(setting, values, place, move).run(number);
 }
 

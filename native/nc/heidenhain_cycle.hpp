@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "geom/vec.hpp"
+#include "nc/drill_cycle.hpp"
 #include "nc/heidenhain_values.hpp"
 #include "nc/source.hpp"
 
@@ -26,20 +27,12 @@ struct HeidenhainCycleSetting {
   std::array<std::optional<double>, 5> old{};
 };
 
-/// A move to a height, mm.
-struct HeidenhainStroke {
-  double height;
-  double feed;                    ///< mm/min; 0: rapid
-  std::optional<double> spindle;  ///< rev/min, > 0 clockwise; none: as it turns
-  Vec2 aside{0};                  ///< mm, from the hole's axis
-};
-
 /// Whether the cycle is a hole that is read: 1, 2, 200 to 203, 205, 206, 207, 209, 241.
 bool is_heidenhain_hole(int number);
 
 /// Calls `move` for every stroke of cycle `number`. FormatError for parameters that are missing or out of range, and
 /// for more pecks than can be held.
 void heidenhain_hole(int number, const HeidenhainCycleSetting& setting, const HeidenhainValues& values,
-                     const NcPlace& place, const std::function<void(const HeidenhainStroke&)>& move);
+                     const NcPlace& place, const std::function<void(const HoleStroke&)>& move);
 
 }  // namespace riffler

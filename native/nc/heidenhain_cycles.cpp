@@ -194,7 +194,7 @@ void HeidenhainInterpreter::call_cycle() {
   if (cycle_ == 208) return bore();
   const HeidenhainCycleSetting setting{unit_, feed_unit_, speed_, at_.z, old_cycle_};
   const Vec3 hole = at_;
-  heidenhain_hole(cycle_, setting, values_, place_, [&](const HeidenhainStroke& stroke) {
+  heidenhain_hole(cycle_, setting, values_, place_, [&](const HoleStroke& stroke) {
     NcRowWords words{stroke.feed == 0, stroke.feed, false, stroke.spindle.value_or(turning_ * speed_), tool_,
                      place_.line};
     stand_[2] = Stand::Given;

@@ -17,9 +17,6 @@ namespace riffler {
 
 namespace {
 
-/// Of each kind.
-constexpr std::size_t kMaxNotesOfKind = 20;
-
 /// Statements that would move the tool, or what follows, and are not read.
 constexpr std::string_view kMovingStatements[] = {"APPR",    "DEP",  "FPOL",   "FL",       "FLT",    "FC",    "FCT",
                                                   "FSELECT", "SPL",  "TCH",    "SEL",      "PGM",    "TRANS", "PATTERN",
@@ -75,7 +72,7 @@ Program HeidenhainInterpreter::run() {
   if (corner_) place_.fail("RND or CHF without the line after it");
   compensation_->off();
   flush();
-  program_.provenance = provenance();
+  program_.provenance = notes_.provenance(source_), program_.notes = notes_.notes();
   return std::move(program_);
 }
 
@@ -220,27 +217,7 @@ void HeidenhainInterpreter::flush() {
 }
 
 void HeidenhainInterpreter::note(const char* kind, const std::string& message) {
-  const auto alike = std::ranges::count(program_.notes, kind, &Note::kind);
-  if (static_cast<std::size_t>(alike) < kMaxNotesOfKind)
-    program_.notes.push_back({kind, place_.line, message});
-  else if (kind == std::string_view("skipped"))
-    ++more_skipped_;
-}
-
-Provenance HeidenhainInterpreter::provenance() const {
-  Provenance out{{"source", source_}};
-  const auto list = [&](bool skipped) {
-    std::string text;
-    for (const Note& n : program_.notes)
-      if ((n.kind == "skipped") == skipped)
-        text += (text.empty() ? "line " : "; line ") + std::to_string(n.line) + ": " + n.message;
-    return text;
-  };
-  if (const std::string skipped = list(true); !skipped.empty())
-    out.emplace_back("skipped",
-                     skipped + (more_skipped_ ? std::string("; and ") + std::to_string(more_skipped_) + " more" : ""));
-  if (const std::string others = list(false); !others.empty()) out.emplace_back("notes", others);
-  return out;
+  notes_.add(kind, place_.line, message);
 }
 
 }  // namespace riffler

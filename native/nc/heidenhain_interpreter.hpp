@@ -19,8 +19,10 @@
 #include "nc/heidenhain_text.hpp"
 #include "nc/heidenhain_values.hpp"
 #include "nc/heidenhain_words.hpp"
+#include "nc/notes.hpp"
 #include "nc/reader.hpp"
 #include "nc/rows.hpp"
+#include "nc/stand.hpp"
 #include "nc/tool_diameters.hpp"
 
 namespace riffler {
@@ -34,12 +36,7 @@ class HeidenhainInterpreter {
   Program run();
 
  private:
-  /// What is known of a coordinate of the tip.
-  enum class Stand : std::uint8_t {
-    Given,    // the program named it
-    Start,    // as before the program, taken for 0
-    Machine,  // where in the part it is depends on the machine
-  };
+  using Stand = TipStand;
   enum class Positioning : std::uint8_t { Stay, Turn, Move };
   /// What stands behind the angles of a PLANE.
   struct PlaneWords {
@@ -72,7 +69,6 @@ class HeidenhainInterpreter {
   void expect_end(HeidenhainCursor& cursor);
   void flush();
   void note(const char* kind, const std::string& message);
-  Provenance provenance() const;
 
   // heidenhain_flow.cpp: labels, jumps, parameters.
   void call(HeidenhainCursor& cursor);
@@ -179,7 +175,7 @@ class HeidenhainInterpreter {
   bool block_delete_ = false, check_header_ = true, skip_unknown_ = false;
   CompensationRule rule_ = CompensationRule::Error;
   double max_turns_ = 0, turns_ = 0, arc_miss_ = 0;
-  std::size_t more_skipped_ = 0;
+  NoteList notes_;
 
   const Progress& progress_;
   std::size_t next_ = 0;             // block
@@ -204,7 +200,7 @@ class HeidenhainInterpreter {
   HeidenhainFrame frame_;
   Vec3 at_{0};       // program coordinates, mm
   Joints rotary_{};  // deg; X Y Z without meaning
-  std::array<Stand, 3> stand_{Stand::Start, Stand::Start, Stand::Start};
+  TipStands stand_{Stand::Start, Stand::Start, Stand::Start};
   bool keeps_tip_ = false, spatial_ = false, along_vectors_ = false, shortest_ = false;
   Vec3 spatial_angles_{0};
   std::optional<Joints> plane_joints_;

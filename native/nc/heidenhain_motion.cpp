@@ -7,6 +7,7 @@
 
 #include "nc/heidenhain_interpreter.hpp"
 #include "nc/limits.hpp"
+#include "nc/tool_axis.hpp"
 
 namespace riffler {
 
@@ -18,14 +19,11 @@ void HeidenhainInterpreter::check_length(const Vec3& at) const {
 // --- What is known of where the tip is ---
 
 bool HeidenhainInterpreter::is_away() const {
-  return std::ranges::find(stand_, Stand::Machine) != stand_.end();
+  return has_stand(stand_, Stand::Machine);
 }
 
 std::string HeidenhainInterpreter::axes_away() const {
-  std::string out;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (stand_[k] == Stand::Machine) out += kJointLetters[k];
-  return out;
+  return axes_of(stand_, Stand::Machine);
 }
 
 void HeidenhainInterpreter::lose_place() {
@@ -59,9 +57,7 @@ bool HeidenhainInterpreter::moves_in_part(const NcRowWords& words) {
     note("coordinates",
          "a feed move while " + axes_away() + " is at a position of the machine: neither cut nor checked");
   if (!std::exchange(start_noted_, true)) {
-    std::string axes;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (stand_[k] == Stand::Start) axes += (axes.empty() ? "" : ", ") + std::string(1, kJointLetters[k]);
+    const std::string axes = axes_of(stand_, Stand::Start, ", ");
     if (!axes.empty())
       note("start", axes + " has not been named before the first feed move: taken for 0 at the start of the program");
   }
@@ -212,27 +208,20 @@ void HeidenhainInterpreter::to_axis(const Vec3& to, const Vec3& axis, const NcRo
   check_no_corner();
   refuse_in_compensation("LN");
   stay_beside_contour();
-  const Machine& machine = rows_->machine();
-  std::optional<Joints> best;
-  double best_way = 0;
+  Joints best;
   try {
-    for (int branch = 0; branch < machine.branches(); ++branch) {
-      const Joints joints = machine.joints({Vec3(0), axis}, branch, rotary_, 1e-9);
-      double way = machine.beyond(joints, 1e-6) < joints.size() ? 1e9 : 0;
-      for (std::size_t k = 3; k < joints.size(); ++k) way += std::abs(joints[k] - rotary_[k]);
-      if (!best || way < best_way) best = joints, best_way = way;
-    }
+    best = joints_holding(rows_->machine(), axis, rotary_, 1e-9);
   } catch (const std::invalid_argument& e) {
     place_.fail(std::string(e.what()) + ": read it with the machine that the program is for");
   }
   const Vec3 from = at_;
   if (moves_in_part(words)) {
-    const Joints joints = in_part(to, *best);
+    const Joints joints = in_part(to, best);
     rows_->line_to_pose(in_part(at_, rotary_), joints, {frame_.to_part(to), axis}, words);
   } else {
     leave_part(words);
   }
-  at_ = to, rotary_ = *best;
+  at_ = to, rotary_ = best;
   if (to != from && !is_away()) leaving_ = glm::normalize(to - from);
 }
 

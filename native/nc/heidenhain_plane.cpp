@@ -9,6 +9,7 @@
 #include "nc/heidenhain_interpreter.hpp"
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
+#include "nc/tool_axis.hpp"
 
 namespace riffler {
 
@@ -18,10 +19,6 @@ namespace {
 constexpr double kUpright = 1e-3, kSameAngle = 0.06;
 /// Within this angle (rad) of the pole a rotary axis is free.
 constexpr double kAtPole = 1e-6;
-
-bool is_whole_turn(double degrees) {
-  return std::abs(nearest_turn(degrees, 0)) < kSameAngle;
-}
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "geom/math.hpp"
+#include "nc/maybe.hpp"
 
 namespace riffler {
 
@@ -38,11 +39,6 @@ constexpr QFunction kQFunctions[] = {
                                   : x < 0 ? -1.0
                                           : 0.0; }},
 };
-
-template <typename Of>
-std::optional<double> both(const std::optional<double>& a, const std::optional<double>& b, Of of) {
-  return a && b ? std::optional<double>(of(*a, *b)) : std::nullopt;
-}
 
 }  // namespace
 

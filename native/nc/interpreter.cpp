@@ -12,25 +12,6 @@
 
 namespace riffler {
 
-namespace {
-
-/// Of each kind.
-constexpr std::size_t kMaxNotes = 20;
-
-bool is_skipped(std::string_view kind) {
-  return kind == "skipped" || kind == "coordinates";
-}
-
-/// A path, which OptionReader has no form of its own for.
-std::string path_option(const Options& options, OptionReader& taken, const std::string& name) {
-  const auto found = options.find(name);
-  const std::string* path = found == options.end() ? nullptr : std::get_if<std::string>(&found->second);
-  if (found != options.end() && !path) throw std::invalid_argument("option " + name + " must be a path");
-  return taken.word(name, {path ? *path : ""}, "");
-}
-
-}  // namespace
-
 NcInterpreter::NcInterpreter(std::unique_ptr<NcSource> source, const std::filesystem::path& folder,
                              const ReadOptions& options)
     : parameters_(*this), source_(source->name()) {
@@ -60,9 +41,8 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   given_.skip_unknown = taken.word("unknown", {"error", "skip"}, "error") == "skip";
   given_.compensation = take_compensation_rule(taken);
   diameters_.take(options.options, taken);
-  if (const std::string folder = path_option(options.options, taken, "subroutines"); !folder.empty())
-    given_.folders.emplace_back(folder);
-  given_.parameters = path_option(options.options, taken, "parameters");
+  if (const std::string folder = taken.path("subroutines"); !folder.empty()) given_.folders.emplace_back(folder);
+  given_.parameters = taken.path("parameters");
   given_.units = taken.given("units");
   if (taken.word("units", {"mm", "inch"}, "mm") == "inch") modes_.unit = kInch;
   given_.arc_miss = taken.positive("arc_tolerance").value_or(kArcMiss);
@@ -189,26 +169,7 @@ void NcInterpreter::execute() {
 }
 
 void NcInterpreter::note(const char* kind, const std::string& message) {
-  const auto alike = std::count_if(notes_.begin(), notes_.end(), [&](const Note& n) { return n.kind == kind; });
-  if (static_cast<std::size_t>(alike) < kMaxNotes)
-    notes_.push_back({kind, flow_->program_line(), message});
-  else if (is_skipped(kind))
-    ++more_skipped_;
-}
-
-Provenance NcInterpreter::provenance() const {
-  Provenance out{{"source", source_}};
-  const auto list = [&](bool skipped) {
-    std::string text;
-    for (const Note& n : notes_)
-      if (is_skipped(n.kind) == skipped && n.kind != "rapid" && n.kind != "units")
-        text += (text.empty() ? "line " : "; line ") + std::to_string(n.line) + ": " + n.message;
-    return text;
-  };
-  if (const std::string skipped = list(true); !skipped.empty())
-    out.emplace_back("skipped", skipped + (more_skipped_ ? "; and " + std::to_string(more_skipped_) + " more" : ""));
-  if (const std::string others = list(false); !others.empty()) out.emplace_back("notes", others);
-  return out;
+  notes_.add(kind, flow_->program_line(), message);
 }
 
 }  // namespace riffler

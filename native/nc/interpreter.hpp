@@ -16,6 +16,7 @@
 #include "nc/control_flow.hpp"
 #include "nc/cutter_compensation.hpp"
 #include "nc/frame.hpp"
+#include "nc/notes.hpp"
 #include "nc/parameters.hpp"
 #include "nc/reader.hpp"
 #include "nc/rows.hpp"
@@ -37,8 +38,8 @@ class NcInterpreter final : private NcPredefined {
   [[noreturn]] void fail_rows() const { place_.fail("more rows than can be held"); }
 
   /// "source", and "skipped" and "notes" where there are any.
-  Provenance provenance() const;
-  const std::vector<Note>& notes() const { return notes_; }
+  Provenance provenance() const { return notes_.provenance(source_); }
+  const std::vector<Note>& notes() const { return notes_.notes(); }
 
  private:
   /// What M70 saves and M72 restores.
@@ -188,8 +189,7 @@ class NcInterpreter final : private NcPredefined {
   std::unique_ptr<NcWords> words_;
   std::unique_ptr<CutterCompensation> compensation_;
   std::string source_;
-  std::vector<Note> notes_;
-  std::size_t more_skipped_ = 0;
+  NoteList notes_;
 
   Joints at_{};  // program coordinates, mm and degrees
   std::array<Stand, 6> stand_{Stand::Start, Stand::Start, Stand::Start, Stand::Given, Stand::Given, Stand::Given};

@@ -19,13 +19,13 @@ std::vector<DescriptionEntry> machines() {
   return list_descriptions(shelf());
 }
 
-std::string machines_with(char axis) {
+std::string machines_with(char axis, std::string_view language) {
   std::string out;
   for (const DescriptionEntry& entry : machines()) {
     OptionReader options({{"tcp", true}}, entry.name);  // with which no pivot is asked for
     try {
       const std::unique_ptr<Machine> machine = make_machine(entry.name, options);
-      if (machine->control().language != "rs274" || machine->axes().find(axis) == std::string_view::npos) continue;
+      if (machine->control().language != language || machine->axes().find(axis) == std::string_view::npos) continue;
       out += (out.empty() ? "" : ", ") + entry.name;
     } catch (const std::invalid_argument&) {
       continue;  // a file of the user's own that cannot be read: whoever asks for it is told

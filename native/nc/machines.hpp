@@ -17,8 +17,8 @@ namespace riffler {
 /// riffler/machines of the user's folder for settings; of a file that cannot be read the description says why.
 std::vector<DescriptionEntry> machines();
 
-/// The names of those with an axis of this letter that are written in RS-274, apart by commas.
-std::string machines_with(char axis);
+/// The names of those with an axis of this letter whose control reads `language`, apart by commas.
+std::string machines_with(char axis, std::string_view language = "rs274");
 
 /// `name` is one of machines(), or the path of a .toml file. Options that the machine does not take stay in `options`.
 /// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.

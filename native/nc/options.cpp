@@ -88,6 +88,14 @@ std::string OptionReader::word(const std::string& name, const std::vector<std::s
   return *value;
 }
 
+std::string OptionReader::path(const std::string& name) {
+  const std::optional<OptionValue> given = take(name);
+  if (!given) return "";
+  const std::string* value = std::get_if<std::string>(&*given);
+  if (!value) throw std::invalid_argument("option " + name + " must be a path");
+  return *value;
+}
+
 void OptionReader::done() const {
   if (options_.empty()) return;
   std::string known;

@@ -43,6 +43,9 @@ class OptionReader {
   bool flag(const std::string& name, bool otherwise);
   std::string word(const std::string& name, const std::vector<std::string>& known, const std::string& otherwise);
 
+  /// A path; empty where it was not given.
+  std::string path(const std::string& name);
+
   /// Throws std::invalid_argument naming an option that nobody took, and those that are known.
   void done() const;
 

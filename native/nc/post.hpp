@@ -102,6 +102,7 @@ std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options);
 // The factories, each in its own file.
 std::unique_ptr<Post> make_rs274(const Machine& machine, PostOptions options);
 std::unique_ptr<Post> make_heidenhain(const Machine& machine, PostOptions options);
+std::unique_ptr<Post> make_sinumerik(const Machine& machine, PostOptions options);
 std::unique_ptr<Post> make_apt(const Machine& machine, PostOptions options);
 
 }  // namespace riffler

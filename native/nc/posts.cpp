@@ -12,6 +12,7 @@ namespace {
 constexpr PostLanguage kLanguages[] = {
     {"rs274", make_rs274},
     {"heidenhain", make_heidenhain},
+    {"sinumerik", make_sinumerik},
     {"apt", make_apt},
 };
 

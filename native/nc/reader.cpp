@@ -11,6 +11,8 @@
 #include "nc/interpreter.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
+#include "nc/sinumerik_reader.hpp"
+#include "nc/sinumerik_text.hpp"
 
 namespace riffler {
 
@@ -45,32 +47,41 @@ constexpr const char* kOfReading[] = {"chord_tolerance",
                                       "g59_3",
                                       "g28",
                                       "g30"};
-/// FormatError where the text is in another language than the machine's control reads.
+/// FormatError where the text is in another language than the machine's control reads. RS-274 may stand behind the
+/// header of a Sinumerik program: controls that read both have it so.
 void check_language(NcSource& source, const std::string& language) {
   const bool conversational = begins_heidenhain(source);
-  if (conversational == (language == "heidenhain")) return;
-  const std::string other = conversational ? "heidenhain" : "rs274";
-  const std::string what = conversational
-                               ? "a Heidenhain conversational program (BEGIN PGM), and the machine's control "
-                                 "reads another language"
-                               : "not a Heidenhain conversational program, which the machine's control reads: "
-                                 "BEGIN PGM is not in its first block";
+  const bool sinumerik = language != "sinumerik" && language != "rs274" && begins_sinumerik(source);
+  if (conversational == (language == "heidenhain") && !sinumerik) return;
+  const std::string other = conversational ? "heidenhain" : sinumerik ? "sinumerik" : "rs274";
+  std::string what =
+      "not a Heidenhain conversational program, which the machine's control reads: BEGIN PGM is not in "
+      "its first block";
+  if (conversational)
+    what = "a Heidenhain conversational program (BEGIN PGM), and the machine's control reads another language";
+  else if (sinumerik)
+    what = "a Sinumerik program (%_N_ or ;$PATH= at its beginning), and the machine's control reads another language";
   throw FormatError(source.name(), "line 1",
                     what + "; machines that read " + other + ": " + machines_of_language(other));
 }
 
-/// A file of a language that is read as a whole.
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+/// A file of a language that is read as a whole. `folder`: of its subprograms; none where it is empty.
 Program parse_whole(std::string_view text, const std::string& file, const ReadOptions& options,
-                    const std::string& language) {
+                    const std::string& language, const std::filesystem::path& folder) {
   NcSource source(text, file);
   check_language(source, language);
+  if (language == "sinumerik") return parse_sinumerik(text, file, options, folder);
   return language == "apt" ? parse_apt(text, file, options) : parse_heidenhain(text, file, options);
 }
 
 Program read_whole(const std::filesystem::path& path, const ReadOptions& options, const std::string& language) {
   const std::vector<std::uint8_t> bytes = read_file(path);
   return parse_whole({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.filename().string(), options,
-                     language);
+                     language, folder_of(path));
 }
 
 std::unique_ptr<NcSource> checked_source(std::unique_ptr<NcSource> source) {
@@ -78,11 +89,7 @@ std::unique_ptr<NcSource> checked_source(std::unique_ptr<NcSource> source) {
   return source;
 }
 
-std::filesystem::path folder_of(const std::filesystem::path& path) {
-  return path.has_parent_path() ? path.parent_path() : ".";
-}
-
-Program read_all(NcInterpreter& interpreter) {
+Program read_rows(NcInterpreter& interpreter) {
   Program program;
   std::vector<Move>& pending = interpreter.pending();
   bool more = true;
@@ -96,6 +103,20 @@ Program read_all(NcInterpreter& interpreter) {
   return program;
 }
 
+/// Errors name the machines for a Sinumerik program.
+Program read_all(std::unique_ptr<NcSource> source, const std::filesystem::path& folder, const ReadOptions& options) {
+  const bool sinumerik = begins_sinumerik(*source);
+  try {
+    NcInterpreter interpreter(checked_source(std::move(source)), folder, options);
+    return read_rows(interpreter);
+  } catch (const FormatError& error) {
+    if (!sinumerik) throw;
+    throw FormatError(
+        error.what(), "",
+        "the file begins as a Sinumerik program; machines that read such ones: " + machines_of_language("sinumerik"));
+  }
+}
+
 }  // namespace
 
 Options without_reading(Options options) {
@@ -105,16 +126,14 @@ Options without_reading(Options options) {
 
 Program parse_nc(std::string_view text, const std::string& file, const ReadOptions& options) {
   if (const std::string language = language_of(options); language != "rs274")
-    return parse_whole(text, file, options, language);
-  NcInterpreter interpreter(checked_source(std::make_unique<NcSource>(text, file)), {}, options);
-  return read_all(interpreter);
+    return parse_whole(text, file, options, language, {});
+  return read_all(std::make_unique<NcSource>(text, file), {}, options);
 }
 
 Program read_nc(const std::filesystem::path& path, const ReadOptions& options) {
   if (const std::string language = language_of(options); language != "rs274")
     return read_whole(path, options, language);
-  NcInterpreter interpreter(checked_source(std::make_unique<NcSource>(path)), folder_of(path), options);
-  return read_all(interpreter);
+  return read_all(std::make_unique<NcSource>(path), folder_of(path), options);
 }
 
 NcStream::NcStream(const std::filesystem::path& path, const ReadOptions& options, std::size_t rows) : rows_(rows) {

@@ -1,4 +1,4 @@
-// NC code (RS-274, an APT cutter location file, a Heidenhain conversational program) → Program.
+// NC code (RS-274, an APT cutter location file, a Heidenhain conversational program, a Sinumerik program) → Program.
 #pragma once
 
 #include <cstddef>

@@ -739,7 +739,7 @@ class Program:
     @staticmethod
     def read(path: os.PathLike | str | bytes, machine: str = 'tcp', options: typing.Any = None, *, progress: typing.Any = None) -> Program:
         """
-        Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT or Heidenhain's Klartext.
+        Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT, Heidenhain's Klartext or Sinumerik.
 
         Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
         given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the

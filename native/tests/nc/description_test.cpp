@@ -154,7 +154,7 @@ TEST(Description, NamesTheLineThatIsWrong) {
   EXPECT_EQ(error(with("start", "coolant = \"air\"\nstart")),
             "mill.toml, line 4: coolant must be one of off, flood, mist");
   EXPECT_EQ(error("description = \"x\"\ncontrol = \"siemens\""),
-            "mill.toml, line 2: control must be one of rs274, heidenhain, apt");
+            "mill.toml, line 2: control must be one of rs274, heidenhain, sinumerik, apt");
   EXPECT_EQ(error(kMill, {{"pivot", 1.0}}).substr(0, 36), "machine mill: unknown option 'pivot'");
   EXPECT_EQ(error(kMill, {{"limits_x", 1.0}}), "machine mill: option limits_x must be two finite numbers that grow");
 }

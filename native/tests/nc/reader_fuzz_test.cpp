@@ -35,6 +35,93 @@ const std::string kSeeds[] = {
     "SPAT PATHCTRL AXIS\nL A1 B2\nFUNCTION RESET TCPM\nCYCL DEF 32.0 T\nCYCL DEF 32.1 T.01\nCYCL DEF 10.0 R\nCYCL DEF "
     "10.1 "
     "ROT+5\nSTOP\nEND PGM B INCH\n",
+    "%_N_SEED_MPF\n"
+    ";$PATH=/_N_MPF_DIR\n"
+    "N10 DEF REAL _HOME=-10, ARR[3]\n"
+    "N20 G17 G710 G94 G90 G40 G54 FNORM G642 ADIS=0.1\n"
+    "SUPA G0 Z=_HOME D0\n"
+    "T=\"BALL 6\" D1 M6\n"
+    "MSG(\"ROUGH\")\n"
+    "G0X1Y2Z30S8000M3\n"
+    "CYCLE832(0.01,_FINISH,1)\n"
+    "R1=1\n"
+    "G1 Z=5-R1 F=100*2\n"
+    "R1=2 ARR[1]=R1+SIN(30)\n"
+    "TRANS X10 Y=ARR[1]\n"
+    "AROT X30 Z=R1\n"
+    "G2 I=AC(4) J3 TURN=2\n"
+    "G3 X=IC(2) Y=IC(2) CR=-4\n"
+    "CIP X1 Y1 Z1 I1=2 J1=3 K1=1\n"
+    "CT X9 Y9\n"
+    "G3 I-10 AR=120\n"
+    "G18 G2 X=IC(1) Z=IC(1) CR=2\n"
+    "G17\n"
+    "ROT\n"
+    "TRANS\n"
+    "G55 G1 X=IC(5) Y=AC(3)\n"
+    "CYCLE800(1,\"TC1\",200000,57,0,0,0,30,0,0,0,0,5,1,,1)\n"
+    "G0 X1 Y1 Z1\n"
+    "CYCLE800()\n"
+    "G0 A0 C0\n"
+    "TRAORI\n"
+    "G1 X1 Y1 Z1 A10 C=DC(350) F90\n"
+    "ORIWKS ORIVECT\n"
+    "X2 A3=0.1 B3=0.2 C3=1\n"
+    "TRAFOOF\n"
+    "G74 X1=0 Z1=0\n"
+    "G4 F2\n"
+    "M30\n",
+    "G0 X0 Y0 Z0 F100\n"
+    "DEF INT II, NN=3\n"
+    "DEF STRING[10] NAME=\"T1\"\n"
+    "T=NAME M6\n"
+    "FOR II=1 TO NN\n"
+    "IF (II>1) AND NOT(II==3)\n"
+    "X=II\n"
+    "ELSE\n"
+    "Y=II*2\n"
+    "ENDIF\n"
+    "ENDFOR\n"
+    "R5=0\n"
+    "WHILE R5<4\n"
+    "R5=R5+1\n"
+    "IF R5==3 GOTOF OUT\n"
+    "ENDWHILE\n"
+    "OUT: Z1\n"
+    "REPEAT\n"
+    "R5=R5-1\n"
+    "UNTIL R5<=0\n"
+    "PART: G91 X1\n"
+    "BEND: Y1\n"
+    "ENDLABEL:\n"
+    "G90\n"
+    "REPEAT PART BEND P=2\n"
+    "REPEAT PART P2\n"
+    "REPEATB PART P=3\n"
+    "CASE R5 OF 0 GOTOF A1 1 GOTOF B1 DEFAULT GOTOF C1\n"
+    "A1: HOLE(1,,2) P2\n"
+    "B1: L10 P2\n"
+    "C1: CALL \"HOLE\"\n"
+    "LOOP\n"
+    "GOTOF N90\n"
+    "ENDLOOP\n"
+    "N90 MCALL CYCLE83(20,0,2,-10,,,4,1,,,0.5,1,,1)\n"
+    "HOLES1(0,0,30,5,10,3)\n"
+    "HOLES2(0,0,10,0,0,4)\n"
+    "MCALL CYCLE84(20,0,3,-10,,,3,8,,0,500)\n"
+    "X1\n"
+    "MCALL\n"
+    "CYCLE86(20,0,2,-10,,0,3,-0.2,0.1,0.5,45)\n"
+    "R1=$AA_IM[X]\n"
+    "/ X5\n"
+    "M30\n"
+    "PROC HOLE(REAL AT, INT BY=7, BOOL TT)\n"
+    "X=AT+BY\n"
+    "RET\n"
+    "%_N_L10_SPF\n"
+    "G91 X1\n"
+    "G90\n"
+    "M17\n",
     "%\nO1 (SEED)\nN1 G21 G90 G94 G17 G40 G49 G80 G54\nT1 M6\nS8000 M3\nG43.4 H1\nG0 X10.00000 Y-20.5 Z30 A10.5 "
     "C-120.25\n"
     "G1 Z5 F600\nX20 A20\nX30.125 Y2 C-100\nG93 X40 F2.5\nX41 C-90 F3\nG94 G0 Z30 A0\nM5\nG49\nM30\n%\n",
@@ -93,12 +180,13 @@ TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
     try {
       // Coarse chords: a mutation may ask for an arc of kilometres.
       Options options{{"chord_tolerance", 0.1}};
-      const bool is_apt = seed + 1 == kSeedCount, is_heidenhain = seed < 2;
+      const bool is_apt = seed + 1 == kSeedCount, is_heidenhain = seed < 2, is_sinumerik = seed == 2 || seed == 3;
       if (!is_apt) options["max_turns"] = 1000.0;
       if (random() % 4 == 0) options["unknown"] = std::string("skip");
       p = parse_nc(text, "fuzz.ngc",
                    {is_apt          ? "apt"
                     : is_heidenhain ? "heidenhain"
+                    : is_sinumerik  ? "sinumerik"
                     : random() % 4  ? "tcp"
                                     : "3-axis",
                     options});
@@ -124,12 +212,17 @@ TEST(ReaderFuzz, BeginsWithConversationalProgramsThatAreRead) {
     EXPECT_GT(parse_nc(kSeeds[seed], "seed.h", {"heidenhain", {}}).size(), 20U);
 }
 
+TEST(ReaderFuzz, BeginsWithSinumerikProgramsThatAreRead) {
+  for (std::size_t seed = 2; seed < 4; ++seed)
+    EXPECT_GT(parse_nc(kSeeds[seed], "seed.mpf", {"sinumerik", {}}).size(), 20U);
+}
+
 TEST(ReaderFuzz, SurvivesBytesOfAnyKind) {
   std::mt19937 random(21);
   for (int round = 0; round < 5'000; ++round) {
     std::string text(random() % 200, '\0');
     for (char& c : text) c = static_cast<char>(round % 2 ? random() : "GXYZ[]#<>=o1 23.-\nsubif"[random() % 23]);
-    for (const char* machine : {"tcp", "apt", "heidenhain"}) {
+    for (const char* machine : {"tcp", "apt", "heidenhain", "sinumerik"}) {
       try {
         parse_nc((machine[0] == 'h' ? "BEGIN PGM F MM\n" : "") + text, "fuzz.ngc", {machine, {}});
       } catch (const FormatError&) {
@@ -158,6 +251,15 @@ TEST(ReaderFuzz, SurvivesWhatIsDeep) {
         many("G0 X#1 #1=1\n", 20'000),
         std::string("o1 sub\no1 call\no1 call\no1 endsub\no1 call\n"),
         many("(", 100'000),
+        "%_N_A_MPF\nR1=" + many("(", 100'000),
+        "%_N_A_MPF\nR1=" + many("-", 100'000),
+        "%_N_A_MPF\nR1=" + many("SIN(", 100'000),
+        "%_N_A_MPF\nR1=" + many("R[", 100'000),
+        "%_N_A_MPF\nR1=1" + many("+1*2", 50'000),
+        "%_N_A_MPF\n" + many("LOOP\n", 50'000) + many("ENDLOOP\n", 50'000),
+        std::string("%_N_A_MPF\nA: X1\nREPEAT A P=99999999\n"),
+        std::string("%_N_A_MPF\nG0 X0 Y0 Z0\nMCALL CYCLE81(9,0,1,-1)\nHOLES2(0,0,5,0,0,99999)\n"),
+        std::string("%_N_A_MPF\nA(1) P99999999\nM30\nPROC A(REAL X)\nA(1)\nRET\n"),
         "BEGIN PGM A MM\nQ1 = " + many("(", 100'000),
         "BEGIN PGM A MM\nQ1 = " + many("-", 100'000),
         "BEGIN PGM A MM\nQ1 = " + many("SIN ", 100'000),
@@ -166,7 +268,11 @@ TEST(ReaderFuzz, SurvivesWhatIsDeep) {
         "BEGIN PGM A MM\n" + many("Q1=1~\n", 50'000),
         std::string("BEGIN PGM A MM\nL X0 Y0 Z0 FMAX\nLBL 1\nL IX1 FMAX\nCALL LBL 1 REP 99999999\n")}) {
     try {
-      parse_nc(text, "fuzz.ngc", {text.starts_with("BEGIN") ? "heidenhain" : "tcp", {{"max_turns", 10'000.0}}});
+      parse_nc(text, "fuzz.ngc",
+               {text.starts_with("BEGIN")  ? "heidenhain"
+                : text.starts_with("%_N_") ? "sinumerik"
+                                           : "tcp",
+                {{"max_turns", 10'000.0}}});
     } catch (const FormatError&) {
     }
   }

@@ -210,7 +210,14 @@ def test_tcp_blocks_hold_the_poses_and_the_way_between_them(tmp_path_factory, cl
 
 @pytest.mark.parametrize(
     ("post", "options"),
-    [("tcp", {}), ("tcp-bc", {}), ("heidenhain", {}), ("heidenhain-bc", {}), ("heidenhain", {"vectors": True})]
+    [
+        ("tcp", {}),
+        ("heidenhain", {}),
+        ("heidenhain-bc", {}),
+        ("heidenhain", {"vectors": True}),
+        ("sinumerik", {}),
+        ("sinumerik-bc", {}),
+    ],
 )
 @FIXED
 @given(cl=path)
@@ -283,7 +290,8 @@ def test_programs_are_edited_into_new_ones(ball):
 
 
 def test_unknown_names_are_value_errors_that_list_the_known_ones(tmp_path, ball):
-    machines = "tcp tcp-bc linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc apt"
+    machines = "tcp tcp-bc linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc"
+    machines += " sinumerik sinumerik-bc apt"
     assert list(riffler.machines()) == machines.split() and all(riffler.machines().values())
     p = riffler.Program.from_cl([spiral(3)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"

@@ -1,0 +1,26 @@
+// What a reader assumed or passed over: notes of a program, and the same in its provenance.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nc/program.hpp"
+
+namespace riffler {
+
+class NoteList {
+ public:
+  /// Keeps a limited number of each kind.
+  void add(std::string_view kind, int line, const std::string& message);
+  const std::vector<Note>& notes() const { return notes_; }
+  /// "source", and "skipped" and "notes" where there are any; notes on units and rapids are in notes() alone.
+  Provenance provenance(const std::string& source) const;
+
+ private:
+  std::vector<Note> notes_;
+  std::size_t more_skipped_ = 0;
+};
+
+}  // namespace riffler
