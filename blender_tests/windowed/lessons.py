@@ -19,8 +19,7 @@ HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
 COLOURS = 128  # of a picture's palette: at most 250 kB for a whole window
 PIE = {"riffler.carve": (-1, 0), "riffler.add": (1, 0), "riffler.smooth": (0, -1), "riffler.mask": (0, 1)}
-STEP = 15  # pixels from one look at a panel's buttons to the next: less than a button is high
-last_found = {}  # by the region's type: how high in the window the last button was
+STEP = 12  # pixels from one look at a panel's buttons to the next: less than a button is high
 
 
 def module(name):
@@ -61,21 +60,16 @@ def view_box(screen):
 
 def found(screen, region, words, share):
     """Steps: the mouse goes down a region, at a share of its width, until the button under it has all `words` in the
-    command that it gives: first from where one was found last, which is often near, then from the region's beginning;
-    what lies below is scrolled to."""
+    command that it gives; what lies below is scrolled to."""
     x, middle = region.x + int(region.width * share), region.y + region.height // 2
-    top, bottom = region.y + region.height - 8, region.y + 8
-    last = last_found.get(region.type)
-    for turns in (-60, 12, 12, 12) if last is None else (0, -60, 12, 12, 12):
+    for turns in (-60, 12, 12, 12):
         for _ in range(abs(turns)):
             event(screen, "WHEELDOWNMOUSE" if turns > 0 else "WHEELUPMOUSE", "PRESS", (x, middle))
-        if turns:
-            yield 0.3
-        for y in range(top if turns else min(top, last + 2 * STEP), bottom, -STEP):
+        yield 0.3
+        for y in range(region.y + region.height - 8, region.y + 8, -STEP):
             screen.move(x, y)
             yield 0.01
             if all(word in pointed_at(screen, region) for word in words):
-                last_found[region.type] = y
                 return
     raise AssertionError(f"no button has {words}")
 
