@@ -142,7 +142,8 @@ TEST(Reader, RefusesUnknownMachinesAndOptions) {
   };
   EXPECT_EQ(error("lathe", {}),
             "unknown machine lathe; known: tcp, tcp-bc, linuxcnc-xyzac, linuxcnc-xyzbc, head-head, head-table, 3-axis, "
-            "heidenhain, heidenhain-bc, sinumerik, sinumerik-bc, apt, or the path of a .toml file that describes your machine");
+            "heidenhain, heidenhain-bc, sinumerik, sinumerik-bc, apt, or the path of a .toml file that describes your "
+            "machine");
   const std::string unknown = error("tcp", {{"chord", 1.0}});
   EXPECT_TRUE(unknown.starts_with("machine tcp: unknown option 'chord'; known: tcp, max_rotary")) << unknown;
   EXPECT_TRUE(

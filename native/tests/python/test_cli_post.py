@@ -250,7 +250,10 @@ BAD = {
     "axis": (["plain.json", "--feed", "5", "--axis", "0,0", *POST, *OUT], "--axis 0,0"),
     "axis 0": (["plain.json", "--feed", "5", "--axis", "0,0,0", *POST, *OUT], "--axis 0,0,0"),
     "axis of a program": (["p.rprog", "--axis", "0,0,1", *POST, *OUT], "--axis: only for .json"),
-    "safe height of a program": (["p.rprog", "--safe-height", "9", *POST, *OUT], "--safe-height: only for .json"),
+    "safe height of a program": (
+        ["p.rprog", "--safe-height", "9", *POST, *OUT],
+        "--safe-height: only for .json and .rjournal files; a program takes --option safe_height=…",
+    ),
     "safe height too low": (["plain.json", "--feed", "5", "--safe-height", "-9", *POST, *OUT], "safe_height"),
     "part: missing": (["plain.json", "--feed", "5", "--part", "no.stl", *POST, *OUT], "no.stl: No such file"),
     "tilted on three axes": (["leaning.json", "--feed", "5", "--post", "3-axis", *OUT], "row"),
