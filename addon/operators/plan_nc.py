@@ -113,7 +113,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
     bl_idname = "riffler.plan_nc"
     bl_label = "Write NC"
 
-    filter_glob: StringProperty(default="*.ngc;*.nc;*.tap;*.h;*.apt", options={"HIDDEN"})
+    filter_glob: StringProperty(default="*.ngc;*.nc;*.tap;*.h;*.mpf;*.apt", options={"HIDDEN"})
     post: EnumProperty(
         name="Machine", items=MACHINES, default="tcp", options={"SKIP_SAVE"}, description="That the code is written for"
     )
