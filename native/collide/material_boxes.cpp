@@ -33,12 +33,12 @@ class MaterialBoxes::Brick {
                          high = std::min(s.far, bottom + (m + 1) * spacing_);
             if (!(low < high)) continue;
             Cell& c = cells_[place(i / rays_ - u, j / rays_ - v, m)];
-            const double u0 = grid_.u(i) - 0.5 * h, v0 = grid_.v(j) - 0.5 * h;
-            c.box.add({u0, v0, low});
-            c.box.add({u0 + grid_.width_u(i), v0 + grid_.width_v(j), high});
-            c.volume += grid_.area(i, j) * (high - low);
+            c.box.add({grid_.u(i) - 0.5 * h, grid_.v(j) - 0.5 * h, low});
+            c.box.add({grid_.u(i) + 0.5 * h, grid_.v(j) + 0.5 * h, high});
+            c.volume += h * h * (high - low);
           }
         }
+    full_ = spacing_ * spacing_ * spacing_ * (1 - 1e-9);
   }
   void gather(std::vector<Piece>& out) const { gather({0, 0, 0}, kSide, out); }
 
@@ -51,16 +51,15 @@ class MaterialBoxes::Brick {
 
   void gather(const Vec3i& at, int side, std::vector<Piece>& out) const {
     Cell all;
+    bool full = true;
     for (int a = at.x; a < at.x + side; ++a)
       for (int b = at.y; b < at.y + side; ++b)
         for (int c = at.z; c < at.z + side; ++c) {
           const Cell& cell = cells_[place(a, b, c)];
           if (cell.volume > 0) all.box.add(cell.box.lower), all.box.add(cell.box.upper);
-          all.volume += cell.volume;
+          all.volume += cell.volume, full &= cell.volume >= full_;
         }
     if (all.volume == 0) return;
-    const Vec3 size = all.box.size();
-    const bool full = all.volume >= (1 - 1e-9) * size.x * size.y * size.z;
     if (full || side == 1) {
       Box3 box;
       box.add(to_world(grid_.axis(), all.box.lower)), box.add(to_world(grid_.axis(), all.box.upper));
@@ -73,7 +72,7 @@ class MaterialBoxes::Brick {
 
   const Grid& grid_;
   int rays_;
-  double spacing_;
+  double spacing_, full_ = 0;
   std::array<Cell, kSide * kSide * kSide> cells_;
 };
 

@@ -10,8 +10,8 @@
 namespace riffler {
 
 /// Cells of k × k rays, as long as they are wide, k such that this is nearest to the wanted spacing. A cell's box goes
-/// round all material in it, its rays' cells included, and is as dense as that fills it; up to 8³ cells whose material
-/// fills the box around it are one box. The same for any number of threads.
+/// round all material in it, square rays included, and is as dense as that fills it; where cells are full, up to 8³ of
+/// them are one box. The same for any number of threads.
 class MaterialBoxes {
  public:
   /// spacing: mm, positive.

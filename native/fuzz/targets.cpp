@@ -54,8 +54,8 @@ void check(const Program& p) {
 void nc(View bytes, const char* machine, bool skips) {
   reading([&] {
     ReadOptions options{machine, {{"chord_tolerance", 0.1}}};
-    if (options.machine != "apt") {
-      options.options["max_turns"] = 1000.0;
+    if (options.machine != "apt") options.options["max_turns"] = 1000.0;
+    if (options.machine != "apt" && !options.machine.starts_with("sinumerik")) {
       options.options["cutter_compensation"] = std::string("offset");
       options.options["tool_diameters"] = 1.0;
     }

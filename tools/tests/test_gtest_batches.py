@@ -1,7 +1,6 @@
 """C++ tests in batches: every test is run once, and what fails, crashes or hangs fails by name."""
 
 import stat
-import sys
 
 import pytest
 
@@ -9,7 +8,7 @@ import gtest_batches
 from shell import StepError
 
 # Answers as a GoogleTest program does, in Python; what a test does is in its name.
-PROGRAM = """#!{python}
+PROGRAM = """#!/usr/bin/env python3
 import os, sys, time
 names = [f"Few.{{kind}}" for kind in {kinds!r}]
 options = dict(word.lstrip("-").partition("=")[::2] for word in sys.argv[1:])
@@ -31,7 +30,7 @@ sys.exit(failed or "Leaks" in str(options))
 
 def program(tmp_path, *kinds):
     file = tmp_path / "tests"
-    file.write_text(PROGRAM.format(python=sys.executable, kinds=kinds))
+    file.write_text(PROGRAM.format(kinds=kinds))
     file.chmod(file.stat().st_mode | stat.S_IXUSR)
     return file
 

