@@ -260,8 +260,7 @@ class AptReader {
           "points of the tool's centre as a rule; where these are, read them with options {'cutter_compensation': "
           "'ignore'}");
     if (!std::exchange(compensation_noted_, true))
-      program_.notes.push_back(
-          {"cutter compensation", s_.line, "CUTCOM is ignored: points are taken for those of the tool's centre"});
+      program_.notes.push_back({"cutter compensation", s_.line, compensation_ignored("CUTCOM")});
   }
 
   // --- Moves ---

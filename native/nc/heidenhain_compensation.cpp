@@ -3,7 +3,6 @@
 #include <string>
 
 #include "nc/heidenhain_interpreter.hpp"
-#include "nc/number_text.hpp"
 
 namespace riffler {
 
@@ -40,8 +39,7 @@ void HeidenhainInterpreter::compensate(char compensation) {
   }
   const std::string name = compensation == 'L' ? "RL" : compensation == 'R' ? "RR" : "R+, R-";
   if (rule_ == CompensationRule::Ignore) {
-    if (!compensation_noted_)
-      note("cutter compensation", name + " is ignored: points are taken for those of the tool's centre");
+    if (!compensation_noted_) note("cutter compensation", compensation_ignored(name));
     compensation_noted_ = true;
     return;
   }
@@ -49,11 +47,7 @@ void HeidenhainInterpreter::compensate(char compensation) {
     place_.fail(
         "compensation along an axis (R+, R-) is not read: have the CAM system write RL or RR, or, where the points are "
         "those of the tool's centre, read it with options {'cutter_compensation': 'ignore'}");
-  if (rule_ == CompensationRule::Error)
-    place_.fail("cutter radius compensation (" + name +
-                "): where the program has the contour, read it with options {'cutter_compensation': 'offset', "
-                "'tool_diameters': 6}, the tool's diameter in mm; where it has the path of the tool's centre, with "
-                "{'cutter_compensation': 'ignore'}");
+  if (rule_ == CompensationRule::Error) place_.fail(compensation_refused(name));
   if (compensation_->is_on() && side_ != compensation)
     place_.fail(name + " changes the compensation that holds: a line with R0 before it");
   side_ = compensation;
@@ -66,13 +60,10 @@ double HeidenhainInterpreter::compensation_radius() {
     radius = *diameter / 2;
   else if (const auto own = tool_radii_.find(tool_); own != tool_radii_.end())
     radius = own->second;
-  if (!radius)
-    place_.fail(std::string("cutter compensation (R") + side_ + "): the diameter of tool " + std::to_string(tool_) +
-                " is not known: give it in mm, as in options {'tool_diameters': {" + std::to_string(tool_) + ": 6}}");
+  const std::string name = std::string("R") + side_, whose = "tool " + std::to_string(tool_);
+  if (!radius) place_.fail(diameter_unknown(name, whose, tool_));
   const double is = *radius + tool_more_;
-  if (offsets_noted_.insert(tool_).second)
-    note("cutter compensation", std::string("R") + side_ + " offsets the path by the radius of tool " +
-                                    std::to_string(tool_) + ", " + number_text(is) + " mm");
+  if (offsets_noted_.insert(tool_).second) note("cutter compensation", path_is_offset(name, whose, is));
   return is;
 }
 

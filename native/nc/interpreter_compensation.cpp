@@ -5,7 +5,6 @@
 
 #include "nc/interpreter.hpp"
 #include "nc/limits.hpp"
-#include "nc/number_text.hpp"
 
 namespace riffler {
 
@@ -26,15 +25,10 @@ void NcInterpreter::compensate(int code) {
     return;
   }
   const std::string name = nc_code_name('G', code);
-  if (given_.compensation == CompensationRule::Error)
-    place_.fail("cutter radius compensation (" + name +
-                "): where the program has the contour, read it with options {'cutter_compensation': 'offset', "
-                "'tool_diameters': 6}, the tool's diameter in mm; where it has the path of the tool's centre, with "
-                "{'cutter_compensation': 'ignore'}");
+  if (given_.compensation == CompensationRule::Error) place_.fail(compensation_refused(name));
   if (given_.compensation == CompensationRule::Ignore) {
     words_->pass_over("DL");
-    if (!compensation_noted_)
-      note("cutter compensation", name + " is ignored: points are taken for those of the tool's centre");
+    if (!compensation_noted_) note("cutter compensation", compensation_ignored(name));
     compensation_noted_ = true;
     return;
   }
@@ -74,12 +68,8 @@ double NcInterpreter::compensation_diameter() {
   if (!diameter && own != tool_radii_.end()) diameter = 2 * own->second;
   const std::string shown = diameter_number_ ? "offset D" + std::to_string(number) : "tool " + std::to_string(number);
   const std::string name = nc_code_name('G', compensation_code_);
-  if (!diameter)
-    place_.fail("cutter compensation (" + name + "): the diameter of " + shown +
-                " is not known: give it in mm, as in options {'tool_diameters': {" + std::to_string(number) + ": 6}}");
-  if (offsets_noted_.insert(number).second)
-    note("cutter compensation",
-         name + " offsets the path by the radius of " + shown + ", " + number_text(*diameter / 2) + " mm");
+  if (!diameter) place_.fail(diameter_unknown(name, shown, number));
+  if (offsets_noted_.insert(number).second) note("cutter compensation", path_is_offset(name, shown, *diameter / 2));
   return *diameter;
 }
 

@@ -6,6 +6,7 @@
 
 #include "nc/limits.hpp"
 #include "nc/sinumerik_interpreter.hpp"
+#include "nc/tool_diameters.hpp"
 #include "nc/units.hpp"
 
 namespace riffler {
@@ -215,7 +216,7 @@ void SinumerikInterpreter::compensate(int code) {
     place_.fail("cutter radius compensation (" + name +
                 ") is not read: have the CAM system write the path of the tool's centre, or, where that is what the "
                 "program has, read it with options {'cutter_compensation': 'ignore'}");
-  note_once(-12, "cutter compensation", name + " is ignored: points are taken for those of the tool's centre");
+  note_once(-12, "cutter compensation", compensation_ignored(name));
 }
 
 NcRowWords SinumerikInterpreter::row_words(bool rapid) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "nc/limits.hpp"
+#include "nc/number_text.hpp"
 
 namespace riffler {
 
@@ -25,6 +26,26 @@ CompensationRule take_compensation_rule(OptionReader& options) {
   return rule == "ignore"   ? CompensationRule::Ignore
          : rule == "offset" ? CompensationRule::Offset
                             : CompensationRule::Error;
+}
+
+std::string compensation_refused(const std::string& code) {
+  return "cutter radius compensation (" + code +
+         "): where the program has the contour, read it with options {'cutter_compensation': 'offset', "
+         "'tool_diameters': 6}, the tool's diameter in mm; where it has the path of the tool's centre, with "
+         "{'cutter_compensation': 'ignore'}";
+}
+
+std::string compensation_ignored(const std::string& code) {
+  return code + " is ignored: points are taken for those of the tool's centre";
+}
+
+std::string diameter_unknown(const std::string& code, const std::string& whose, int number) {
+  return "cutter compensation (" + code + "): the diameter of " + whose +
+         " is not known: give it in mm, as in options {'tool_diameters': {" + std::to_string(number) + ": 6}}";
+}
+
+std::string path_is_offset(const std::string& code, const std::string& whose, double radius) {
+  return code + " offsets the path by the radius of " + whose + ", " + number_text(radius) + " mm";
 }
 
 void ToolDiameters::take(const Options& given, OptionReader& options) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 
 #include "nc/options.hpp"
 
@@ -18,6 +19,15 @@ enum class CompensationRule : std::uint8_t {
 
 /// Takes option "cutter_compensation".
 CompensationRule take_compensation_rule(OptionReader& options);
+
+// What the readers say of it; `code`: G41, RL …
+/// Under CompensationRule::Error.
+std::string compensation_refused(const std::string& code);
+/// Under CompensationRule::Ignore.
+std::string compensation_ignored(const std::string& code);
+/// `whose`: the offset or the tool of that number.
+std::string diameter_unknown(const std::string& code, const std::string& whose, int number);
+std::string path_is_offset(const std::string& code, const std::string& whose, double radius);
 
 class ToolDiameters {
  public:
