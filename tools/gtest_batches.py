@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 
 from shell import StepError, cores, say, tool_environment
 
-BATCH = 12  # tests of a process: few enough that one that is slow keeps nobody waiting at the end
+BATCH = 12  # tests of a process: few, so that a slow batch is not the only one running at the end
 LIMIT = 900  # s for a process
 EVERY = 100  # tests from one line of progress to the next
 

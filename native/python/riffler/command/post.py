@@ -100,9 +100,12 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
     kind = Path(arguments.file).suffix.lower()
     path = input_file(arguments.file, (kind,))
     code = kind not in PLANS + RECORDINGS + PROGRAMS
-    for name, kinds in (("safe_height", PLANS + RECORDINGS), ("axis", PLANS), ("part", PLANS)):
+    for name, kinds, instead in (
+        ("safe_height", PLANS + RECORDINGS, "; a program takes --option safe_height=…"),
+        ("axis", PLANS, ""),
+        ("part", PLANS, ""),
+    ):
         if getattr(arguments, name) is not None and kind not in kinds:
-            instead = "; a program takes --option safe_height=…" if name == "safe_height" else ""
             raise ValueError(f"--{name.replace('_', '-')}: only for {' and '.join(kinds)} files{instead}")
     if code and arguments.machine is None:
         raise ValueError(f"--machine: say for which machine {path.name} was written")
