@@ -59,6 +59,7 @@ void nc(View bytes, const char* machine, bool skips) {
       options.options["cutter_compensation"] = std::string("offset");
       options.options["tool_diameters"] = 1.0;
     }
+    if (options.machine == "linuxcnc-xyzac") options.options["rot_point"] = std::vector<double>{0, 0, -50};
     if (skips) options.options["unknown"] = std::string("skip");
     check(parse_nc(text_of(bytes), "fuzz", options));
   });
@@ -146,6 +147,7 @@ std::vector<Bytes> nothing() {
 const Target kTargets[] = {
     {"rs274", [](View b) { nc(b, "tcp", b.size() % 2 == 1); }, &nothing, nullptr},
     {"rs274-axes", [](View b) { nc(b, b.size() % 2 == 1 ? "3-axis" : "linuxcnc-xyzac", false); }, &nothing, nullptr},
+    {"heidenhain", [](View b) { nc(b, "heidenhain", b.size() % 2 == 1); }, &nothing, nullptr},
     {"sinumerik", [](View b) { nc(b, "sinumerik", b.size() % 2 == 1); }, &nothing, nullptr},
     {"apt", [](View b) { nc(b, "apt", b.size() % 2 == 1); }, &nothing, nullptr},
     {"stl", &mesh<&from_stl>, &stl_samples, nullptr},

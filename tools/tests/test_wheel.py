@@ -1,0 +1,26 @@
+"""What the wheel is made of is all that its build reads."""
+
+import shutil
+import subprocess
+
+import wheel
+from shell import ROOT, VENV, tool_environment
+
+
+def test_the_sources_of_the_wheel_configure_where_nothing_else_lies(tmp_path):
+    copy = tmp_path / "copy"
+    for path in wheel.sources():
+        target = copy / path.relative_to(ROOT)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, target)
+    words = [
+        VENV / "bin" / "cmake",
+        "-S",
+        copy,
+        "-B",
+        tmp_path / "build",
+        "-DRIFFLER_PYTHON=OFF",
+        "-DRIFFLER_TESTS=OFF",
+    ]
+    done = subprocess.run([*map(str, words)], capture_output=True, text=True, env=tool_environment(), check=False)
+    assert done.returncode == 0, done.stderr
