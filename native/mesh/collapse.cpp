@@ -189,8 +189,8 @@ bool Collapse::folds(int i, int j) const {
   return opposed(faces_[i].new_cross, glm::cross(ring(j) - ring(j + 1), tip - ring(j + 1)));
 }
 
-/// This does what OpenMesh's collapse does, without its search for border half-edges at every vertex, which is the square
-/// of a fan's size, and its checked access: together they took longer than all the rest of a collapse.
+/// This does what OpenMesh's collapse does, without its search for border half-edges at every vertex, which is the
+/// square of a fan's size, and its checked access: together they took longer than all the rest of a collapse.
 void Collapse::commit() {
   mesh_.set_point(to_, to_openmesh(new_));
   const HalfedgeHandle back = mesh_.opposite_halfedge_handle(half_);
@@ -203,8 +203,8 @@ void Collapse::commit() {
   const bool left_open = mesh_.is_boundary(half_), right_open = mesh_.is_boundary(back);
   const HalfedgeHandle left = mesh_.next_halfedge_handle(half_), left_gone = mesh_.prev_halfedge_handle(half_);
   const HalfedgeHandle right_gone = mesh_.next_halfedge_handle(back), right = mesh_.prev_halfedge_handle(back);
-  // At a vertex of a border, OpenMesh keeps the half-edge that starts there and is of the border. Where `to` is one, its
-  // own stays, unless that is the edge that goes: then it is the next one round the border.
+  // At a vertex of a border, OpenMesh keeps the half-edge that starts there and is of the border. Where `to` is one,
+  // its own stays, unless that is the edge that goes: then it is the next one round the border.
   if (right_open || !to_border_) mesh_.set_halfedge_handle(to_, right_open ? right_gone : left);
   if (left_open) mesh_.set_next_halfedge_handle(left_gone, left);
   if (right_open) mesh_.set_next_halfedge_handle(right, right_gone);
