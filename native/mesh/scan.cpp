@@ -118,7 +118,9 @@ Vec3 Scanner::vertex() {
   Vec3 v;
   for (int k = 0; k < 3; ++k) {
     v[k] = number("a finite coordinate");
-    if (!(std::abs(v[k]) <= 1e30)) fail("a vertex's coordinate is beyond 1e30");
+    // As it will be held: the float32 next to 1e30 is larger.
+    if (!(std::abs(v[k]) <= 1e30 && std::abs(static_cast<double>(static_cast<float>(v[k]))) <= 1e30))
+      fail("a vertex's coordinate is beyond 1e30");
   }
   return v;
 }

@@ -58,8 +58,7 @@ PartSurface::Deepest deepest_loss(const PartSurface& surface, const Workbench& b
     for_each_loss(*before[k], *after[k], [&](int r, double near, double far) {
       if (far - near < kBite) return;
       const Vec3 a = on_ray(bench.grid(), bench.slab(), k, r, near), b = on_ray(bench.grid(), bench.slab(), k, r, far);
-      const PartSurface::Deepest found = surface.deepest(a, b);
-      if (found.depth > worst.depth) worst = found;
+      surface.look_deeper(a, b, worst);
     });
   }
   return worst;
@@ -82,28 +81,30 @@ bool PartSurface::deep(const Vec3& near, const Vec3& far) const {
   return deep(near, middle) || deep(middle, far);
 }
 
-PartSurface::Deepest PartSurface::deepest(const Vec3& near, const Vec3& far) const {
+void PartSurface::look_deeper(const Vec3& near, const Vec3& far, Deepest& worst) const {
+  // No point of a piece is deeper than its middle by more than half its length (the distance is 1-Lipschitz).
+  const auto shallower = [&](const Vec3& middle, double half, double than) {
+    return than > half && closest_.within(middle, than - half);
+  };
+  const auto look = [&](const Vec3& p) {
+    const double d = closest_(p).distance;
+    if (d > worst.depth) worst = {d, p};
+  };
+  constexpr double kRounding = 1 + 1e-9;  // rays that end on one plane are as deep as each other
+  if (shallower((near + far) / 2.0, glm::length(far - near) / 2, kRounding * worst.depth)) return;
+  look(near), look(far);
   struct Stretch {
     Vec3 a, b;
   };
-  Deepest best;
-  const auto look = [&](const Vec3& p) {
-    const double d = closest_(p).distance;
-    if (d > best.depth) best = {d, p};
-    return d;
-  };
-  look(near), look(far);
-  // Branch and bound: no point of a piece is deeper than its middle by more than half its length (1-Lipschitz).
   std::vector<Stretch> pieces{{near, far}};
   while (!pieces.empty()) {
     const Stretch p = pieces.back();
     pieces.pop_back();
     const Vec3 middle = (p.a + p.b) / 2.0;
-    const double most = look(middle) + glm::length(p.b - p.a) / 2;
-    if (most <= std::max(1.01 * best.depth, tolerance_)) continue;
+    if (shallower(middle, glm::length(p.b - p.a) / 2, std::max(1.01 * worst.depth, tolerance_))) continue;
+    look(middle);
     pieces.push_back({p.a, middle}), pieces.push_back({middle, p.b});
   }
-  return best;
 }
 
 void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
@@ -145,7 +146,7 @@ void find_missing(const Target& target, const Grid& grid, const Slab& slab, cons
           if (surely_shallow(grid, s, near, far, surface.tolerance())) return;
           const Vec3 a = on_ray(grid, slab, k, r, near), b = on_ray(grid, slab, k, r, far);
           if (!surface.deep(a, b)) return;
-          if (const PartSurface::Deepest found = surface.deepest(a, b); found.depth > worst.depth) worst = found;
+          surface.look_deeper(a, b, worst);
         });
   }
   if (worst.depth > surface.tolerance())

@@ -19,12 +19,13 @@ class PartSurface {
   const Closest& closest() const { return closest_; }
   double tolerance() const { return tolerance_; }
 
-  /// The deepest point under the part's surface of [near, far] on a ray, and how deep it is (to 1 %), mm.
+  /// How deep under the part's surface (to 1 %), mm, and where.
   struct Deepest {
     double depth = 0;
     Vec3 point{0};
   };
-  Deepest deepest(const Vec3& near, const Vec3& far) const;
+  /// Makes `worst` the deepest point of [near, far] on a ray, where that is deeper.
+  void look_deeper(const Vec3& near, const Vec3& far, Deepest& worst) const;
   /// False where no point of the piece is deeper than the tolerance; true where one is, or nearly.
   bool deep(const Vec3& near, const Vec3& far) const;
 
