@@ -116,13 +116,18 @@ def test_a_part_lifts_the_tool_out_of_it(folder):
         "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--post", "tcp", "--out", "a.ngc", cwd=folder
     )
     assert any(note.startswith("free of corner.stl") for note in free["notes"])
-    result(
+    assert not any("lifted" in note for note in free["notes"])
+    high = result(
         "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--axis", "-1,0,4", "--post", "tcp", "--out",
         "b.ngc", cwd=folder,
     )  # fmt: skip
     mesh = riffler.Mesh.read(folder / "corner.stl")
     clearance = riffler.Collider(mesh).clearance(BALL, poses_of(folder / "b.ngc", "tcp"))
     assert clearance.min() > -0.011
+    note = next(note for note in high["notes"] if "lifted" in note)
+    path = riffler.plan.load(folder / "plain.json").paths[0].with_axes([[-0.242535625, 0, 0.9701425]] * 3)
+    _, report = riffler.plan.cutter_locations(path, BALL, riffler.Collider(mesh), tolerance=0.01)
+    assert note.startswith(f"3 of 3 rows are lifted, by up to {report.lift.max():.3g} mm (path 0): the tool does not")
     riffler.Mesh(mesh.vertices * 2, mesh.triangles).write(folder / "other.stl")
     done = riffle(
         "post", "plain.json", "--feed", 7, "--part", "other.stl", "--post", "tcp", "--out", "c.ngc", cwd=folder

@@ -233,15 +233,24 @@ def lifted(
         wanted = planned.part.get("sha256")
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
-        collider, found = Collider(mesh), []
+        collider, found, raised = Collider(mesh), [], {}
         for k, path in enumerate(paths):
             rows, report = plan.cutter_locations(path, tool, collider, tolerance=LIFTED)
             if not report.ok:
                 bad = len(report.blocked) + len(report.unsafe)
                 raise ValueError(f"path {k}: {bad} places that no lift frees; give it other axes")
             found.append(rows)
+            if len(high := report.lift[report.lift > LIFTED]):
+                raised[k] = high
             if progress:
                 progress((k + 1) / len(paths))
+    if raised:
+        lifts = np.concatenate(list(raised.values()))
+        where = f"path {', '.join(map(str, raised))}" if len(raised) <= 5 else f"{len(raised)} of {len(paths)} paths"
+        notes.append(
+            f"{len(lifts)} of {sum(map(len, found))} rows are lifted, by up to {lifts.max():.3g} mm ({where}): the tool "
+            "does not come down to the path there; other axes may let it"
+        )
     notes.append(f"free of {part.name} along all rows within {LIFTED:g} mm, approaches and retracts included")
     return found, collider
 
