@@ -135,6 +135,44 @@ def test_a_part_lifts_the_tool_out_of_it(folder):
     assert done.returncode == 2 and "the plan is for another part, corner.stl" in done.stderr
 
 
+HOLDER = ("--holder", "30:20:60:20")
+PLAN = (
+    "post",
+    "plain.json",
+    "--feed",
+    7,
+    "--part",
+    "corner.stl",
+    "--post",
+    "tcp",
+    "--safe-height",
+    60,
+    "--out",
+    "a.ngc",
+)
+
+
+def test_what_is_written_beside_a_clamp_passes_the_verification(folder):
+    """The holder would meet the clamp on the wall: what was not named is not seen, and said."""
+    clamp = riffler.Volume.block((-20, -10, 30), (-5, 20, 38), pitch=0.5)
+    clamp.to_mesh().write(folder / "clamp.stl")
+    verify = ("verify", "a.ngc", "--stock", "corner.stl", "--pitch", 0.5, "--tool", "ball:6:30", *HOLDER)
+    notes = result(*PLAN, cwd=folder)["notes"]
+    assert any(note.startswith("shank and holder were not looked at") for note in notes)
+    assert any(note.startswith("no fixtures were looked at") for note in notes)
+    done = riffle(*verify, "--fixture", "clamp.stl", "--json", cwd=folder)
+    assert done.returncode == 1 and {entry["kind"] for entry in json.loads(done.stdout)["findings"]} == {"fixture"}
+    clear = ("--fixture", "clamp.stl", *HOLDER)
+    for room in (0, 1.5):
+        notes = result(*PLAN, *clear, "--clearance", room, cwd=folder)["notes"]
+        lifted = next(note for note in notes if "lifted" in note)
+        assert lifted.startswith(f"3 of 3 rows are lifted, by up to {8 + room:.3g} mm (path 0)")
+        assert any(note.startswith("free of corner.stl, clamp.stl along all rows") for note in notes)
+        assert not any("looked at" in note for note in notes)
+        done = riffle(*verify, "--fixture", "clamp.stl", "--json", cwd=folder)
+        assert done.returncode == 0, done.stdout
+
+
 def test_programs_go_from_one_machine_to_another(folder):
     data = result(
         "post", "p.ngc", "--machine", "tcp", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--option", "safe_start=false",
@@ -261,6 +299,24 @@ BAD = {
     ),
     "safe height too low": (["plain.json", "--feed", "5", "--safe-height", "-9", *POST, *OUT], "safe_height"),
     "part: missing": (["plain.json", "--feed", "5", "--part", "no.stl", *POST, *OUT], "no.stl: No such file"),
+    "fixture: missing": (["plain.json", "--part", "corner.stl", "--fixture", "no.stl", *POST, *OUT], "no.stl: No such"),
+    "a fixture without a part": (
+        ["plain.json", "--fixture", "corner.stl", *POST, *OUT],
+        "--fixture: only beside",
+    ),
+    "a holder without a part": (
+        ["plain.json", *("--holder", "30:9:60:9"), *POST, *OUT],
+        "--holder: only beside",
+    ),
+    "a holder of a program": (["p.rprog", *("--holder", "30:9:60:9"), *POST, *OUT], "--holder: only for .json files"),
+    "clearance of nothing": (
+        ["plain.json", "--part", "corner.stl", "--clearance", "1", *POST, *OUT],
+        "--clearance: of shank and holder, which --shank and --holder describe",
+    ),
+    "clearance": (
+        ["plain.json", "--part", "corner.stl", "--holder", "30:9:60:9", "--clearance", "-1", *POST, *OUT],
+        "--clearance -1: must not be negative",
+    ),
     "tilted on three axes": (["leaning.json", "--feed", "5", "--post", "3-axis", *OUT], "row"),
     "out: kind": (["p.rprog", *POST, "--out", "a.stl"], "--out a.stl"),
     "out: nowhere": (["p.rprog", *POST, "--out", "no/a.ngc"], "no folder"),

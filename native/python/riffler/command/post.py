@@ -20,6 +20,7 @@ from .arguments import MESHES, add_machine_option, finite, input_file, length, m
 from .carve import read_program
 from .console import Console, number, times
 from .shapes import read_part
+from .surroundings import RODS, add_fixtures, add_rods, fixture, rods, with_rods
 
 HELP = "write NC code for a machine"
 __doc__ += f"""
@@ -34,6 +35,7 @@ PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 AXIS_TOLERANCE = 0.00175  # rad
 LIFTED = 0.01  # mm that the tool may enter the part of a plan
+OF_A_PART = ("fixture", "shank", "holder", "clearance")  # what the tool is held against, beside the part
 FEED = 500.0  # mm/min, slow: of a plan without another
 
 
@@ -51,6 +53,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--safe-height", metavar="MM", help="z between cuts of a plan or a recording")
     parser.add_argument("--axis", metavar="X,Y,Z", help="of the tool, on a plan's paths that say none (default 0,0,1)")
     parser.add_argument("--part", metavar="FILE", help="of a plan: lift the tool along its axis where it would gouge")
+    add_fixtures(parser)
+    add_rods(parser)
+    parser.add_argument(
+        "--clearance", metavar="MM", help="of shank and holder from part and fixtures, with --part (default 0)"
+    )
     parser.add_argument("--machine", metavar="NAME", help="that NC code was written for")
     add_machine_option(parser)
     parser.add_argument("--out", required=True, metavar="FILE", help="NC code (.ngc, .nc, …), or .rprog")
@@ -99,13 +106,17 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
     """The program, what one should know about it, and what its moves are checked against."""
     kind = Path(arguments.file).suffix.lower()
     path = input_file(arguments.file, (kind,))
+    for name in OF_A_PART:
+        if getattr(arguments, name) not in (None, []) and arguments.part is None and kind in PLANS:
+            raise ValueError(f"--{name}: only beside --part")
     code = kind not in PLANS + RECORDINGS + PROGRAMS
     for name, kinds, instead in (
         ("safe_height", PLANS + RECORDINGS, "; a program takes --option safe_height=…"),
         ("axis", PLANS, ""),
         ("part", PLANS, ""),
+        *((name, PLANS, "") for name in OF_A_PART),
     ):
-        if getattr(arguments, name) is not None and kind not in kinds:
+        if getattr(arguments, name) not in (None, []) and kind not in kinds:
             raise ValueError(f"--{name.replace('_', '-')}: only for {' and '.join(kinds)} files{instead}")
     if code and arguments.machine is None:
         raise ValueError(f"--machine: say for which machine {path.name} was written")
@@ -164,6 +175,7 @@ def from_plan(
     spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
     axis = vector(arguments.axis or "0,0,1", f"--axis {arguments.axis}")
     called, tool = tool_of(planned, arguments)
+    tool = with_rods({called: tool}, rods(arguments))[called]
     notes = [f"feed {FEED:g} mm/min: a plan has none of its own, --feed names one"] if arguments.feed is None else []
     paths = [path if len(path.axes) else upright(path, axis) for path in planned.paths]
     turned = sum(len(path.axes) == 0 for path in planned.paths)
@@ -227,18 +239,22 @@ def tips(path, tool: Tool) -> np.ndarray:
 def lifted(
     planned: plan.Plan, paths: list, tool: Tool, arguments: argparse.Namespace, console: Console, notes: list[str]
 ) -> tuple[list[np.ndarray], Collider]:
+    """The rows of every path, lifted, and what they were held against."""
     part = input_file(arguments.part, MESHES)
+    fixtures = [fixture(name, console) for name in arguments.fixture]
+    guarded = with_room(tool, arguments)
     with console.step("locate") as progress:
         mesh = read_part(part, console, hollow=True)
         wanted = planned.part.get("sha256")
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
-        collider, found, raised = Collider(mesh), [], {}
+        collider, found, raised = Collider(mesh, fixtures=fixtures), [], {}
         for k, path in enumerate(paths):
-            rows, report = plan.cutter_locations(path, tool, collider, tolerance=LIFTED)
+            rows, report = plan.cutter_locations(path, guarded, collider, tolerance=LIFTED)
             if not report.ok:
                 bad = len(report.blocked) + len(report.unsafe)
-                raise ValueError(f"path {k}: {bad} places that no lift frees; give it other axes")
+                move = ", or move the fixtures" if fixtures else ""
+                raise ValueError(f"path {k}: {bad} places that no lift frees; give it other axes{move}")
             found.append(rows)
             if len(high := report.lift[report.lift > LIFTED]):
                 raised[k] = high
@@ -246,13 +262,32 @@ def lifted(
                 progress((k + 1) / len(paths))
     if raised:
         lifts = np.concatenate(list(raised.values()))
-        where = f"path {', '.join(map(str, raised))}" if len(raised) <= 5 else f"{len(raised)} of {len(paths)} paths"
+        each = f"path{'s' if len(raised) > 1 else ''} {', '.join(map(str, raised))}"
+        where = each if len(raised) <= 5 else f"{len(raised)} of {len(paths)} paths"
         notes.append(
-            f"{len(lifts)} of {sum(map(len, found))} rows are lifted, by up to {lifts.max():.3g} mm ({where}): the tool "
-            "does not come down to the path there; other axes may let it"
+            f"{len(lifts)} of {sum(map(len, found))} rows are lifted, by up to {lifts.max():.3g} mm ({where}): the "
+            "tool does not come down to the path there; other axes may let it"
         )
-    notes.append(f"free of {part.name} along all rows within {LIFTED:g} mm, approaches and retracts included")
+    names = ", ".join([part.name, *(Path(name).name for name in arguments.fixture)])
+    notes.append(f"free of {names} along all rows within {LIFTED:g} mm, approaches and retracts included")
+    if not (tool.shank or tool.holder):
+        notes.append("shank and holder were not looked at: --shank and --holder describe them")
+    if not fixtures:
+        notes.append("no fixtures were looked at: --fixture names them")
     return found, collider
+
+
+def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
+    """With so much more of shank and holder as they are to stay clear; the cutter touches what it cuts."""
+    if arguments.clearance is None:
+        return tool
+    room = finite(arguments.clearance, "--clearance")
+    if room < 0:
+        raise ValueError(f"--clearance {arguments.clearance}: must not be negative")
+    wanted = {what: room for what in RODS if getattr(tool, what)}
+    if not wanted:
+        raise ValueError("--clearance: of shank and holder, which --shank and --holder describe")
+    return tool.with_margins(**wanted)
 
 
 # ---- what is said about it

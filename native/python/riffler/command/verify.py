@@ -12,13 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import Finding, Tool, VerifyReport, Volume, cluster, verify
+from .. import Finding, VerifyReport, cluster, verify
 from . import tools
 from .arguments import (
     MESHES,
     VOLUMES,
     add_machine_option,
-    finite,
     input_file,
     length,
     machine_options,
@@ -27,7 +26,8 @@ from .arguments import (
 from .carve import add_stock, is_saved, read_program, stock
 from .console import Console, number, times
 from .deviation_map import LEGEND, write_map
-from .shapes import from_mesh, read_part, to_mesh, write_mesh, write_volume
+from .shapes import read_part, to_mesh, write_mesh, write_volume
+from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
 
 HELP = "check an NC program by simulation"
 MAPS = (".ply",)
@@ -39,22 +39,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("program", metavar="FILE", help="NC program, RS-274, or .rprog")
     add_stock(parser)
     parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
-    for what in ("shank", "holder"):
-        parser.add_argument(
-            f"--{what}",
-            action="append",
-            default=[],
-            metavar="[N=]Z0:R0:Z1:R1[,…]",
-            help=f"{what} of tool N, or of all: truncated cones, heights from the tip and radii, mm",
-        )
+    add_rods(parser)
     parser.add_argument(
         "--machine", help='what the program\'s axes mean (default "tcp": tip and axis); its limits are checked'
     )
     add_machine_option(parser)
     parser.add_argument("--part", metavar="FILE", help="what it should become: .stl, .obj, .ply or .3mf")
-    parser.add_argument(
-        "--fixture", action="append", default=[], metavar="FILE", help="a mesh or .rvol file; may be repeated"
-    )
+    add_fixtures(parser)
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of cutting and of contact (default 0.01)")
     parser.add_argument("--gouge", default="0.05", metavar="MM", help="depth of a gouge in the part (default 0.05)")
     parser.add_argument("--rest", metavar="MM", help="height of rest material that is a finding (default: none is)")
@@ -79,17 +70,17 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         if value is not None and arguments.part is None:
             raise ValueError(f"{option} needs --part")
     wanted = [tools.parse(text) for text in arguments.tool]
-    around = [(what, *cones(text, what)) for what in ("shank", "holder") for text in getattr(arguments, what)]
+    around = rods(arguments)
     path = Path(arguments.program)
     how = machine_options(arguments.machine_option, "--machine-option")
     with console.step("program"):
         program = read_program(path, arguments.machine or "tcp", how, console)
     volume = stock(arguments, console)
     reach = float(np.linalg.norm(volume.upper - volume.lower))
-    by_number = with_holders(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
+    by_number = with_rods(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
     with console.step("read"):
         part = None if arguments.part is None else read_part(input_file(arguments.part, MESHES), console)
-    fixtures = [fixture(name, volume.pitch, console) for name in arguments.fixture]
+    fixtures = [fixture(name, console, volume.pitch) for name in arguments.fixture]
     with console.step("verify") as progress:
         machine = {"machine": arguments.machine, "machine_options": how} if arguments.machine else {}
         options = {"tools": by_number, "progress": progress, **limits, **machine}
@@ -119,35 +110,6 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         entry["block"] = block_of(entry["line"], blocks)
     show(report, data, blocks, console)
     return 0 if report.passed else 1
-
-
-def cones(text: str, what: str) -> tuple[int | None, list[tuple[float, ...]]]:
-    """``N=Z0:R0:Z1:R1,…`` as a tool number, or None for all, and truncated cones."""
-    before, equals, form = text.rpartition("=")
-    if equals and not before.isdecimal():
-        raise ValueError(f"--{what} {text}: the number before = must be a tool number")
-    out = [tuple(finite(x, f"--{what} {text}: size") for x in cone.split(":")) for cone in form.split(",")]
-    if any(len(cone) != 4 for cone in out):
-        raise ValueError(f"--{what} {text}: Z0:R0:Z1:R1 expected, heights from the tip and radii")
-    return (int(before) if equals else None), out
-
-
-def with_holders(by_number: dict[int, Tool], around: list[tuple]) -> dict[int, Tool]:
-    out = dict(by_number)
-    for what, wanted, pieces in around:
-        if wanted is not None and wanted not in out:
-            raise ValueError(f"--{what} {wanted}=…: the program does not call tool {wanted}")
-        for tool in out if wanted is None else [wanted]:
-            out[tool] = out[tool].with_shank(pieces) if what == "shank" else out[tool].with_holder(pieces)
-    return out
-
-
-def fixture(name: str, pitch: float, console: Console) -> Volume:
-    """A fixture's volume; that of a mesh has upright rays at the stock's pitch, as `verify` makes it."""
-    path = input_file(name, MESHES + VOLUMES)
-    if path.suffix.lower() in VOLUMES:
-        return Volume.load(path)
-    return from_mesh(path, pitch, "z", console, "fixtures")
 
 
 def block_of(line: int, blocks: list[str]) -> str:

@@ -1,0 +1,70 @@
+"""What the command line says of shank, holder and fixtures."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from .. import Mesh, Tool, Volume
+from .arguments import MESHES, VOLUMES, finite, input_file
+from .console import Console
+from .shapes import from_mesh
+
+RODS = ("shank", "holder")
+PITCH, FINEST = 0.5, 500  # mm of a fixture's rays where nothing says it, and most of them along its largest side
+
+
+def add_rods(parser: argparse.ArgumentParser) -> None:
+    for what in RODS:
+        parser.add_argument(
+            f"--{what}",
+            action="append",
+            default=[],
+            metavar="[N=]Z0:R0:Z1:R1[,…]",
+            help=f"{what} of tool N, or of all: truncated cones, heights from the tip and radii, mm",
+        )
+
+
+def add_fixtures(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--fixture", action="append", default=[], metavar="FILE", help="a mesh or .rvol file; may be repeated"
+    )
+
+
+def rods(arguments: argparse.Namespace) -> list[tuple]:
+    """What, of which tool (None: of all), and its truncated cones, of every ``--shank`` and ``--holder``."""
+    return [(what, *cones(text, what)) for what in RODS for text in getattr(arguments, what)]
+
+
+def cones(text: str, what: str) -> tuple[int | None, list[tuple[float, ...]]]:
+    """``N=Z0:R0:Z1:R1,…`` as a tool number, or None for all, and truncated cones."""
+    before, equals, form = text.rpartition("=")
+    if equals and not before.isdecimal():
+        raise ValueError(f"--{what} {text}: the number before = must be a tool number")
+    out = [tuple(finite(x, f"--{what} {text}: size") for x in cone.split(":")) for cone in form.split(",")]
+    if any(len(cone) != 4 for cone in out):
+        raise ValueError(f"--{what} {text}: Z0:R0:Z1:R1 expected, heights from the tip and radii")
+    return (int(before) if equals else None), out
+
+
+def with_rods(by_number: dict[int, Tool], wanted: list[tuple]) -> dict[int, Tool]:
+    out = dict(by_number)
+    for what, number, pieces in wanted:
+        if number is not None and number not in out:
+            raise ValueError(f"--{what} {number}=…: the program does not call tool {number}")
+        for tool in out if number is None else [number]:
+            out[tool] = out[tool].with_shank(pieces) if what == "shank" else out[tool].with_holder(pieces)
+    return out
+
+
+def fixture(name: str, console: Console, pitch: float | None = None) -> Volume:
+    """A fixture's volume; that of a mesh has upright rays, at the stock's pitch as `verify` makes it, or at one that
+    follows from its size."""
+    path = input_file(name, MESHES + VOLUMES)
+    if path.suffix.lower() in VOLUMES:
+        return Volume.load(path)
+    if pitch is None:
+        lower, upper = Mesh.read(path).bounds
+        pitch = max(PITCH, float(np.max(np.subtract(upper, lower))) / FINEST)
+    return from_mesh(path, pitch, "z", console, "fixtures")
