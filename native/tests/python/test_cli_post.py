@@ -166,11 +166,30 @@ def test_what_is_written_beside_a_clamp_passes_the_verification(folder):
     for room in (0, 1.5):
         notes = result(*PLAN, *clear, "--clearance", room, cwd=folder)["notes"]
         lifted = next(note for note in notes if "lifted" in note)
-        assert lifted.startswith(f"3 of 3 rows are lifted, by up to {8 + room:.3g} mm (path 0)")
+        by = re.match(r"3 of 3 rows are lifted, by up to ([\d.]+) mm \(path 0\)", lifted)
+        assert float(by[1]) == pytest.approx(8 + room, abs=0.02)  # of a pitch of 0.5, a hundredth
         assert any(note.startswith("free of corner.stl, clamp.stl along all rows") for note in notes)
         assert not any("looked at" in note for note in notes)
         done = riffle(*verify, "--fixture", "clamp.stl", "--json", cwd=folder)
         assert done.returncode == 0, done.stdout
+
+
+def test_paths_that_no_lift_frees_are_named_and_left_out_if_that_is_asked_for(folder):
+    along = np.array([0, 11, 0])
+    far = plan.PencilPath(3.0, CORNER.centres + along, CORNER.contacts + along, CORNER.normals)
+    mesh = riffler.Mesh.read(folder / "corner.stl")
+    both = plan.Plan([CORNER, far], BALL, part=plan.part_of(mesh, "corner.stl"))
+    plan.save(folder / "plain.json", both)
+    riffler.Volume.block((-20, -10, 25), (30, 5, 145), pitch=1).save(folder / "lid.rvol")
+    words = (*PLAN, "--fixture", "lid.rvol", "--safe-height", 150)
+    done = riffle(*words, cwd=folder)
+    assert done.returncode == 2 and not (folder / "a.ngc").exists()
+    assert "path 0: places that no lift frees, the first at 3.000, 0.000, 3.000; turn the tool by --axis" in done.stderr
+    assert done.stderr.strip().endswith("move the fixtures, or leave such paths out by --skip-blocked")
+    notes = result(*words, "--skip-blocked", cwd=folder)["notes"]
+    assert "path 0: places that no lift frees, the first at 3.000, 0.000, 3.000: left out" in notes
+    feeds = riffler.Program.read(folder / "a.ngc", machine="tcp")
+    assert feeds.poses[np.asarray(feeds.feed) > 0, 1].min() >= 11
 
 
 def test_programs_go_from_one_machine_to_another(folder):
@@ -309,6 +328,7 @@ BAD = {
         "--holder: only beside",
     ),
     "a holder of a program": (["p.rprog", *("--holder", "30:9:60:9"), *POST, *OUT], "--holder: only for .json files"),
+    "nothing to skip": (["plain.json", "--skip-blocked", *POST, *OUT], "--skip-blocked: only beside --part"),
     "clearance of nothing": (
         ["plain.json", "--part", "corner.stl", "--clearance", "1", *POST, *OUT],
         "--clearance: of shank and holder, which --shank and --holder describe",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,13 @@ PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 AXIS_TOLERANCE = 0.00175  # rad
 LIFTED = 0.01  # mm that the tool may enter the part of a plan
-OF_A_PART = ("fixture", "shank", "holder", "clearance")  # what the tool is held against, beside the part
+OF_A_PART = (
+    "fixture",
+    "shank",
+    "holder",
+    "clearance",
+    "skip_blocked",
+)  # what the tool is held against, beside the part
 FEED = 500.0  # mm/min, slow: of a plan without another
 
 
@@ -58,6 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--clearance", metavar="MM", help="of shank and holder from part and fixtures, with --part (default 0)"
     )
+    parser.add_argument("--skip-blocked", action="store_true", help="leave out paths that no lift frees, with --part")
     parser.add_argument("--machine", metavar="NAME", help="that NC code was written for")
     add_machine_option(parser)
     parser.add_argument("--out", required=True, metavar="FILE", help="NC code (.ngc, .nc, …), or .rprog")
@@ -107,8 +115,8 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
     kind = Path(arguments.file).suffix.lower()
     path = input_file(arguments.file, (kind,))
     for name in OF_A_PART:
-        if getattr(arguments, name) not in (None, []) and arguments.part is None and kind in PLANS:
-            raise ValueError(f"--{name}: only beside --part")
+        if getattr(arguments, name) not in (None, [], False) and arguments.part is None and kind in PLANS:
+            raise ValueError(f"--{name.replace('_', '-')}: only beside --part")
     code = kind not in PLANS + RECORDINGS + PROGRAMS
     for name, kinds, instead in (
         ("safe_height", PLANS + RECORDINGS, "; a program takes --option safe_height=…"),
@@ -116,7 +124,7 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
         ("part", PLANS, ""),
         *((name, PLANS, "") for name in OF_A_PART),
     ):
-        if getattr(arguments, name) not in (None, []) and kind not in kinds:
+        if getattr(arguments, name) not in (None, [], False) and kind not in kinds:
             raise ValueError(f"--{name.replace('_', '-')}: only for {' and '.join(kinds)} files{instead}")
     if code and arguments.machine is None:
         raise ValueError(f"--machine: say for which machine {path.name} was written")
@@ -248,22 +256,26 @@ def lifted(
         wanted = planned.part.get("sha256")
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
-        collider, found, raised = Collider(mesh, fixtures=fixtures), [], {}
+        collider, found, raised, blocked = Collider(mesh, fixtures=fixtures), [], {}, {}
         for k, path in enumerate(paths):
             rows, report = plan.cutter_locations(path, guarded, collider, tolerance=LIFTED)
             if not report.ok:
-                bad = len(report.blocked) + len(report.unsafe)
-                move = ", or move the fixtures" if fixtures else ""
-                raise ValueError(f"path {k}: {bad} places that no lift frees; give it other axes{move}")
-            found.append(rows)
-            if len(high := report.lift[report.lift > LIFTED]):
-                raised[k] = high
+                blocked[k] = first_blocked(path, rows, report)
+            else:
+                found.append(rows)
+                if len(high := report.lift[report.lift > LIFTED]):
+                    raised[k] = high
             if progress:
                 progress((k + 1) / len(paths))
+    if blocked:
+        said = f"{listed(blocked, len(paths))}: places that no lift frees, the first at {next(iter(blocked.values()))}"
+        if not arguments.skip_blocked:
+            move = "" if not fixtures else ", move the fixtures"
+            raise ValueError(f"{said}; turn the tool by --axis{move}, or leave such paths out by --skip-blocked")
+        notes.append(f"{said}: left out")
     if raised:
         lifts = np.concatenate(list(raised.values()))
-        each = f"path{'s' if len(raised) > 1 else ''} {', '.join(map(str, raised))}"
-        where = each if len(raised) <= 5 else f"{len(raised)} of {len(paths)} paths"
+        where = listed(raised, len(paths))
         notes.append(
             f"{len(lifts)} of {sum(map(len, found))} rows are lifted, by up to {lifts.max():.3g} mm ({where}): the "
             "tool does not come down to the path there; other axes may let it"
@@ -275,6 +287,19 @@ def lifted(
     if not fixtures:
         notes.append("no fixtures were looked at: --fixture names them")
     return found, collider
+
+
+def first_blocked(path, rows: np.ndarray, report: plan.LocationReport) -> str:
+    """Where on a path: of points that have no row the ball's centre, of ways between rows the tip."""
+    place = path.centres[report.blocked[0][0]] if report.blocked else rows[report.unsafe[0][0], :3]
+    return ", ".join(f"{x:.3f}" for x in place)
+
+
+def listed(numbers: Collection[int], of: int) -> str:
+    """Paths by their numbers, or how many of all."""
+    if len(numbers) > 5:
+        return f"{len(numbers)} of {of} paths"
+    return f"path{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
 
 
 def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
