@@ -37,8 +37,8 @@ void check(const Collider::Settings& s, std::size_t fixtures) {
 
 Mesh mesh_of(const Volume& volume, std::size_t index) {
   try {
-    // Faces in few triangles, as many are equally near to a tool's side that lies along them. A tolerance below what the
-    // mesh of a carved volume is off by itself cannot be proven, and the attempt takes tens of seconds.
+    // Faces in few triangles, as many are equally near to a tool's side that lies along them. A tolerance below what
+    // the mesh of a carved volume is off by itself cannot be proven, and the attempt takes tens of seconds.
     return decimate(to_mesh(volume), {{}, 1e-2 * volume.frame().pitch});
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument("fixtures, volume " + std::to_string(index) + ": " + e.what());
