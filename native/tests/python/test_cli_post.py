@@ -137,18 +137,8 @@ def test_a_part_lifts_the_tool_out_of_it(folder):
 
 HOLDER = ("--holder", "30:20:60:20")
 PLAN = (
-    "post",
-    "plain.json",
-    "--feed",
-    7,
-    "--part",
-    "corner.stl",
-    "--post",
-    "tcp",
-    "--safe-height",
-    60,
-    "--out",
-    "a.ngc",
+    *("post", "plain.json", "--feed", 7, "--part", "corner.stl"),
+    *("--post", "tcp", "--safe-height", 60, "--out", "a.ngc"),
 )
 
 

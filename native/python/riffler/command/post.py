@@ -36,13 +36,7 @@ PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 AXIS_TOLERANCE = 0.00175  # rad
 LIFTED = 0.01  # mm that the tool may enter the part of a plan
-OF_A_PART = (
-    "fixture",
-    "shank",
-    "holder",
-    "clearance",
-    "skip_blocked",
-)  # what the tool is held against, beside the part
+OF_A_PART = ("fixture", "shank", "holder", "clearance", "skip_blocked")  # what goes with --part
 FEED = 500.0  # mm/min, slow: of a plan without another
 
 
@@ -114,18 +108,18 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
     """The program, what one should know about it, and what its moves are checked against."""
     kind = Path(arguments.file).suffix.lower()
     path = input_file(arguments.file, (kind,))
-    for name in OF_A_PART:
-        if getattr(arguments, name) not in (None, [], False) and arguments.part is None and kind in PLANS:
-            raise ValueError(f"--{name.replace('_', '-')}: only beside --part")
     code = kind not in PLANS + RECORDINGS + PROGRAMS
     for name, kinds, instead in (
         ("safe_height", PLANS + RECORDINGS, "; a program takes --option safe_height=…"),
         ("axis", PLANS, ""),
-        ("part", PLANS, ""),
-        *((name, PLANS, "") for name in OF_A_PART),
+        *((name, PLANS, "") for name in ("part", *OF_A_PART)),
     ):
-        if getattr(arguments, name) not in (None, [], False) and kind not in kinds:
+        if getattr(arguments, name) in (None, [], False):
+            continue
+        if kind not in kinds:
             raise ValueError(f"--{name.replace('_', '-')}: only for {' and '.join(kinds)} files{instead}")
+        if name in OF_A_PART and arguments.part is None:
+            raise ValueError(f"--{name.replace('_', '-')}: only beside --part")
     if code and arguments.machine is None:
         raise ValueError(f"--machine: say for which machine {path.name} was written")
     if not code and (arguments.machine is not None or arguments.machine_option):
@@ -270,15 +264,14 @@ def lifted(
     if blocked:
         said = f"{listed(blocked, len(paths))}: places that no lift frees, the first at {next(iter(blocked.values()))}"
         if not arguments.skip_blocked:
-            move = "" if not fixtures else ", move the fixtures"
+            move = ", move the fixtures" if fixtures else ""
             raise ValueError(f"{said}; turn the tool by --axis{move}, or leave such paths out by --skip-blocked")
         notes.append(f"{said}: left out")
     if raised:
         lifts = np.concatenate(list(raised.values()))
-        where = listed(raised, len(paths))
         notes.append(
-            f"{len(lifts)} of {sum(map(len, found))} rows are lifted, by up to {lifts.max():.3g} mm ({where}): the "
-            "tool does not come down to the path there; other axes may let it"
+            f"{len(lifts)} of {sum(map(len, found))} rows are lifted, by up to {lifts.max():.3g} mm "
+            f"({listed(raised, len(paths))}): the tool does not come down to the path there; other axes may let it"
         )
     names = ", ".join([part.name, *(Path(name).name for name in arguments.fixture)])
     notes.append(f"free of {names} along all rows within {LIFTED:g} mm, approaches and retracts included")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +13,22 @@ from .console import Console
 
 
 def from_mesh(
-    path: Path, pitch: float, directions: str, console: Console, step: str, report: dict[str, Any] | None = None
+    path: Path,
+    pitch: float | Callable[[Mesh], float],
+    directions: str,
+    console: Console,
+    step: str,
+    report: dict[str, Any] | None = None,
 ) -> Volume:
-    """The volume of a mesh file; prints what was mended and lost. ``report`` is filled as by Volume.from_mesh."""
+    """The volume of a mesh file; prints what was mended and lost. ``pitch`` may follow from the mesh; ``report`` is
+    filled as by Volume.from_mesh."""
     report = {} if report is None else report
     with console.step("read"):
         mesh = Mesh.read(path)
+    spacing = pitch(mesh) if callable(pitch) else pitch
     with console.step(step) as progress:
         try:
-            volume = Volume.from_mesh(mesh, pitch, directions, progress=progress, report=report)
+            volume = Volume.from_mesh(mesh, spacing, directions, progress=progress, report=report)
         except ValueError as error:
             raise ValueError(f"{path.name}: {error}") from None
     tell(path.name, report, console)

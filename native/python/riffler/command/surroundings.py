@@ -64,7 +64,10 @@ def fixture(name: str, console: Console, pitch: float | None = None) -> Volume:
     path = input_file(name, MESHES + VOLUMES)
     if path.suffix.lower() in VOLUMES:
         return Volume.load(path)
-    if pitch is None:
-        lower, upper = Mesh.read(path).bounds
-        pitch = max(PITCH, float(np.max(np.subtract(upper, lower))) / FINEST)
-    return from_mesh(path, pitch, "z", console, "fixtures")
+    return from_mesh(path, by_size if pitch is None else pitch, "z", console, "fixtures")
+
+
+def by_size(mesh: Mesh) -> float:
+    """mm from ray to ray of a fixture that no stock says it of."""
+    lower, upper = mesh.bounds
+    return max(PITCH, float(np.max(upper - lower)) / FINEST)
