@@ -19,6 +19,7 @@ MODULES = (
     "operators.result",
     "operators.pen",
     "operators.stroke",
+    "operators.begin",
     "operators.live_view",
     "operators.export",
     "operators.scene",

@@ -55,13 +55,3 @@ def ray_count(size, pitch: float, directions: str) -> int:
 
 def stock_bytes(size, pitch: float, directions: str) -> int:
     return BYTES_PER_RAY * ray_count(size, pitch, directions)
-
-
-def fitting_pitch(size, rays_across: int = 400) -> float:
-    """A round pitch (1, 2, 2.5 or 5 × 10ⁿ mm) that gives about `rays_across` along the longest side."""
-    wanted = max(float(s) for s in size) / rays_across
-    if not (math.isfinite(wanted) and wanted > 0):
-        raise ValueError(f"size must be three positive lengths, not {tuple(size)}")
-    decade = 10.0 ** math.floor(math.log10(wanted))
-    step = min((1, 2, 2.5, 5, 10), key=lambda s: abs(math.log(s * decade / wanted)))
-    return float(f"{step * decade:.3g}")

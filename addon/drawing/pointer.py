@@ -7,8 +7,9 @@ Blender draws cursors over the finished view, so following the pointer costs no 
 import numpy as np
 
 from ..bl import live, meshes, sculpts, units
-from ..core import brush, glyphs, poses
+from ..core import brush, fitting, glyphs, poses
 from ..core.sight import Sight
+from ..properties.plan import WITH_SURFACE
 from . import batches
 
 COLOURS = {
@@ -35,9 +36,13 @@ def draw(context, mode, xy):
     """`mode`: of core/brush.py; `xy`: the pointer in the window."""
     region, space = context.region, context.region_data
     ob = sculpts.active(context)
-    if region is None or space is None or ob is None or context.window_manager.riffler.sculpting:
+    if region is None or space is None or context.window_manager.riffler.sculpting:
         return  # while a device sculpts, its tool is the cursor
     at = xy[0] - region.x, xy[1] - region.y
+    if ob is None:
+        lines = _before(context, region, space, at)
+        _draw(lines, (region.x, region.y), COLOURS[mode], context.preferences.system.ui_scale)
+        return
     tool = context.scene.riffler.tool.dictionary()
     run = live.of(ob)
     lines = None
@@ -87,6 +92,23 @@ def tool_lines(cutter, pose, place, normal, view):
     return [(view.project(points), closed, strong) for points, closed, strong in out]
 
 
+def _before(context, region, space, at):
+    """Where no sculpt is active: a ring as wide as the cutter would be on the active object if it were one
+    (core/fitting.py); without an object, any ring."""
+    ob, pixels = context.object, 0.0
+    if ob is not None and ob.type in WITH_SURFACE and min(ob.dimensions) > 0:
+        middle = meshes.matrix(ob.matrix_world) @ np.append(np.mean(ob.bound_box, axis=0), 1.0)
+        seen = Sight(meshes.matrix(space.perspective_matrix), (region.width, region.height))
+        pixels = 0.5 * max(ob.dimensions) / fitting.CUTTERS * seen.pixels_per_unit(middle[:3])
+    return [(_ring(at, min(max(pixels, 6.0), 200.0)), True, True)]
+
+
+def _ring(at, radius):
+    """(64, 2) pixels."""
+    angle = 2 * np.pi * np.arange(64) / 64
+    return np.asarray(at) + radius * np.c_[np.cos(angle), np.sin(angle)]
+
+
 def _beside(context, ob, region, space, at):
     """Off the surface, and before the first stroke: a ring as wide as the tool would be in the sculpt's middle."""
     global pixels_per_mm
@@ -97,8 +119,7 @@ def _beside(context, ob, region, space, at):
     scale = float(np.cbrt(abs(np.linalg.det(meshes.matrix(ob.matrix_world)[:3, :3]))))
     pixels_per_mm = seen.pixels_per_unit(middle) * scale / mm
     radius = 0.5 * units.clean(context.scene.riffler.tool.diameter) * pixels_per_mm
-    angle = 2 * np.pi * np.arange(64) / 64
-    return [(np.asarray(at) + radius * np.c_[np.cos(angle), np.sin(angle)], True, True)]
+    return [(_ring(at, radius), True, True)]
 
 
 def _draw(lines, corner, colour, zoom):

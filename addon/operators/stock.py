@@ -11,7 +11,7 @@ from riffler.mesh_notes import notes_on
 
 from .. import properties
 from ..bl import live, meshes, parts, sculpts, store, units
-from ..core import estimate
+from ..core import estimate, fitting
 from ..core import units as names
 from ..core.cache import Content
 from ..core.job import DoneJob, TaskJob
@@ -200,7 +200,7 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
             return shared.fail(self, ValueError("a recording has the pitch of the stock that it was made on"))
         size = stock.size if stock.source == "BLOCK" else source_size(source, context.scene)
         try:
-            stock.pitch = estimate.fitting_pitch(size)
+            stock.pitch = fitting.pitch(fitting.longest(size), 400)
         except ValueError as error:
             return shared.fail(self, error)
         return {"FINISHED"}

@@ -16,8 +16,10 @@ ICONS = Path(__file__).resolve().parent.parent / "icons"  # an absolute path is 
 
 
 def _stroke(mode, **modifiers):
+    """On the active sculpt; where Blender may not call that, on whatever is under the pointer."""
     event = {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}
-    return ("riffler.stroke", event, {"properties": [("mode", mode.upper())]})
+    given = {"properties": [("mode", mode.upper())]}
+    return ("riffler.stroke", event, given), ("riffler.stroke_elsewhere", event, given)
 
 
 def _radial(field, **modifiers):
@@ -54,9 +56,9 @@ def _tool(mode, label, text):
             "bl_description": text,
             "bl_icon": str(ICONS / f"riffler.{name}"),
             "bl_keymap": (
-                _stroke(mode),
-                _stroke(brush.OPPOSITE[mode], ctrl=True),
-                _stroke("soften", shift=True),
+                *_stroke(mode),
+                *_stroke(brush.OPPOSITE[mode], ctrl=True),
+                *_stroke("soften", shift=True),
                 ("riffler.pen_stop", {"type": "ESC", "value": "PRESS"}, None),
                 ("riffler.frame", {"type": "NUMPAD_PERIOD", "value": "PRESS"}, None),
                 ("riffler.leave", {"type": "TAB", "value": "PRESS"}, None),
