@@ -10,7 +10,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import properties
-from ..bl import chunks, live, meshes, sculpts, units
+from ..bl import chunks, meshes, sculpts, units
 from ..core import fitting
 from ..core import units as names
 from ..core.stroke import Sample
@@ -36,7 +36,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         """Where the stroke itself is refused: keys of a tool are not asked in the order in which they are made."""
         if context.mode != "OBJECT" or context.region_data is None:
             return False
-        return bool(refusal(context)) or sculpts.active(context) is None
+        return bool(refusal(context)) or sculpts.active(context) is None or edited(sculpts.active(context))
 
     def invoke(self, context, event):
         """The drag belongs to this operator whatever comes of it, so that nothing is moved or selected by it."""
@@ -44,7 +44,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         target = None if self._refused else under(context, event) or stock.source_object(context)
         if not self._refused:
             self._refused = unfit(context, target)
-        if not self._refused and sculpts.is_sculpt(target):
+        if not self._refused and sculpts.is_sculpt(target) and not edited(target):
             sculpts.select_only(context, target)
             return bpy.ops.riffler.stroke("INVOKE_DEFAULT", True, mode=self.mode)
         self._target = "" if self._refused else target.name
@@ -56,9 +56,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         }
         self._keep(event)
         if self._target and context.workspace is not None:
-            context.workspace.status_text_set(
-                local("Riffler: let go to be asked whether this is to be a sculpt    Esc: cancel")
-            )
+            context.workspace.status_text_set(local("Riffler: let go to be asked what this is to be    Esc: cancel"))
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -72,13 +70,20 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
             if self._refused:
                 say(context, self._refused)
             else:
-                stroke = json.dumps({"view": self._view, "rows": self._rows})
-                bpy.ops.riffler.make_sculpt("INVOKE_DEFAULT", object=self._target, mode=self.mode, stroke=stroke)
+                self._ask(context, bpy.data.objects.get(self._target))
             return {"CANCELLED"}
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
         self._end(context)
+
+    def _ask(self, context, target):
+        given = {"mode": self.mode, "stroke": json.dumps({"view": self._view, "rows": self._rows})}
+        if sculpts.is_sculpt(target):
+            sculpts.select_only(context, target)
+            bpy.ops.riffler.edits_first("INVOKE_DEFAULT", **given)
+        else:
+            bpy.ops.riffler.make_sculpt("INVOKE_DEFAULT", object=self._target, **given)
 
     def _keep(self, event):
         self._rows.append(list(sample(event, self._corner, self._begin)))
@@ -125,6 +130,11 @@ class Heard:
 
     def poll_message_set(self, text):
         self.text = text
+
+
+def edited(ob):
+    """True where somebody has to say first what becomes of what Blender's own tools have made of the sculpt."""
+    return live.of(ob) is None and sculpts.changed(ob.data)
 
 
 def under(context, event):
@@ -248,7 +258,7 @@ class RIFFLER_OT_make_sculpt(bpy.types.Operator):
         except shared.ERRORS as error:
             kept.restore()
             return shared.fail(self, error)
-        return self._stroke(context) if self.stroke else {"FINISHED"}
+        return stroke_on(context, self.mode, self.stroke) if self.stroke else {"FINISHED"}
 
     # ------------------------------------------------------------------ within
     def _source(self, context):
@@ -276,12 +286,58 @@ class RIFFLER_OT_make_sculpt(bpy.types.Operator):
         if not fitting.depth_suits(settings.sculpt.depth, diameter):
             settings.sculpt.depth = fitting.depth(diameter)
 
-    def _stroke(self, context):
-        ob = sculpts.active(context)
-        data = json.loads(self.stroke)
-        matrix = np.array(data["view"]["matrix"], float).reshape(4, 4) @ np.linalg.inv(sculpts.from_world(ob))
-        data["view"]["matrix"] = matrix.ravel().tolist()
-        return bpy.ops.riffler.stroke("EXEC_DEFAULT", True, mode=self.mode, stroke=json.dumps(data))
+
+class RIFFLER_OT_edits_first(bpy.types.Operator):
+    """Say what becomes of what Blender's own tools have made of the sculpt; then the stroke goes on"""
+
+    bl_idname = "riffler.edits_first"
+    bl_label = "Keep the Edits?"
+    bl_options = {"INTERNAL"}
+
+    edits: EnumProperty(
+        name="Edits",
+        items=(
+            ("TAKE", "Take Edits", "The mesh as it is now becomes the sculpt's material"),
+            ("DROP", "Drop Edits", "The mesh is made from the volume again, as it was before them"),
+        ),
+        default="TAKE",
+        options={"SKIP_SAVE"},
+        description="What becomes of them",
+    )
+    mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"HIDDEN", "SKIP_SAVE"})
+    stroke: StringProperty(name="Stroke", options={"HIDDEN", "SKIP_SAVE"}, description="As of riffler.make_sculpt")
+
+    @classmethod
+    def poll(cls, context):
+        return shared.sculpt_poll(cls, context)
+
+    def invoke(self, context, event):
+        return context.window_manager.invoke_props_dialog(self, width=320)
+
+    def draw(self, context):
+        name = sculpts.active(context).name
+        self.layout.label(
+            text=local("{} was edited in Blender's own modes.").format(name), icon="INFO", translate=False
+        )
+        self.layout.row().prop(self, "edits", expand=True)
+
+    def execute(self, context):
+        call = bpy.ops.riffler.take_edits if self.edits == "TAKE" else bpy.ops.riffler.rebuild
+        try:
+            call("EXEC_DEFAULT", True)
+        except RuntimeError as error:
+            return shared.fail(self, error)
+        return stroke_on(context, self.mode, self.stroke) if self.stroke else {"FINISHED"}
+
+
+def stroke_on(context, mode, text):
+    """The drag that was kept, on the sculpt that is active now; the view of `text` goes from the world to clip space."""
+    data = json.loads(text)
+    matrix = np.array(data["view"]["matrix"], float).reshape(4, 4) @ np.linalg.inv(
+        sculpts.from_world(sculpts.active(context))
+    )
+    data["view"]["matrix"] = matrix.ravel().tolist()
+    return bpy.ops.riffler.stroke("EXEC_DEFAULT", True, mode=mode, stroke=json.dumps(data))
 
 
 class _Kept:
@@ -319,4 +375,4 @@ def _other_sculpts(context):
     return any(sculpts.is_sculpt(ob) for ob in context.scene.objects)
 
 
-CLASSES = (RIFFLER_OT_stroke_elsewhere, RIFFLER_OT_make_sculpt)
+CLASSES = (RIFFLER_OT_stroke_elsewhere, RIFFLER_OT_make_sculpt, RIFFLER_OT_edits_first)

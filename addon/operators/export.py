@@ -66,7 +66,7 @@ class ExportSurface(FileWork):
         ob, path = sculpts.active(context), bpy.path.abspath(self.filepath)
         problems.check_target(path)
         if live.of(ob) is None:
-            shared.tell_edits(self, ob.data, lost=False)
+            shared.tell_edits(self, ob.data)
         shared.tell_modifiers(self, ob)
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name

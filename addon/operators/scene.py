@@ -13,7 +13,7 @@ class RIFFLER_OT_tool_preset(bpy.types.Operator):
 
     bl_idname = "riffler.tool_preset"
     bl_label = "Tool Preset"
-    bl_options = {"INTERNAL", "UNDO"}
+    bl_options = {"INTERNAL"}  # no undo step, as of all settings of the sculpt tools
 
     name: bpy.props.StringProperty(name="Name", description="Of the preset")
 
@@ -50,12 +50,12 @@ class RIFFLER_OT_millimetres(bpy.types.Operator):
     def execute(self, context):
         try:
             live.end_all()
-            meshes = {ob.data for ob in context.scene.objects if sculpts.is_sculpt(ob) and not ob.data.library}
-            for mesh in meshes:
-                store.content(mesh)  # what cannot be read comes before the first change
+            found = [ob for ob in context.scene.objects if sculpts.is_sculpt(ob) and not ob.data.library]
+            for ob in found:  # what cannot be comes before the first change
+                store.content(ob.data)
+                shared.refuse_edits(ob)
             units.set_millimetres(context.scene, bpy.data.screens, units.clean(self.unit))
-            for mesh in meshes:
-                shared.tell_edits(self, mesh)
+            for mesh in {ob.data for ob in found}:
                 sculpts.refill(mesh, units.mm_per_unit(context.scene))
         except shared.ERRORS as error:
             return shared.fail(self, error)

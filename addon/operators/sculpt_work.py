@@ -22,8 +22,10 @@ class SculptWork(LongWork):
         """(object, content) of the active sculpt; the content must not be changed."""
         live.end_all()
         ob = sculpts.active(context)
-        if not self.from_edits:
-            shared.tell_edits(self, ob.data, lost=not self.leaves_mesh)
+        if self.leaves_mesh:
+            shared.tell_edits(self, ob.data)
+        elif not self.from_edits:
+            shared.refuse_edits(ob)
         self._object, self._identity = ob.name, store.identity(ob.data)
         return ob, store.content(ob.data)
 

@@ -28,6 +28,7 @@ ONE_DIRECTION = (
     "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in the box "
     "at the lower left"
 )
+CHIPS = {"REMOVE", "ADD"}  # what has a force
 LIFTED = {"remove", "soften"}  # what a tool does from outside; fixtures are in its way
 
 _held = None  # the operator whose stroke is being made in a window
@@ -77,6 +78,9 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         global _held
         if self.stroke or bpy.app.background or context.region_data is None:
             return self.execute(context)
+        ob = sculpts.active(context)
+        if live.of(ob) is None and sculpts.changed(ob.data):  # somebody is asked first, and the drag kept meanwhile
+            return bpy.ops.riffler.stroke_elsewhere("INVOKE_DEFAULT", mode=self.mode)
         context.window.cursor_modal_set("WAIT")  # the first stroke brings the sculpt into chunks
         try:
             self._take_up(context)
@@ -91,7 +95,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         self._begin = self._looked = time.perf_counter()
         self._dirty = False
         self._shown = None
-        if settings.show_force:
+        if settings.show_force and self.mode in CHIPS:
             limit = units.clean(settings.limit)
             self._shown = force.begin(limit, self._brush.tool.diameter, self._run.to_world)
         pointer.held = self._brush
@@ -123,7 +127,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         ob = sculpts.active(context)
         self._fresh = live.of(ob) is None
         if self._fresh:
-            shared.tell_edits(self, ob.data)
+            shared.refuse_edits(ob)
         self._run = live.begin(context, ob)
 
     def _start(self, context, view):

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import properties
-from ..bl import live, sculpts, units, versions
+from ..bl import edits, live, sculpts, units, versions
 from ..core import estimate, presets
 from ..core import units as names
 from ..operators import clay, cut, export, scene, stock
@@ -63,16 +63,11 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         if live.of(ob) is not None:
             return  # its mesh is not what is shown, and the work goes on from the volume
         stale = sculpts.shown_mm_per_unit(mesh) != units.mm_per_unit(context.scene)
-        edited = sculpts.edited(mesh)
+        edited = edits.noticed(ob)
         if stale:
             lines(layout, "The scene's units have changed;", "the mesh shows another size.", icon="ERROR")
         elif edited:
-            lines(
-                layout,
-                "The mesh was edited; the next cut",
-                "starts from the volume.",
-                icon="ERROR",
-            )
+            lines(layout, "The mesh was edited in Blender's", "own modes. Keep that, or drop it:", icon="ERROR")
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
@@ -150,11 +145,11 @@ class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
-        tool = context.scene.riffler.tool
-        preset = tool.from_preset()
+        preset = context.scene.riffler.tool.from_preset()
         layout.menu(RIFFLER_MT_tools.bl_idname, text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
         layout.use_property_split = True
         layout.use_property_decorate = False
+        tool = context.window_manager.riffler.tool  # whose fields make no undo steps
         layout.prop(tool, "kind")
         column = layout.column(align=True)
         for key in presets.SIZES[tool.kind]:

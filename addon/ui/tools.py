@@ -22,11 +22,15 @@ def _stroke(mode, **modifiers):
     return ("riffler.stroke", event, given), ("riffler.stroke_elsewhere", event, given)
 
 
-def _radial(field, **modifiers):
-    """Blender's own control of a size by the pointer's distance."""
-    paths = {"data_path_primary": field, "zoom_path": "zoom", "fill_color_path": "colour"}
-    given = [(name, f"scene.riffler.sculpt.{path}") for name, path in paths.items()]
-    return ("wm.radial_control", {"type": "F", "value": "PRESS", **modifiers}, {"properties": given})
+def _size(mode):
+    """F and Shift F, as in Sculpt Mode, where the second is strength; of a cutter that is its depth."""
+    second = "STRENGTH" if mode == "soften" else "DEPTH"
+    for field, shift in (("RADIUS", False), (second, True)):
+        event = {"type": "F", "value": "PRESS", "shift": shift}
+        yield ("riffler.resize", event, {"properties": [("field", field)]})
+    for key, larger in (("LEFT_BRACKET", False), ("RIGHT_BRACKET", True)):
+        event = {"type": key, "value": "PRESS", "repeat": True}
+        yield ("riffler.size_step", event, {"properties": [("larger", larger)]})
 
 
 class SculptTool:
@@ -63,8 +67,7 @@ def _tool(mode, label, text):
                 ("riffler.frame", {"type": "NUMPAD_PERIOD", "value": "PRESS"}, None),
                 ("riffler.leave", {"type": "TAB", "value": "PRESS"}, None),
                 ("riffler.leave", {"type": "TAB", "value": "PRESS", "ctrl": True}, {"properties": [("menu", True)]}),
-                _radial("radius"),
-                _radial("depth", shift=True),
+                *_size(mode),
                 (
                     "wm.call_menu_pie",
                     {"type": "W", "value": "PRESS"},

@@ -1,6 +1,7 @@
 import math
 
 import pytest
+
 from addon.core import fitting
 
 BALL = {"kind": "ball", "diameter": 6.0, "length": 30.0, "name": "Ball 6"}

@@ -28,8 +28,6 @@ def state():
     return (
         scene.unit_settings.scale_length,
         scene.unit_settings.length_unit,
-        scene.riffler.tool.dictionary(),
-        scene.riffler.sculpt.depth,
         sorted(ob.name for ob in bpy.data.objects),
         [ob.matrix_world.copy() for ob in bpy.data.objects],
         bpy.context.object and bpy.context.object.name,
@@ -94,6 +92,7 @@ def test_undo_takes_back_the_stroke_then_the_sculpt_with_the_units():
     assert volume(bpy.data.objects["Cube Stock"]).volume == 1e6 > carved
     bpy.ops.ed.undo()
     assert state() == before and not bpy.data.objects["Cube"].hide_get()
+    assert np.isclose(bpy.context.scene.riffler.tool.diameter, 10)  # the cutter is a brush's setting, and stays
 
 
 def test_what_cannot_become_a_sculpt_is_refused_and_all_stays_as_it_was():
@@ -108,7 +107,9 @@ def test_what_cannot_become_a_sculpt_is_refused_and_all_stays_as_it_was():
     support.select(bpy.data.objects["Cube"])
     before = state()
     support.refused(lambda: bpy.ops.riffler.make_sculpt(side=1e5, pitch=0.001), "coarser pitch")
-    assert state() == before and not bpy.data.objects["Cube"].hide_get()
+    assert (
+        state() == before and bpy.context.scene.riffler.tool.diameter == 6 and not bpy.data.objects["Cube"].hide_get()
+    )
     support.stock()
     support.refused(lambda: bpy.ops.riffler.make_sculpt(), "a sculpt already")
 

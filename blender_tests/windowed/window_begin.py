@@ -2,6 +2,7 @@
 asks, Return is pressed, and the drag is a stroke; Ctrl Z takes back first the stroke, then the sculpt. A drag off
 everything says what to do; a drag over another sculpt strokes that one."""
 
+import itertools
 import time
 from pathlib import Path
 
@@ -32,7 +33,7 @@ def drag(screen, *places):
     yield 0.3
     stroke.press(screen, *way[0], "PRESS")
     yield 0.1
-    for a, b in zip(way, way[1:], strict=False):
+    for a, b in itertools.pairwise(way):
         for share in np.linspace(0, 1, 8)[1:]:
             screen.move(*map(int, a + share * (b - a)))
             yield 0.02
