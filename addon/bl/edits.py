@@ -1,4 +1,4 @@
-"""Whether Blender's own tools have changed a sculpt's mesh, for panels: every vertex counts, and is looked at only after
+"""Whether Blender's own tools have changed a sculpt's mesh, for panels: every vertex counts, and is looked at only once
 Blender has said that some mesh is another one."""
 
 import bpy

@@ -10,7 +10,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import properties
-from ..bl import chunks, meshes, sculpts, units
+from ..bl import chunks, live, meshes, sculpts, units
 from ..core import fitting
 from ..core import units as names
 from ..core.stroke import Sample

@@ -31,7 +31,7 @@ def test_chunks_show_the_volume_and_only_dirty_ones_move():
     name = sculpt()
     run = work(name)
     is_shown(name)
-    assert bpy.data.objects[name].hide_get()
+    assert support.part("bl.chunks").is_hidden(bpy.data.objects[name])
     run.stages.take_counts()
     stroke(name, 1)
     counts = run.stages.take_counts()

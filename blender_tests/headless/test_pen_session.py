@@ -72,7 +72,7 @@ def test_a_recording_is_a_device_and_ends_by_itself():
 def test_what_is_shown_follows_and_somebody_who_removes_it_spoils_nothing():
     ob = sculpt()
     hand = Hand(ob)
-    assert ob.hide_get() and bpy.context.object == ob
+    assert support.part("bl.chunks").is_hidden(ob) and bpy.context.object == ob
     hand.down(20)
     assert hand.look(lambda: hand.session.run.in_stroke)
     is_shown(NAME)
