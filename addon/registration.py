@@ -12,6 +12,7 @@ MODULES = (
     "bl.handlers",
     "bl.live",
     "operators.stock",
+    "operators.solid",
     "operators.cut",
     "operators.clay",
     "operators.mask",
