@@ -100,15 +100,25 @@ class CylinderRays {
   Vec3 across_, aside_;
 };
 
+/// Where a ray at `place` (mm) is taken to stand, along a side of the box with `rays` rays: the last one may stand on
+/// the box's upper side, or, a lone one, beyond it. As in from_mesh, it is taken for what is within.
+double within(double place, int rays, double lower, double upper, double pitch) {
+  const double inner = upper - Grid::kRayShift * pitch;
+  return place < inner ? place : rays == 1 ? 0.5 * (lower + upper) : inner;
+}
+
 /// Fills a tile with the solid's chords, clipped by the box.
 template <class Rays>
 void fill(Grid& grid, std::size_t tile, const Rays& rays) {
-  const double low = grid.box().lower.z, high = grid.box().upper.z, least = kSliver * grid.pitch();
+  const Box3& box = grid.box();
+  const double low = box.lower.z, high = box.upper.z, pitch = grid.pitch(), least = kSliver * pitch;
   const Vec3 along = to_world(grid.axis(), Vec3(0, 0, 1));
   const PackedNormal down = PackedNormal::pack(-along), up = PackedNormal::pack(along);
   Chord chord;
   grid.fill_tile(tile, [&](int i, int j, TileBuilder& builder) {
-    if (!rays.cut(grid.shifted_u(i), grid.shifted_v(j), chord)) return;
+    const double u = within(grid.shifted_u(i), grid.nu(), box.lower.x, box.upper.x, pitch),
+                 v = within(grid.shifted_v(j), grid.nv(), box.lower.y, box.upper.y, pitch);
+    if (!rays.cut(u, v, chord)) return;
     const Span span{std::max(chord.near, low), std::min(chord.far, high)};
     if (!(span.near < span.far) || span.length() < least) return;
     SpanNormals normals;
@@ -121,8 +131,9 @@ void fill(Grid& grid, std::size_t tile, const Rays& rays) {
   });
 }
 
-/// Whether rays may not all miss a solid that lies in this box.
-bool holds(const Box3& box, const Box3& solid) {
+/// Whether all of a solid lies in the frame's box, to rounding.
+bool holds(const Frame& frame, const Box3& solid) {
+  const Box3 box = frame.box.grown(kSliver * frame.pitch);
   for (int k = 0; k < 3; ++k)
     if (!(box.lower[k] <= solid.lower[k] && solid.upper[k] <= box.upper[k])) return false;
   return true;
@@ -143,7 +154,7 @@ Volume made(const char* name, const Solid& solid, double inner, const Frame& fra
           for (std::size_t t = begin; t < end; ++t) fill(grid, t, rays);
         },
         part(progress, static_cast<double>(g) * share, static_cast<double>(g + 1) * share));
-    if (grid.span_count() > 0 || !holds(frame.box, around)) continue;
+    if (grid.span_count() > 0 || !holds(frame, around)) continue;
     std::ostringstream text;
     text << "no ray meets the " << name << ", which is small for a pitch of " << frame.pitch
          << " mm; take a pitch of at most " << inner << " mm";
