@@ -106,13 +106,13 @@ Frame grown(const Frame& frame, const Box3& wanted) {
   Frame out = frame;
   const double h = frame.pitch;
   for (int k = 0; k < 3; ++k) {
-    const double below = pitches(frame.box.lower[k] - wanted.lower[k], h);
-    out.box.lower[k] -= below * h;
-    out.box.upper[k] += pitches(wanted.upper[k] - frame.box.upper[k], h) * h;
-    const double extent = out.box.upper[k] - out.box.lower[k];
+    const double lower = frame.box.lower[k], upper = frame.box.upper[k];
+    const double below = pitches(lower - wanted.lower[k], h), above = pitches(wanted.upper[k] - upper, h);
+    out.box.lower[k] = lower - below * h, out.box.upper[k] = upper + above * h;
     // A last cell of half a pitch or less may round to no ray of its own now.
-    if (extent < 1e9 * h && ray_count(extent, h) < ray_count(frame.box.size()[k], h) + static_cast<int>(below))
-      out.box.upper[k] += h;
+    const double extent = out.box.size()[k];
+    if (extent < 1e9 * h && ray_count(extent, h) < ray_count(upper - lower, h) + static_cast<int>(below))
+      out.box.upper[k] = upper + (above + 1) * h;
   }
   return out;
 }
