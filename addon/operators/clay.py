@@ -70,9 +70,7 @@ class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
 
     def finish(self, context, job):
         before, volume = self._before, job.result
-        middle = sculpts.middle(self.mesh, before.volume)
         self.keep(replace(before, volume=volume, mask=masks.on_grid_of(volume, before.mask)))
-        sculpts.keep_middle(self.mesh, volume, middle)
         counted = volume.volume - before.volume.volume
         note = ""
         if abs(counted) > 1e-9 * before.volume.volume:
