@@ -14,6 +14,7 @@ MODULES = (
     "bl.edits",
     "bl.tools_kept",
     "operators.stock",
+    "operators.solid",
     "operators.cut",
     "operators.clay",
     "operators.mask",

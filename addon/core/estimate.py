@@ -16,15 +16,14 @@ MANY_RAYS = 100_000_000
 MOST_TRIANGLES = 50_000_000
 
 
-def check_surface(name: str, size, area: float, pitch: float) -> None:
+def check_surface(name: str, size, area: float, pitch: float, remedy: str = "take a coarser pitch") -> None:
     """ValueError where a surface of `area` (mm²) is too large to be shown at `pitch` (mm): two triangles for each cell
     that it goes through, and one that leans goes through more."""
     triangles = 2 * area / pitch**2
     if triangles > MOST_TRIANGLES:
         raise ValueError(
             f"{name} is {units.format_size(size)}, which are {units.format_count(round(triangles))} triangles at "
-            f"{units.trim(pitch, 4)} mm: take a coarser pitch; or where a unit was to be a millimetre, use Scene in "
-            "Millimetres"
+            f"{units.trim(pitch, 4)} mm: {remedy}; or where a unit was to be a millimetre, use Scene in Millimetres"
         )
 
 

@@ -331,7 +331,7 @@ class RIFFLER_OT_edits_first(bpy.types.Operator):
 
 
 def stroke_on(context, mode, text):
-    """The drag that was kept, on the sculpt that is active now; the view of `text` goes from the world to clip space."""
+    """The drag that was kept, on the sculpt that is active now; the view in `text` is from the world to clip space."""
     data = json.loads(text)
     matrix = np.array(data["view"]["matrix"], float).reshape(4, 4) @ np.linalg.inv(
         sculpts.from_world(sculpts.active(context))

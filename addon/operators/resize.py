@@ -22,7 +22,7 @@ WORDS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT",
 DIGITS = {
     **{word: str(k) for k, word in enumerate(WORDS)},
     **{f"NUMPAD_{k}": str(k) for k in range(10)},
-    **{"PERIOD": ".", "NUMPAD_PERIOD": ".", "COMMA": ".", "BACK_SPACE": "\b"},
+    "PERIOD": ".", "NUMPAD_PERIOD": ".", "COMMA": ".", "BACK_SPACE": "\b",
 }
 
 

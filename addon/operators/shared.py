@@ -1,10 +1,11 @@
 """What the operators have in common."""
 
 import bpy
+import numpy as np
 from riffler.mesh_notes import notes_on
 
 from ..bl import sculpts
-from ..core import json_object
+from ..core import json_object, units
 from ..core.problems import said
 from ..translations import local
 
@@ -101,6 +102,13 @@ def tell_turned(operator, name, mesh):
     mesh.oriented(found)
     for note in notes_on(found):
         operator.report({"WARNING"}, f"{name}: {note}")
+
+
+def tell_made(operator, ob):
+    """The size of a new sculpt's box, and what its mesh has."""
+    size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
+    triangles = units.format_count(len(ob.data.polygons))
+    operator.report({"INFO"}, f"{ob.name}: {units.format_size(size)}, {triangles} triangles")
 
 
 def tell_all(operator, done, notes, wrong=False):

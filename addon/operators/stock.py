@@ -85,9 +85,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
             thin = {}
             volume.to_mesh(report=thin)
             self.report({"WARNING"}, f"{ob.name}: {thin['lost_note']}")
-        size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
-        triangles = names.format_count(len(ob.data.polygons))
-        self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles} triangles")
+        shared.tell_made(self, ob)
         return {"FINISHED"}
 
     def _from(self):

@@ -274,6 +274,30 @@ def test_undo_after_the_end_brings_the_work_back():
     nothing_is_left()
 
 
+def test_strokes_before_and_after_room_was_made_are_undone_and_told_again_to_the_byte():
+    name = sculpt()
+
+    def now():
+        ob = bpy.data.objects[name]
+        run = live().of(ob)
+        return (support.content(ob) if run is None else run).volume.to_bytes()
+
+    made = [now(), stroke(name, 0)]
+    support.select(bpy.data.objects[name])
+    assert bpy.ops.riffler.room("EXEC_DEFAULT", True, room=3.0) == {"FINISHED"}
+    made += [now(), stroke(name, 1, "add"), stroke(name, 2)]
+    run = live().of(bpy.data.objects[name])
+    assert run.keeping.journal.state(run.token).volume.to_bytes() == made[-1]
+    for state in made[-2::-1]:
+        bpy.ops.ed.undo()
+        assert now() == state
+    for state in made[1:]:
+        bpy.ops.ed.redo()
+        assert now() == state
+    live().end_all()
+    matches_its_volume(name)
+
+
 def test_two_sculpts_are_worked_at_and_undone_in_turn():
     a, b = sculpt("A"), sculpt("B")
     done = []
