@@ -10,12 +10,12 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import properties
-from ..bl import chunks, live, meshes, sculpts, units
+from ..bl import chunks, live, meshes, sculpts
 from ..core import fitting
 from ..core import units as names
 from ..core.stroke import Sample
 from ..translations import local
-from . import shared, stock
+from . import fit, shared, stock
 from .stroke import MODES, MOVES
 
 WIDE = 70  # characters in a line of a popup
@@ -29,14 +29,21 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
     bl_label = "Sculpt Another Object"
     bl_options = {"INTERNAL"}
 
-    mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"SKIP_SAVE"})
+    mode: EnumProperty(
+        name="Mode", items=MODES, default="REMOVE", options={"SKIP_SAVE"}, description="What the tool does"
+    )
 
     @classmethod
     def poll(cls, context):
         """Where the stroke itself is refused: keys of a tool are not asked in the order in which they are made."""
-        if context.mode != "OBJECT" or context.region_data is None:
+        if not shared.object_mode(cls, context):
             return False
-        return bool(refusal(context)) or sculpts.active(context) is None or edited(sculpts.active(context))
+        if context.region_data is None:
+            return shared.deny(cls, "Use it in a 3D view")
+        ob = sculpts.active(context)
+        if refusal(context) or ob is None or edited(ob):
+            return True
+        return shared.deny(cls, "The active sculpt gets the stroke itself")
 
     def invoke(self, context, event):
         """The drag belongs to this operator whatever comes of it, so that nothing is moved or selected by it."""
@@ -169,7 +176,7 @@ def _fit(chosen, context):
     """Pitch and cutter that suit the size which `chosen`, the fields of the operator below, has."""
     if chosen.side > 0:
         chosen.pitch = fitting.pitch(chosen.side)
-        chosen.diameter = fitting.tool(context.scene.riffler.tool.dictionary(), chosen.side)["diameter"]
+        chosen.diameter = fit.cutter(context, chosen.side)
 
 
 class RIFFLER_OT_make_sculpt(bpy.types.Operator):
@@ -234,29 +241,29 @@ class RIFFLER_OT_make_sculpt(bpy.types.Operator):
         column.label(text="OK makes one of it; the object stays, hidden.", icon="BLANK1")
         layout.use_property_split = True
         column = layout.column(align=True)
-        column.enabled = not _other_sculpts(context)
+        column.enabled = not fit.others(context)
         column.prop(self, "side")
         column = layout.column(align=True)
         column.prop(self, "pitch")
         column.prop(self, "diameter")
 
     def execute(self, context):
-        kept = _Kept(context)
+        kept = fit.Kept(context)
+        active, selected = context.view_layer.objects.active, list(context.selected_objects)
         try:
             self._choose(context)
             source = self._source(context)
-            matrix = source.matrix_world.copy()
             sculpts.select_only(context, source)
-            unit = names.clean(self.side / _units(source))
-            if not np.isclose(unit, units.mm_per_unit(context.scene), rtol=1e-6):
-                bpy.ops.riffler.millimetres(unit=unit)
-            self._take_cutter(context)
-            bpy.ops.riffler.new_stock(
-                "EXEC_DEFAULT", True, source="OBJECT", pitch=names.clean(self.pitch), directions="xyz"
-            )
-            assert source.matrix_world == matrix
+            if not fit.others(context):
+                fit.take_unit(context, self.side / _units(source))
+            fit.take_cutter(context, names.clean(self.diameter))
+            pitch = names.clean(self.pitch)
+            bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, source="OBJECT", pitch=pitch, directions="xyz")
         except shared.ERRORS as error:
             kept.restore()
+            for ob in context.view_layer.objects:
+                ob.select_set(ob in selected)
+            context.view_layer.objects.active = active
             return shared.fail(self, error)
         return stroke_on(context, self.mode, self.stroke) if self.stroke else {"FINISHED"}
 
@@ -272,19 +279,9 @@ class RIFFLER_OT_make_sculpt(bpy.types.Operator):
         if sculpts.is_sculpt(source):
             raise ValueError(f"{source.name} is a sculpt already: select it, and stroke it")
         if not self.side:
-            now = _units(source) * units.mm_per_unit(context.scene)
-            keep = fitting.is_handy(now) or _other_sculpts(context)
-            self.side = names.clean(now if keep else _units(source) * fitting.unit(_units(source)))
+            self.side = fit.side(context, _units(source))
         elif not (self.pitch and self.diameter):
             _fit(self, context)
-
-    def _take_cutter(self, context):
-        settings, diameter = context.scene.riffler, names.clean(self.diameter)
-        tool = settings.tool.dictionary()
-        if not np.isclose(tool["diameter"], diameter):
-            settings.tool.take(fitting.scaled(tool, diameter))
-        if not fitting.depth_suits(settings.sculpt.depth, diameter):
-            settings.sculpt.depth = fitting.depth(diameter)
 
 
 class RIFFLER_OT_edits_first(bpy.types.Operator):
@@ -340,39 +337,11 @@ def stroke_on(context, mode, text):
     return bpy.ops.riffler.stroke("EXEC_DEFAULT", True, mode=mode, stroke=json.dumps(data))
 
 
-class _Kept:
-    """The settings that a sculpt is made with, as they were."""
-
-    def __init__(self, context):
-        self._context = context
-        settings = context.scene.unit_settings
-        self._units = settings.system, settings.scale_length, settings.length_unit
-        self._tool, self._depth = context.scene.riffler.tool.dictionary(), context.scene.riffler.sculpt.depth
-        self._active, self._selected = context.view_layer.objects.active, list(context.selected_objects)
-
-    def restore(self):
-        context = self._context
-        settings = context.scene.unit_settings
-        settings.system, settings.scale_length = self._units[:2]
-        if self._units[2]:
-            settings.length_unit = self._units[2]
-        context.scene.riffler.tool.take(self._tool)
-        context.scene.riffler.sculpt.depth = self._depth
-        for ob in context.view_layer.objects:
-            ob.select_set(ob in self._selected)
-        context.view_layer.objects.active = self._active
-
-
 def _units(ob):
     """The longest side as it is shown, in Blender units."""
     if min(ob.dimensions) <= 0:
         raise ValueError(f"{ob.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
     return fitting.longest(ob.dimensions)
-
-
-def _other_sculpts(context):
-    """True where the scene's units are those of sculpts that are there."""
-    return any(sculpts.is_sculpt(ob) for ob in context.scene.objects)
 
 
 CLASSES = (RIFFLER_OT_stroke_elsewhere, RIFFLER_OT_make_sculpt, RIFFLER_OT_edits_first)

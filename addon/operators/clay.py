@@ -46,6 +46,7 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
     def finish(self, context, job):
         before = self._before
         self.keep(replace(before, volume=job.result, mask=masks.on_grid_of(job.result, before.mask)))
+        context.scene.riffler.clay.pitch = job.result.pitch  # what the panel offers next
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{names.format_count(job.result.rays)} rays; material {_signed(off)}")
         return {"FINISHED"}

@@ -22,7 +22,10 @@ WORDS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT",
 DIGITS = {
     **{word: str(k) for k, word in enumerate(WORDS)},
     **{f"NUMPAD_{k}": str(k) for k in range(10)},
-    "PERIOD": ".", "NUMPAD_PERIOD": ".", "COMMA": ".", "BACK_SPACE": "\b",
+    "PERIOD": ".",
+    "NUMPAD_PERIOD": ".",
+    "COMMA": ".",
+    "BACK_SPACE": "\b",
 }
 
 
@@ -34,7 +37,9 @@ class RIFFLER_OT_resize(bpy.types.Operator):
     bl_label = "Resize Cutter"
     bl_options = set()  # settings of a brush are no undo steps
 
-    field: EnumProperty(name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"})
+    field: EnumProperty(
+        name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"}, description="Which size is set"
+    )
 
     @classmethod
     def poll(cls, context):

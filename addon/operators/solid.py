@@ -16,7 +16,7 @@ from ..core import units as names
 from ..core.cache import Content
 from ..properties import stock
 from ..translations import local
-from . import shared
+from . import fit, shared
 
 SHAPES = (
     ("BLOCK", "Block", "A cuboid of material", "CUBE", 0),
@@ -71,7 +71,9 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         return shared.object_mode(cls, context) and not shared.busy(cls, context)
 
     def execute(self, context):
+        kept = fit.Kept(context)
         try:
+            self._fit(context)
             name, shape = self.shape.capitalize(), self._shape(context.scene)
             pitch = self._pitch(name, shape.size)
             estimate.check_surface(name, shape.size, shape.area, pitch, "take fewer rays")
@@ -80,6 +82,7 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
             place = Matrix.Translation(context.scene.cursor.location)
             ob = sculpts.new_object(context, name, Content(volume), place)
         except shared.ERRORS as error:
+            kept.restore()
             return shared.fail(self, error)
         shared.tell_made(self, ob)
         return {"FINISHED"}
@@ -88,6 +91,15 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         shared.draw_fields(self, ("shape", *_FIELDS[self.shape], "rays", "directions"))
         size = self._shape(context.scene).size
         self.layout.label(text=f"{local('Pitch')}: {names.trim(size.max() / self.rays, 4)} mm", translate=False)
+
+    def _fit(self, context):
+        """Metres and a cutter of millimetres are nothing to begin with: the scene's unit and the cutter become such
+        that the solid can be sculpted."""
+        longest = self._shape(context.scene).size.max() / units.mm_per_unit(context.scene)
+        if longest > 0:
+            side = fit.side(context, longest)
+            fit.take_unit(context, side / longest)
+            fit.take_cutter(context, fit.cutter(context, side))
 
     def _shape(self, scene):
         mm = units.mm_per_unit(scene)

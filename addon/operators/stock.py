@@ -86,6 +86,10 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
             volume.to_mesh(report=thin)
             self.report({"WARNING"}, f"{ob.name}: {thin['lost_note']}")
         shared.tell_made(self, ob)
+        across = round(max(np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)) / volume.pitch)
+        if across < fitting.FEW_RAYS:
+            few = f"{ob.name} has {across} rays along its longest side, so no details: undo, and use Fit Pitch"
+            self.report({"WARNING"}, few)
         return {"FINISHED"}
 
     def _from(self):

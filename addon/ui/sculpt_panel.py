@@ -51,6 +51,7 @@ def begin_button(layout, context):
 class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_sculpt_tool"
     bl_label = "Stroke (mm, mm/s, N)"
+    bl_order = 2
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
