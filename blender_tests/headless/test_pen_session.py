@@ -330,6 +330,7 @@ def test_fixtures_keep_the_tool_of_a_device_out():
     assert height(10, 25)[0] == 20, "it went through the clamp"
 
 
+@support.core_bound
 def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():
     """A SpaceMouse of umockdev, in a Blender of its own: it has to be there when that one starts."""
     if bpy.app.binary_path:

@@ -144,6 +144,7 @@ def test_material_is_put_on_within_the_stocks_box():
     assert hollow < volume_of(ob).volume < 24000
 
 
+@support.core_bound
 def test_every_copy_of_a_stroke_is_made():
     support.scale(1)
     ob = support.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
