@@ -21,6 +21,8 @@ MODES = ("remove", "add", "soften", "mask", "unmask")
 OPPOSITE = {"remove": "add", "add": "remove", "soften": "soften", "mask": "unmask", "unmask": "mask"}
 NUMBERS = len(Sample._fields)
 DABS = 1 / 6  # of the tool's width: from one dab of smoothing to the next
+AROUND = 0.25  # of the tool's width: the surface's normal is the mean of what is so far around a place
+SPOKES = 8
 
 
 @dataclass(frozen=True)
@@ -112,8 +114,27 @@ class Brush:
         if found is None:
             return None
         _, point, normal, _ = found
+        point, normal = np.asarray(point), self._around(np.asarray(point), np.asarray(normal))
         # Material is put on from within: by the tool's mirror image, whose tip comes out of the surface.
-        return Hit(np.asarray(point), -np.asarray(normal) if self._outwards else np.asarray(normal))
+        return Hit(point, -normal if self._outwards else normal)
+
+    def _around(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """The surface's normal without the jerks of its facets: the mean of a place and of two rings around it. Rays
+        come in from all sides at 45°, so what lies behind an edge counts before the tool is there. It is a function of
+        the place: on a curved surface a mean along the way would lag behind it."""
+        across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+        across /= np.linalg.norm(across)
+        turn = 2 * np.pi * np.arange(SPOKES) / SPOKES
+        spokes = np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * np.cross(normal, across)
+        far = AROUND * self.tool.diameter * np.array([1.0, 0.5])
+        origins = (point + far[:, None, None] * (2 * spokes + normal)).reshape(-1, 3)
+        directions = np.tile(-(spokes + normal) * np.sqrt(0.5), (2, 1))
+        distance, _, normals, _ = self._surface.pick(origins, directions)
+        near = distance <= np.repeat(2 * np.sqrt(2) * far, SPOKES)
+        from_outside = (normals * directions).sum(axis=1) < 0  # NaN where there is none
+        mean = normal + normals[near & from_outside].sum(axis=0)
+        size = np.linalg.norm(mean)
+        return mean / size if size > 1e-6 else normal
 
     def _carve(self, pieces) -> bool:
         for piece in pieces:
