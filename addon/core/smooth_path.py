@@ -3,9 +3,9 @@ turn by 20° at nearly every sample, and its groove would look like bamboo.
 
 A cubic runs through the samples, and the path is its mean over `REACH` pixels before and behind each place. The mean is
 centred, so a curve stays where it is: one of radius R moves inwards by REACH² / 10 R. The price is that the path is
-certain only `REACH` pixels and one sample behind the hand. Beyond both ends the cubic goes on as its mirror image through
-the end, so the path begins at the first sample and ends at the last. It depends on the samples alone, not on when they
-were asked for.
+certain only `REACH` pixels and one sample behind the hand. Beyond both ends the cubic goes on as its mirror image, so
+the path begins at the first sample and ends at the last. It depends on the samples alone, not on when they were asked
+for.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 REACH = 10.0  # pixels
 PRESSED = 10.0  # pixels: what a change of pressure from 0 to 1 counts as way, so that a pen at rest can press harder
-OFFSETS = np.linspace(-1, 1, 41)[1:-1]
+OFFSETS = np.linspace(-1, 1, 25)[1:-1]
 WEIGHTS = (1 - OFFSETS**2) / (1 - OFFSETS**2).sum()  # Epanechnikov's: of all of one reach it damps noise best, nearly
 MOST = 1024  # rows between two samples
 
@@ -75,7 +75,12 @@ class SmoothPath:
         end = self._along[-1]
         before, behind = asked < 0, asked > end
         inside = np.where(before, -asked, np.where(behind, 2 * end - asked, asked))
-        rows = np.stack([np.interp(inside, self._along, column) for column in self._rows.T], axis=-1)
+        if len(self._along) == 1:
+            rows = np.broadcast_to(self._rows[0], (*asked.shape, len(self._begin))).copy()
+        else:
+            k = np.clip(np.searchsorted(self._along, inside) - 1, 0, len(self._along) - 2)
+            share = ((inside - self._along[k]) / (self._along[k + 1] - self._along[k]))[..., None]
+            rows = (1 - share) * self._rows[k] + share * self._rows[k + 1]
         rows[before] = 2 * self._begin - rows[before]
         if self._end is not None:
             rows[behind] = 2 * self._end - rows[behind]

@@ -1,8 +1,8 @@
 """A stroke of a mouse or a tablet as tool poses: the tool follows the surface under the cursor.
 
 Nothing here knows of Blender: a `pick` says what the surface is at a place of the view, and what comes back are poses
-to carve, piece by piece as the hand moves on. The tool goes along a smooth path through the samples (smooth_path.py), some
-pixels behind the hand. The same samples on the same surface give the same poses.
+to carve, piece by piece as the hand moves on. The tool goes along a smooth path through the samples (smooth_path.py),
+some pixels behind the hand. The same samples on the same surface give the same poses.
 """
 
 from __future__ import annotations
