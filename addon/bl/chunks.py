@@ -83,13 +83,15 @@ class Chunks:
         ob = bpy.data.objects.get(self._names.get(block, ""))
         if ob is None:  # somebody has removed it: it is not wanted
             return
-        vertices, triangles, *edges = mesher.patch(bricks, edges=True)
-        meshes.fill(ob.data, vertices / self._mm, triangles, edges)
+        angle = meshes.SHARP_ANGLE if versions.OWN_NORMALS else None
+        vertices, triangles, ends, corners, *normals = mesher.patch(bricks, edges=True, normals=angle)
+        edges = ends, corners
+        meshes.fill(ob.data, vertices / self._mm, triangles, edges, *normals)
         masks.show(ob.data, mask, vertices, triangles)
         self.fillings[block] = next(_fillings)
         ob.data[FILLING] = self.fillings[block]
         if stages:
-            size = sum(a.nbytes for a in (vertices, triangles, *edges))
+            size = sum(a.nbytes for a in (vertices, triangles, *edges, *normals))
             stages.count(bricks=len(bricks), chunks=1, triangles=len(triangles), bytes=size)
 
     def place(self, matrix):

@@ -106,12 +106,15 @@ def looks(stages):
     if not whole:
         return []
     shares = {name: f"{name} {100 * ms / whole:.0f} %" for name, ms in times.items()}
+    middle, longest = stages.lag()
+    lag = [f"Behind the hand: {middle:.0f} ms, at most {longest:.0f} ms"] if longest else []
     return [
         f"A look: {whole:.1f} ms",
         f"{shares['cut']}, {shares['mesh']}",
         f"{shares['transfer']}, {shares['draw']}",
         f"{counts['bricks']:.1f} tiles, {counts['chunks']:.1f} chunks",
         f"{units.format_count(counts['triangles'])} triangles, {units.format_bytes(counts['bytes'])}",
+        *lag,
     ]
 
 

@@ -571,7 +571,7 @@ class Mesher:
         """
         The whole mesh, the same as ``to_mesh()`` of the volume.
         """
-    def patch(self, bricks: typing.SupportsInt | collections.abc.Sequence[typing.SupportsInt], edges: bool = False) -> tuple:
+    def patch(self, bricks: typing.SupportsInt | collections.abc.Sequence[typing.SupportsInt], edges: bool = False, normals: typing.SupportsFloat | None = None) -> tuple:
         """
         (vertices (n, 3) float32, triangles (k, 3) int32) of a brick, empty where nothing is left.
 
@@ -581,6 +581,9 @@ class Mesher:
         ``edges=True`` adds edges (e, 2) int32, each once, and of each triangle's corners the edge to the next one, (k, 3)
         int32: Blender's ``.edge_verts`` and ``.corner_edge``. IndexError for a brick that there is not, ValueError for one
         that is there twice.
+
+        ``normals``, an angle in rad, adds normals (3 k, 3) float32 of the triangles' corners on the whole mesh: the mean of the
+        triangles around the vertex, in whatever brick, whose normals are within that angle of the corner's own.
         """
     def patches(self) -> list:
         """
