@@ -8,7 +8,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from . import attributes, masks, meshes, store, units
+from . import attributes, masks, meshes, refusals, store, units
 
 
 def is_sculpt(ob):
@@ -189,11 +189,6 @@ def changed(mesh):
     return edited(mesh) or mesh.riffler.shown_crc not in ("", _checksum(mesh))
 
 
-def modified(ob):
-    """True where a modifier is seen, which the volume knows nothing of."""
-    return any(modifier.show_viewport for modifier in ob.modifiers)
-
-
 def _checksum(mesh):
     return f"{zlib.crc32(meshes.coordinates(mesh)):08x}"
 
@@ -219,21 +214,11 @@ def to_world_mm(ob, scene):
     return m
 
 
-def distorted(ob):
-    """Why tools are not in the world what they are in the sculpt's frame, with the remedy; or nothing."""
-    axes = meshes.matrix(ob.matrix_world)[:3, :3]
-    if np.allclose(axes.T @ axes, np.eye(3), rtol=0, atol=1e-4):
-        return ""
-    scaled = "use Object > Clear > Scale" if ob.parent is None else "clear the scale of what it hangs on"
-    return f"{ob.name} is scaled or sheared: tools are sized in its own millimetres. To have them true, {scaled}"
-
-
 def from_world(ob):
     """(4, 4): Blender units in the world → millimetres in the sculpt's frame. ValueError where it has none."""
-    world = meshes.matrix(ob.matrix_world)
-    if np.linalg.matrix_rank(world[:3, :3]) < 3:
-        raise ValueError(f"{ob.name} is scaled to nothing along an axis: use Object > Clear > Scale")
-    m = np.linalg.inv(world)
+    if why := refusals.flat(ob):
+        raise ValueError(why)
+    m = np.linalg.inv(meshes.matrix(ob.matrix_world))
     m[:3] *= shown_mm_per_unit(ob.data)
     return m
 

@@ -22,7 +22,7 @@ from ..core.cache import Content
 from ..core.job import cuts_of
 from ..core.poses import moving
 from ..core.stages import Stages
-from . import chunks, keeping, leaving, parts, sculpts, store, versions
+from . import chunks, keeping, leaving, refusals, sculpts, store, versions
 from .states import SPARE, State, snapshots, state_of
 
 lives = {}  # by the mark of the object (sculpts.new_mark); bl/live.py keeps it
@@ -32,9 +32,8 @@ class Live:
     """Of the sculpt `ob`. ValueError, MemoryError where it cannot be; then nothing has changed."""
 
     def __init__(self, context, ob):
-        if ob.library or ob.data.library:
-            raise ValueError(f"{ob.name} is linked from another file: make it local first")
-        parts.refuse_sheared(ob)
+        if why := refusals.linked(ob, ob.data):
+            raise ValueError(why)
         content = store.content(ob.data)
         sculpts.new_mark(ob)
         self._take(ob, content)

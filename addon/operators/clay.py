@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from riffler import tasks
 from riffler.mesh_notes import notes_on
 
-from ..bl import forms, masks, parts, sculpts, units
+from ..bl import forms, masks, sculpts, units
 from ..core import estimate
 from ..core import units as names
 from ..core.cache import Content
@@ -133,8 +133,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
     )
 
     def begin(self, context):
-        ob, self._before = self.take(context)
-        parts.refuse_sheared(ob)
+        _, self._before = self.take(context)
         return TaskJob(tasks.parts(self._before.volume, units.clean(self.least)))
 
     def finish(self, context, job):

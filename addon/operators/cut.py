@@ -9,7 +9,7 @@ import riffler
 from bpy_extras.io_utils import ImportHelper
 
 from .. import properties
-from ..bl import sculpts
+from ..bl import refusals, sculpts
 from ..bl.curves import deformed
 from ..core import units
 from ..core.job import Cut, CutJob
@@ -27,8 +27,6 @@ class CutShell(shared.TakesTool, SculptWork):
     def begin(self, context):
         self._begin = time.perf_counter()
         ob, self._before = self.take(context)
-        if why := sculpts.distorted(ob):
-            self.report({"WARNING"}, why)
         cuts = self.make_cuts(context, ob)
         return CutJob(self._before.volume.copy(), cuts, riffler.Tool.from_dict, self._before.mask)
 
@@ -65,6 +63,8 @@ class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator)
             raise ValueError(
                 f"there is no curve object {self.curve!r}" if self.curve else "choose a curve to cut along"
             )
+        if why := refusals.disabled(curve, context.view_layer):
+            raise ValueError(why)
         if deformed(curve):
             self.report(
                 {"WARNING"}, f"{curve.name}: modifiers and shape keys are not followed; convert it to a curve first"

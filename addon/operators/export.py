@@ -22,14 +22,16 @@ class Export(ExportHelper):
     @classmethod
     def poll(cls, context):
         if sculpts.active(context) is None:
-            return shared.deny(cls, "Select a sculpt first")
+            return shared.deny(cls, shared.no_sculpt(context))
         return True
 
     def execute(self, context):
         try:
             path = bpy.path.abspath(self.filepath)
             problems.check_target(path)
-            done = self.write(context, sculpts.active(context), path)
+            ob = sculpts.active(context)
+            shared.check_state(self, context, ob)
+            done = self.write(context, ob, path)
         except shared.ERRORS as error:
             return shared.fail(self, error)
         self.report({"INFO"}, f"{bpy.path.basename(path)}: {done}")
@@ -58,16 +60,16 @@ class ExportSurface(FileWork):
     @classmethod
     def poll(cls, context):
         if sculpts.active(context) is None:
-            return shared.deny(cls, "Select a sculpt first")
+            return shared.deny(cls, shared.no_sculpt(context))
         running = context.window_manager.riffler.running
         return not running or shared.deny(cls, f"{running}: Esc cancels")
 
     def begin(self, context):
         ob, path = sculpts.active(context), bpy.path.abspath(self.filepath)
         problems.check_target(path)
+        shared.check_state(self, context, ob)
         if live.of(ob) is None:
             shared.tell_edits(self, ob.data, lost=False)
-        shared.tell_modifiers(self, ob)
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name
 

@@ -184,6 +184,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
             mode = mode_of(context, self.mode)
             if len(context.scene.riffler.sculpt.maps()) > 1:
                 self.report({"WARNING"}, local(NO_COPIES))
+            shared.check_state(self, context, ob)
             if not sculpts.behind(ob.data):
                 shared.tell_edits(self, ob.data)
             depth = names.clean(context.scene.riffler.sculpt.depth)

@@ -6,7 +6,7 @@ import riffler
 from bpy_extras.io_utils import ImportHelper
 
 from .. import properties
-from ..bl import libraries, live, parts
+from ..bl import libraries, live, parts, refusals
 from ..core import library
 from ..core import units as names
 from ..core.surroundings import check_fixture
@@ -78,7 +78,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
     def poll(cls, context):
         if not (shared.object_mode(cls, context) and _editable(cls, context.scene.riffler.plan.fixtures)):
             return False
-        if why := next(filter(None, map(parts.instance, context.selected_objects)), ""):
+        if why := next(filter(None, map(refusals.instance, context.selected_objects)), ""):
             return shared.deny(cls, f"{why} first")
         if not any(ob != context.scene.riffler.plan.part for ob in surfaces(context)):
             return shared.deny(cls, "Select the vise, the clamps: objects with a surface other than the part")

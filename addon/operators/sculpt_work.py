@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bl import live, sculpts, store
+from ..bl import live, refusals, sculpts, store
 from . import shared
 from .long import LongWork
 
@@ -22,7 +22,10 @@ class SculptWork(LongWork):
         """(object, content) of the active sculpt; the content must not be changed."""
         live.end_all()
         ob = sculpts.active(context)
-        if not self.from_edits:
+        if self.from_edits:
+            refusals.refuse(context, ob)
+        else:
+            shared.check_state(self, context, ob)
             shared.tell_edits(self, ob.data, lost=not self.leaves_mesh)
         self._object, self._identity = ob.name, store.identity(ob.data)
         return ob, store.content(ob.data)

@@ -13,7 +13,7 @@ def program_poll(cls, context):
     if not shared.object_mode(cls, context):
         return False
     if programs.stock_object(context) is None:
-        return shared.deny(cls, "There is no stock: select a sculpt, or make one that the part lies in")
+        return shared.deny(cls, programs.no_stock(context))
     return True
 
 

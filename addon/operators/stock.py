@@ -10,7 +10,7 @@ from riffler import tasks
 from riffler.mesh_notes import notes_on
 
 from .. import properties
-from ..bl import live, meshes, parts, sculpts, store, units
+from ..bl import live, meshes, parts, refusals, sculpts, store, units
 from ..core import estimate
 from ..core import units as names
 from ..core.cache import Content
@@ -117,11 +117,18 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
     def _from_object(self, context):
         source = source_object(context)
         if source is None:
-            raise ValueError("select the object that is to be the material: a mesh, curve, text, surface or metaball")
+            raise ValueError(self._no_source(context))
+        if unfit := refusals.disabled(source, context.view_layer) or refusals.flat(source):
+            raise ValueError(unfit)
         # Scale and shear become part of the shape, so that a millimetre of the sculpt is one along every axis.
         place, turn, _ = source.matrix_world.decompose()
         frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
         return (self._from_sculpt if _is_its_volume(context, source) else self._from_mesh)(context, source, frame)
+
+    @staticmethod
+    def _no_source(context):
+        instance = refusals.instance(context.object) if context.object else ""
+        return instance or "select the object that is to be the material: a mesh, curve, text, surface or metaball"
 
     def _from_mesh(self, context, source, frame):
         to_stock = meshes.matrix(frame.inverted() @ source.matrix_world)
@@ -162,12 +169,12 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
 def _is_its_volume(context, ob):
     """Of a sculpt: whether what is seen in the world is its volume, as large, not turned inside out, and neither
     modified nor edited."""
-    if not sculpts.is_sculpt(ob) or sculpts.modified(ob):
+    if not sculpts.is_sculpt(ob) or refusals.has_modifiers(ob):
         return False
     if live.of(ob) is None and sculpts.changed(ob.data):
         return False
     shown, scene = sculpts.shown_mm_per_unit(ob.data), units.mm_per_unit(context.scene)
-    return not sculpts.distorted(ob) and not ob.matrix_world.is_negative and np.isclose(shown, scene, rtol=1e-6)
+    return not refusals.scaled(ob) and np.isclose(shown, scene, rtol=1e-6)
 
 
 def _at_cursor(context):

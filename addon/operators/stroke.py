@@ -123,6 +123,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         ob = sculpts.active(context)
         self._fresh = live.of(ob) is None
         if self._fresh:
+            shared.check_state(self, context, ob)
             shared.tell_edits(self, ob.data)
         self._run = live.begin(context, ob)
 

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import properties
-from ..bl import live, sculpts, units, versions
+from ..bl import live, refusals, sculpts, units, versions
 from ..core import estimate, presets
 from ..core import units as names
 from ..operators import clay, cut, export, scene, stock
@@ -76,8 +76,8 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
-        if sculpts.distorted(ob):
-            lines(layout, "The object is scaled or sheared: tools", "are sized in its own millimetres.", icon="ERROR")
+        if refusals.scaled(ob):
+            lines(layout, "The object is scaled or mirrored: its", "millimetres are not the scene's.", icon="ERROR")
 
 
 class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
