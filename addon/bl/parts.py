@@ -42,7 +42,7 @@ def unfit(ob, scene):
     """Why the object can be neither part nor fixture, or nothing; cheap enough for a poll."""
     if ob is None:
         return "There is no part: select one and use Set Part"
-    if scene.objects.get(ob.name) != ob:
+    if scene not in ob.users_scene:  # by its name one of another file may be meant
         return f"{ob.name} was deleted from this scene: set another part"
     if why := refusals.instance(ob):
         return why

@@ -116,7 +116,7 @@ def not_in_cuts(content):
     masked = sum(cut.mode == "remove" and cut.masked for cut in content.cuts)
     said = []
     if added:
-        said.append(f"No machine can put material on: left out {added} stroke{'s' * (added > 1)} that did")
+        said.append(f"No machine can put material on: left out {names.counted(added, 'stroke')} that did")
     if masked:
         said.append(f"Cuts made beside a mask: {masked}. They cut what it protected, too")
     if content.shaped:

@@ -36,17 +36,17 @@ def instance(ob):
 
 def disabled(ob, view_layer):
     """Why it is not known where an object stands, and what its modifiers make of it; or nothing."""
-    if _evaluated(ob, view_layer.layer_collection):
+    if not ob.hide_viewport and _evaluated(set(ob.users_collection), view_layer.layer_collection):
         return ""
     return f"{ob.name} is disabled in viewports or in this view layer: enable it in the Outliner"
 
 
-def _evaluated(ob, layer):
-    """True where the object has its modifiers and stands where it should: hidden ones do, disabled ones do not, but
-    where something points to them they say that they are."""
-    if ob.hide_viewport or layer.exclude or layer.collection.hide_viewport:
+def _evaluated(homes, layer):
+    """True where an object of these collections has its modifiers and stands where it should: hidden ones do, disabled
+    ones do not, but where something points to them they say that they are."""
+    if layer.exclude or layer.collection.hide_viewport:
         return False
-    return layer.collection.objects.get(ob.name) == ob or any(_evaluated(ob, child) for child in layer.children)
+    return layer.collection in homes or any(_evaluated(homes, child) for child in layer.children)
 
 
 def flat(ob, matrix=None):

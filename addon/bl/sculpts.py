@@ -40,12 +40,12 @@ def key_of(ob):
     return ob.name, ob.library.filepath if ob.library else None
 
 
-def new_object(context, name, content, matrix, mm_per_unit=None, collections=()):
+def new_object(context, name, content, matrix, mm_per_unit=None, collections=(), unseen=""):
     """A new sculpt at `matrix` (world), active and the only one selected, in these collections, or in the active one.
-    `mm_per_unit`: None for the scene's."""
+    `mm_per_unit`: None for the scene's; `unseen`: as `commit`'s."""
     mesh = bpy.data.meshes.new(name)
     try:
-        commit(mesh, content, mm_per_unit or units.mm_per_unit(context.scene))
+        commit(mesh, content, mm_per_unit or units.mm_per_unit(context.scene), unseen=unseen)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
@@ -79,10 +79,13 @@ def take_looks(ob, other):
         ob.data.materials.append(material)
 
 
-def commit(mesh, content, mm_per_unit, token=""):
-    """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles."""
+def commit(mesh, content, mm_per_unit, token="", unseen=""):
+    """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles. `unseen`:
+    what to say where there would be none; without it the mesh may be empty."""
     _must_be_fillable(mesh)
     surface = content.volume.to_mesh(report={})  # whatever can fail comes before the first change
+    if unseen and not len(surface.triangles):
+        raise ValueError(unseen)
     store.write(mesh, content, token)
     _show_whole(mesh, content, surface, mm_per_unit)
     return len(surface.triangles)

@@ -45,7 +45,7 @@ class CutShell(shared.TakesTool, SculptWork):
         changed, adds = units.format_volume(job.removed), {cut.mode == "add" for cut in job.cuts}
         done = {(False,): "Removed", (True,): "Put on"}.get(tuple(adds), "Removed and put on")
         level = {"INFO"} if job.removed > 0 else {"WARNING"}
-        self.report(level, f"{done} {changed} in {units.format_count(job.total)} moves, {seconds:.2f} s")
+        self.report(level, f"{done} {changed} in {units.counted(job.total, 'move')}, {seconds:.2f} s")
         return {"FINISHED"}
 
 

@@ -94,7 +94,7 @@ class ExportSurface(FileWork):
 
 def _said(surface):
     lower, upper = surface.bounds
-    return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(upper - lower)}"
+    return f"{names.counted(len(surface.triangles), 'triangle')}, {names.format_size(upper - lower)}"
 
 
 class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator, ExportHelper):
@@ -151,7 +151,7 @@ class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
         cuts = self.removing(ob, content)
         program = programs.of_cuts(ob.name, cuts, content.volume, feed, spindle)
         program.write(path, post=self.post)
-        return f"{len(cuts)} cuts, {names.format_count(len(program.poses))} moves"
+        return f"{names.counted(len(cuts), 'cut')}, {names.counted(len(program.poses), 'row')}"
 
 
 class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
@@ -167,7 +167,7 @@ class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
         content = live.content(ob)
         cuts = self.removing(ob, content)
         paths.to_recording(cuts, content.volume).write(path)
-        return f"{len(cuts)} strokes"
+        return names.counted(len(cuts), "stroke")
 
 
 CLASSES = (RIFFLER_OT_export_stl, RIFFLER_OT_export_3mf, RIFFLER_OT_export_nc, RIFFLER_OT_export_recording)

@@ -242,7 +242,7 @@ def _tell(session):
 
 
 def _strokes(session):
-    return "1 stroke" if session.count == 1 else f"{session.count} strokes"
+    return names.counted(session.count, "stroke")
 
 
 def _status(text):

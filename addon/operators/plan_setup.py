@@ -25,7 +25,7 @@ def described(mesh):
     """What a part is worth before it is planned on: the level of the report, and its text."""
     found = riffler.plan.analyse(mesh)
     size = names.format_size(found["bounds"][1] - found["bounds"][0])
-    facts = f"{size}, {names.format_count(found['triangles'])} triangles"
+    facts = f"{size}, {names.counted(found['triangles'], 'triangle')}"
     return "WARNING" if found["warnings"] else "INFO", "; ".join([facts, *found["warnings"]])
 
 
@@ -104,7 +104,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
         except ValueError as error:  # something that was put into the collection otherwise
             self.report({"WARNING"}, str(error))
             return {"FINISHED"}
-        self.report({"INFO"}, f"{settings.fixtures.name}: {len(held)} objects")
+        self.report({"INFO"}, f"{settings.fixtures.name}: {names.counted(len(held), 'object')}")
         return {"FINISHED"}
 
 

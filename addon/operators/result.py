@@ -80,8 +80,8 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
 
 def said_of(mesh):
     """What a mesh is beside the sculpt that it was made of."""
-    count = names.format_count(len(mesh.polygons))
-    return f"{count} triangles, at most {names.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
+    count = names.counted(len(mesh.polygons), "triangle")
+    return f"{count}, at most {names.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
 
 
 def _in_world(context, ob):

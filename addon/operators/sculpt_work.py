@@ -40,5 +40,6 @@ class SculptWork(LongWork):
     def mesh(self):
         return bpy.data.objects[self._object].data
 
-    def keep(self, content):
-        sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh))
+    def keep(self, content, unseen=""):
+        """`unseen`: as sculpts.commit's."""
+        sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh), unseen=unseen)

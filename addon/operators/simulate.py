@@ -41,8 +41,8 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
             return shared.fail(self, error)
         first, last = now.course.first, now.course.last
         timeline.show_range(context.scene, first, last)
-        count = names.format_count(len(setup.program.poses))
-        done = f"{setup.name}: {count} rows at frames {first} to {last}. Esc in the view ends it"
+        count = names.counted(len(setup.program.poses), "row")
+        done = f"{setup.name}: {count} at frames {first} to {last}. Esc in the view ends it"
         shared.tell_all(self, done, setup.notes)
         return {"FINISHED"}
 

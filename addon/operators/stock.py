@@ -76,18 +76,15 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         new, source, volume = self._new, self._from(), job.result
         if new.found is not None:
             self._check(source, volume)
-        ob = sculpts.new_object(context, new.name, Content(volume), new.frame)
+        unseen = estimate.too_thin(new.source[0] if new.source else "the stock", volume.pitch)
+        ob = sculpts.new_object(context, new.name, Content(volume), new.frame, unseen=unseen)
         if source is not None:
             if sculpts.is_sculpt(source):
                 sculpts.take_looks(ob, source)
             source.hide_set(True)
-        if not len(ob.data.polygons):
-            thin = {}
-            volume.to_mesh(report=thin)
-            self.report({"WARNING"}, f"{ob.name}: {thin['lost_note']}")
         size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
-        triangles = names.format_count(len(ob.data.polygons))
-        self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles} triangles")
+        triangles = names.counted(len(ob.data.polygons), "triangle")
+        self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles}")
         return {"FINISHED"}
 
     def _from(self):
@@ -100,8 +97,8 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
             why = found.get("lost_note") or "it has no volume at this pitch: close it, or take a finer one"
             raise ValueError(f"{source.name}: {why}")
         if found.get("open_edges"):
-            count = names.format_count(found["open_edges"])
-            self.report({"WARNING"}, f"{source.name} is not closed: {count} open edges were closed as well as could be")
+            count = names.counted(found["open_edges"], "open edge")
+            self.report({"WARNING"}, f"{source.name} is not closed: {count} closed as well as could be")
         for note in notes_on(found):
             self.report({"WARNING"}, f"{source.name}: {note}")
 
@@ -110,7 +107,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         size = np.array([names.clean(s) for s in self.size])
         lower = {"CORNER": 0 * size, "TOP": -size * (0.5, 0.5, 1.0), "CENTRE": -0.5 * size}[self.origin]
         pitch = names.clean(self.pitch)
-        estimate.check_surface("The block", size, estimate.box_area(size), pitch)
+        estimate.check_block(size, pitch)
         volume = riffler.Volume.block(lower, lower + size, pitch, self.directions)
         return _New("Stock", _at_cursor(context)), DoneJob(volume)
 

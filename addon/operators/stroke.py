@@ -223,8 +223,8 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
 
 def summary(made, mode):
     what = {"REMOVE": "removed", "ADD": "put on", "MASK": "protected", "UNMASK": "unprotected"}.get(mode, "changed")
-    lifted = f", {units.format_count(made.lifted)} moves lifted over fixtures" if made.lifted else ""
-    return f"{units.format_volume(made.removed)} {what} in {units.format_count(made.moves)} moves{lifted}"
+    lifted = f", {units.counted(made.lifted, 'move')} lifted over fixtures" if made.lifted else ""
+    return f"{units.format_volume(made.removed)} {what} in {units.counted(made.moves, 'move')}{lifted}"
 
 
 def nothing(made, mode):

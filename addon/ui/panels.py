@@ -54,7 +54,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             f"Size: {names.format_size(size)}",
             f"Pitch: {names.trim(p.pitch, 4)} mm, {rays}",
             f"Material: {names.format_volume(facts.material)}",
-            f"Cuts: {facts.cuts} ({names.format_count(facts.moves)} moves)",
+            f"Cuts: {facts.cuts} ({names.counted(facts.moves, 'move')})",
             f"Memory: {names.format_bytes(facts.nbytes)}",
         )
 
@@ -104,7 +104,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
             rays = estimate.ray_count(size, names.clean(settings.pitch), settings.directions)
             about = names.format_bytes(rays * estimate.BYTES_PER_RAY)
             many = rays > estimate.MANY_RAYS
-            layout.label(text=f"{names.format_count(rays)} rays, about {about}", icon="ERROR" if many else "NONE")
+            layout.label(text=f"{names.counted(rays, 'ray')}, about {about}", icon="ERROR" if many else "NONE")
         self._button(layout, settings)
         unit = units.mm_per_unit(context.scene)
         if unit != 1:
