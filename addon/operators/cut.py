@@ -11,8 +11,9 @@ from bpy_extras.io_utils import ImportHelper
 from .. import properties
 from ..bl import refusals, sculpts
 from ..bl.curves import deformed
-from ..core import units
+from ..core import reach, units
 from ..core.job import Cut, CutJob
+from ..translations import local
 from . import paths, shared
 from .files import FileWork
 from .sculpt_work import SculptWork
@@ -44,9 +45,18 @@ class CutShell(shared.TakesTool, SculptWork):
         seconds = time.perf_counter() - self._begin
         changed, adds = units.format_volume(job.removed), {cut.mode == "add" for cut in job.cuts}
         done = {(False,): "Removed", (True,): "Put on"}.get(tuple(adds), "Removed and put on")
+        if any(_cut_off(cut, job.volume) for cut in job.cuts):
+            self.report({"WARNING"}, local(reach.CUT_OFF))
         level = {"INFO"} if job.removed > 0 else {"WARNING"}
         self.report(level, f"{done} {changed} in {units.counted(job.total, 'move')}, {seconds:.2f} s")
         return {"FINISHED"}
+
+
+def _cut_off(cut, volume):
+    """True where a cut put material on that the box cut off."""
+    if cut.mode != "add":
+        return False
+    return reach.is_cut_off(reach.outline_of(riffler.Tool.from_dict(cut.tool)), cut.poses, volume)
 
 
 class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator):

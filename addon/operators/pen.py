@@ -11,7 +11,7 @@ import riffler
 
 from .. import properties
 from ..bl import chosen, events, fixtures, pen_session, sculpts, states
-from ..core import brush, problems
+from ..core import brush, problems, reach
 from ..core import units as names
 from ..drawing import force, pace
 from ..translations import local
@@ -283,6 +283,8 @@ def _said(operator, session):
     note = f"; {session.problem}" if session.problem else ""
     changed = names.format_volume(session.changed)
     text = f"{done.capitalize()} {changed} in {_strokes(session)}, {session.seconds:.1f} s{note}"
+    if session.live.cut_off:
+        operator.report({"WARNING"}, local(reach.CUT_OFF))
     operator.report({"WARNING"} if session.problem else {"INFO"}, text)
     return {"FINISHED"}
 

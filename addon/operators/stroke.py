@@ -9,7 +9,7 @@ import bpy
 import riffler
 
 from ..bl import fixtures, live, sculpts
-from ..core import brush, units
+from ..core import brush, reach, units
 from ..core.stroke import Sample
 from ..drawing import force, pace, pointer
 from ..translations import local
@@ -187,6 +187,8 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             self._undone()
             return shared.fail(self, error)
         if changed:
+            if self._run.cut_off:
+                self.report({"WARNING"}, local(reach.CUT_OFF))
             return {"FINISHED"}
         self._undone()
         self.report({"INFO"}, nothing(self._brush, self.mode))
