@@ -35,8 +35,6 @@ class Chunks:
     the next undo."""
 
     def __init__(self, context, ob, shape, mm_per_unit):
-        if ob.name not in context.view_layer.objects:
-            raise ValueError(f"{ob.name} is in no collection of this view layer: enable its collection in the Outliner")
         self._take(ob, shape, mm_per_unit)
         collection = _new_collection(context, ob)
         self._before = _before(collection)

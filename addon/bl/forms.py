@@ -5,7 +5,7 @@ import numpy as np
 from riffler import shape, tasks
 
 from ..core import curves as core_curves
-from . import curves, parts, sculpts
+from . import curves, parts, refusals, sculpts
 
 
 def task_of(mesh, volume):
@@ -78,6 +78,8 @@ def chosen(context, name, kinds, what):
         if len(others) != 1:
             raise ValueError(f"select {what} as well as the sculpt, or name it")
         ob = others[0]
+    if why := refusals.disabled(ob, context.view_layer):
+        raise ValueError(why)
     if ob.type not in kinds:
         raise ValueError(f"{ob.name} is a {ob.type.lower()}: choose {what}")
     return ob

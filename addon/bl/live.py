@@ -6,7 +6,7 @@ import bpy
 
 from ..core.cache import Content
 from ..core.problems import said
-from . import chunks, events, keeping, leaving, sculpts, states, store
+from . import chunks, events, keeping, leaving, refusals, sculpts, states, store
 from .states import snapshots
 from .working import Live, lives
 
@@ -28,6 +28,7 @@ def content(ob):
 
 def begin(context, ob):
     """The Live of that sculpt, made where there is none. One of shared.ERRORS where it cannot be."""
+    refusals.refuse(context, ob)
     live = of(ob)
     if live is not None:
         return live

@@ -5,9 +5,7 @@ import riffler
 
 from ..core import poses
 from ..properties.plan import WITH_SURFACE
-from . import meshes, units
-
-SHEAR = 1e-4  # cosine between two axes of an object that are to be square to each other
+from . import meshes, refusals, units
 
 
 def surface(ob, depsgraph, to_mm):
@@ -30,11 +28,12 @@ def in_world(context, ob):
     """The object as it lies in the scene. ValueError with the remedy where it cannot be a part."""
     if why := unfit(ob, context.scene):
         raise ValueError(why)
-    if not _evaluated(ob, context.view_layer.layer_collection):
-        raise ValueError(f"{ob.name} is disabled in viewports or in this view layer: enable it in the Outliner")
+    if why := refusals.disabled(ob, context.view_layer):
+        raise ValueError(why)
     depsgraph = context.evaluated_depsgraph_get()
     matrix = meshes.matrix(ob.evaluated_get(depsgraph).matrix_world)
-    refuse_sheared(ob, matrix)
+    if why := refusals.flat(ob, matrix) or refusals.sheared(ob, matrix):
+        raise ValueError(why)
     matrix[:3] *= units.mm_per_unit(context.scene)
     return surface(ob, depsgraph, matrix)
 
@@ -43,8 +42,10 @@ def unfit(ob, scene):
     """Why the object can be neither part nor fixture, or nothing; cheap enough for a poll."""
     if ob is None:
         return "There is no part: select one and use Set Part"
-    if scene.objects.get(ob.name) != ob:
+    if scene not in ob.users_scene:  # by its name one of another file may be meant
         return f"{ob.name} was deleted from this scene: set another part"
+    if why := refusals.instance(ob):
+        return why
     if ob.type not in WITH_SURFACE:
         return f"{ob.name} has no surface: take a mesh, curve, text, surface or metaball"
     if ob.mode != "OBJECT":
@@ -52,52 +53,11 @@ def unfit(ob, scene):
     return ""
 
 
-def _evaluated(ob, layer):
-    """True where the object has its modifiers and stands where it should: hidden ones do, disabled ones do not, but
-    where something points to them they say that they are."""
-    if ob.hide_viewport or layer.exclude or layer.collection.hide_viewport:
-        return False
-    return layer.collection.objects.get(ob.name) == ob or any(_evaluated(ob, child) for child in layer.children)
-
-
-def sheared(matrix):
-    """True where the axes are not square to each other."""
-    axes = matrix[:3, :3]
-    size = np.linalg.norm(axes, axis=0)
-    if not size.all():
-        return False  # flat: it has no volume, which is another matter
-    between = (axes / size).T @ (axes / size)
-    return bool(np.abs(between - np.eye(3)).max() > SHEAR)
-
-
-def refuse_sheared(ob, matrix=None):
-    """ValueError with the remedy where its axes are not square to each other; `matrix`: of the world, if not its own.
-    Blender drops the shear of whatever is put at the same place, so that would not be at the same place."""
-    if sheared(meshes.matrix(ob.matrix_world) if matrix is None else matrix):
-        raise ValueError(f"{ob.name} is sheared: {_unshear(ob)}")
-
-
-def _unshear(ob):
-    if ob.parent is None:
-        return "use Object > Apply > Visual Transform, or take away the constraint that does it"
-    above = ob.parent
-    while above.parent is not None:
-        above = above.parent
-    return f"select {above.name}, which it hangs on, and use Object > Apply > Scale"
-
-
-def instance(ob):
-    """Why an object that stands for a collection, as one that was linked does, can be no fixture, or nothing."""
-    if ob.instance_type != "COLLECTION" or ob.instance_collection is None:
-        return ""
-    return f"{ob.name} is an instance of {ob.instance_collection.name}: use Object > Apply > Make Instances Real"
-
-
 def fixtures(settings, part):
     """The objects of the fixtures' collection that have a surface, but the part. ValueError where there is one whose
     surface would be passed over."""
     if settings.fixtures is None:
         return []
-    if why := next(filter(None, map(instance, settings.fixtures.all_objects)), ""):
+    if why := next(filter(None, map(refusals.instance, settings.fixtures.all_objects)), ""):
         raise ValueError(f"{why}, or take it out of the fixtures")
     return [ob for ob in settings.fixtures.all_objects if ob.type in WITH_SURFACE and ob != part]

@@ -38,6 +38,7 @@ class PenSession:
         self.live = None
         try:
             self.live = live.begin(context, ob)
+            self.live.cut_off = False
             self._take_up()
             self.live.chunks.show_tool(pen.solid(tool.outline(0.02 * tool.diameter)))
         except BaseException:

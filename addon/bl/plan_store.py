@@ -11,7 +11,7 @@ import riffler
 
 from ..core import record
 from ..core.cache import ContentCache
-from . import packed, sculpts
+from . import packed, refusals, sculpts
 
 RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
 
@@ -127,10 +127,8 @@ def unresolved(plan):
 
 def write(ob, plan):
     """Makes `plan` the object's content. It must not be changed after it."""
-    if ob.library:
-        raise ValueError(f"{ob.name} is linked from another file: make it local first")
-    if ob.override_library:  # the file would have the library's plan again
-        raise ValueError(f"{ob.name} overrides a plan of another file, which keeps no edits: make it local first")
+    if why := refusals.linked(ob):  # the file would have the library's plan again
+        raise ValueError(why)
     _write(ob, plan, riffler.plan.dumps(plan, texts(ob)))
 
 

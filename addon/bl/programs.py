@@ -12,7 +12,7 @@ import riffler
 
 from ..core import course, json_object, problems
 from ..core import units as names
-from . import live, plan_fit, plan_states, plan_store, replan, sculpts, surroundings, timeline, units
+from . import live, plan_fit, plan_states, plan_store, refusals, replan, sculpts, surroundings, timeline, units
 
 
 # ------------------------------------------------------------------ of a plan
@@ -116,7 +116,7 @@ def not_in_cuts(content):
     masked = sum(cut.mode == "remove" and cut.masked for cut in content.cuts)
     said = []
     if added:
-        said.append(f"No machine can put material on: left out {added} stroke{'s' * (added > 1)} that did")
+        said.append(f"No machine can put material on: left out {names.counted(added, 'stroke')} that did")
     if masked:
         said.append(f"Cuts made beside a mask: {masked}. They cut what it protected, too")
     if content.shaped:
@@ -169,32 +169,46 @@ def stock_object(context):
     return sculpts.active(context)
 
 
+def no_stock(context):
+    """Why there is none, with the step that helps."""
+    instance = refusals.instance(context.object) if context.object is not None else ""
+    return instance or "There is no stock: select a sculpt, or make one that the part lies in"
+
+
 def take(context, wanted):
     """The Setup that `wanted` (properties.ProgramSettings) asks for. ValueError, OSError where it cannot be."""
     live.end_all()
     ob = stock_object(context)
     if ob is None:
-        raise ValueError("There is no stock: select a sculpt, or make one that the part lies in")
+        raise ValueError(no_stock(context))
     if wanted.source == "CUTS":
-        return _cuts(context, ob)
+        return _noted(_cuts(context, ob), ob)
     content = live.content(ob)
     found = _plan(context) if wanted.source == "PLAN" else _file(context, wanted)
     in_stock = wanted.source == "FILE" and wanted.frame == "STOCK"
-    to_world = _rigid(ob, context.scene)
+    to_world = _rigid(context, ob)
     if not in_stock:
         found.program = found.program.transformed(np.linalg.inv(to_world))
     if not (in_stock or np.allclose(to_world, np.eye(4), rtol=0, atol=1e-6)):
         found.machine = ""  # the axes of the machine are not those of the stock
     found.stock, found.sculpt, found.to_world = content.volume.copy(), ob.name, to_world
-    return found
+    return _noted(found, ob)
 
 
-def _rigid(ob, scene):
-    """The stock's frame in the scene, as a turn and a shift."""
-    matrix = sculpts.to_world_mm(ob, scene)
+def _noted(setup, ob):
+    setup.notes = tuple(filter(None, (*setup.notes, refusals.modified(ob))))
+    return setup
+
+
+def _rigid(context, ob):
+    """The stock's frame in the scene, as a turn and a shift: programs are in millimetres."""
+    refusals.refuse(context, ob)
+    if why := refusals.scaled(ob):
+        raise ValueError(why)
+    matrix = sculpts.to_world_mm(ob, context.scene)
     u, size, v = np.linalg.svd(matrix[:3, :3])
-    if np.abs(size - 1).max() > 1e-4 or np.linalg.det(matrix[:3, :3]) < 0:
-        raise ValueError(f"{ob.name} is scaled or mirrored: take that back (Alt S), as the program is in millimetres")
+    if np.abs(size - 1).max() > 1e-4:
+        raise ValueError(f"{ob.name} is shown in other units than the scene's: use Rebuild Mesh first")
     matrix[:3, :3] = u @ v
     return matrix
 
@@ -209,7 +223,7 @@ def _cuts(context, ob):
     program = of_cuts(ob.name, cuts, v, units.clean(settings.feed), units.clean(settings.spindle))
     out = _new(f"{ob.name}'s cuts", program, _timed(context.scene, program))
     out.stock = riffler.Volume.block(v.lower, v.upper, v.pitch, v.directions)
-    out.sculpt, out.to_world, out.notes = ob.name, _rigid(ob, context.scene), tuple(not_in_cuts(content))
+    out.sculpt, out.to_world, out.notes = ob.name, _rigid(context, ob), tuple(not_in_cuts(content))
     return out
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from . import attributes, masks, meshes, store, units
+from . import attributes, masks, meshes, refusals, store, units
 
 
 def is_sculpt(ob):
@@ -40,12 +40,12 @@ def key_of(ob):
     return ob.name, ob.library.filepath if ob.library else None
 
 
-def new_object(context, name, content, matrix, mm_per_unit=None, collections=()):
+def new_object(context, name, content, matrix, mm_per_unit=None, collections=(), unseen=""):
     """A new sculpt at `matrix` (world), active and the only one selected, in these collections, or in the active one.
-    `mm_per_unit`: None for the scene's."""
+    `mm_per_unit`: None for the scene's; `unseen`: as `commit`'s."""
     mesh = bpy.data.meshes.new(name)
     try:
-        commit(mesh, content, mm_per_unit or units.mm_per_unit(context.scene))
+        commit(mesh, content, mm_per_unit or units.mm_per_unit(context.scene), unseen=unseen)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
@@ -79,10 +79,13 @@ def take_looks(ob, other):
         ob.data.materials.append(material)
 
 
-def commit(mesh, content, mm_per_unit, token=""):
-    """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles."""
+def commit(mesh, content, mm_per_unit, token="", unseen=""):
+    """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles. `unseen`:
+    what to say where there would be none; without it the mesh may be empty."""
     _must_be_fillable(mesh)
     surface = content.volume.to_mesh(report={})  # whatever can fail comes before the first change
+    if unseen and not len(surface.triangles):
+        raise ValueError(unseen)
     store.write(mesh, content, token)
     _show_whole(mesh, content, surface, mm_per_unit)
     return len(surface.triangles)
@@ -189,11 +192,6 @@ def changed(mesh):
     return edited(mesh) or mesh.riffler.shown_crc not in ("", _checksum(mesh))
 
 
-def modified(ob):
-    """True where a modifier is seen, which the volume knows nothing of."""
-    return any(modifier.show_viewport for modifier in ob.modifiers)
-
-
 def _checksum(mesh):
     return f"{zlib.crc32(meshes.coordinates(mesh)):08x}"
 
@@ -219,21 +217,11 @@ def to_world_mm(ob, scene):
     return m
 
 
-def distorted(ob):
-    """Why tools are not in the world what they are in the sculpt's frame, with the remedy; or nothing."""
-    axes = meshes.matrix(ob.matrix_world)[:3, :3]
-    if np.allclose(axes.T @ axes, np.eye(3), rtol=0, atol=1e-4):
-        return ""
-    scaled = "use Object > Clear > Scale" if ob.parent is None else "clear the scale of what it hangs on"
-    return f"{ob.name} is scaled or sheared: tools are sized in its own millimetres. To have them true, {scaled}"
-
-
 def from_world(ob):
     """(4, 4): Blender units in the world → millimetres in the sculpt's frame. ValueError where it has none."""
-    world = meshes.matrix(ob.matrix_world)
-    if np.linalg.matrix_rank(world[:3, :3]) < 3:
-        raise ValueError(f"{ob.name} is scaled to nothing along an axis: use Object > Clear > Scale")
-    m = np.linalg.inv(world)
+    if why := refusals.flat(ob):
+        raise ValueError(why)
+    m = np.linalg.inv(meshes.matrix(ob.matrix_world))
     m[:3] *= shown_mm_per_unit(ob.data)
     return m
 

@@ -17,12 +17,12 @@ import bpy
 import numpy as np
 import riffler
 
-from ..core import blocks, symmetry
+from ..core import blocks, reach, symmetry
 from ..core.cache import Content
 from ..core.job import cuts_of
 from ..core.poses import moving
 from ..core.stages import Stages
-from . import chunks, keeping, leaving, parts, sculpts, store, versions
+from . import chunks, keeping, leaving, refusals, sculpts, store, versions
 from .states import SPARE, State, snapshots, state_of
 
 lives = {}  # by the mark of the object (sculpts.new_mark); bl/live.py keeps it
@@ -32,9 +32,8 @@ class Live:
     """Of the sculpt `ob`. ValueError, MemoryError where it cannot be; then nothing has changed."""
 
     def __init__(self, context, ob):
-        if ob.library or ob.data.library:
-            raise ValueError(f"{ob.name} is linked from another file: make it local first")
-        parts.refuse_sheared(ob)
+        if why := refusals.linked(ob, ob.data):
+            raise ValueError(why)
         content = store.content(ob.data)
         sculpts.new_mark(ob)
         self._take(ob, content)
@@ -76,6 +75,8 @@ class Live:
         self._apart = set()  # copies whose last moves were kept out
         self.awake, self._away = True, leaving.Away()
         self._strokes, self._begin = [], None  # of the stroke that is being made
+        self.cut_off = False  # whether the box has cut off what this stroke, or this session, put on
+        self._outline = None, None  # a tool, and its cutter's
         self._masked, self._painted = [], []  # where the mask has changed since the last look, and in this stroke
         self._reached, self._swept = [], []  # what tools have swept since the last look, and in this stroke
         self.token = ""
@@ -131,7 +132,7 @@ class Live:
         ob = self.object
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
-        self._strokes, self._painted, self._swept = [], [], []
+        self._strokes, self._painted, self._swept, self.cut_off = [], [], [], False
         self._apart.clear()
         self._begin = self.volume.copy(), _copy(self.mask)
         self._next = uuid.uuid4().hex  # the token of the state that the stroke makes
@@ -157,6 +158,8 @@ class Live:
 
     def took(self, tool, rows, mode):
         """The poses, (n, 6), of a stroke with `tool`, a dictionary, that a device has made."""
+        if mode == "add":
+            self._reach_out(riffler.Tool.from_dict(tool), rows)
         self._strokes.append((0, tool, mode, [rows]))
 
     def carve(self, tool, poses, dt=None, mode="remove", new=True):
@@ -180,12 +183,19 @@ class Live:
                 if copy is None:
                     continue
                 cut = self._cut(tool, copy, dt if k == 0 else None, mode)
+                if mode == "add":
+                    self._reach_out(tool, copy)
                 first = first or cut
                 self.keeping.carved(tool.to_dict(), copy, mode, self._next, self.strength)
                 self._note(tool, copy, mode, new or k in self._apart, k)
                 self._apart.discard(k)
         self.stages.count(moves=max(len(poses) - 1, 0))
         return first
+
+    def _reach_out(self, tool, poses):
+        if self._outline[0] is not tool:
+            self._outline = tool, reach.outline_of(tool)
+        self.cut_off |= reach.is_cut_off(self._outline[1], poses, self.volume)
 
     def _kept_out(self, k, poses):
         """A copy's poses, clear of the fixtures; None where nothing of it is. The first is no copy: it is clear."""
@@ -235,8 +245,8 @@ class Live:
         """Meshes what has changed since the last time, and fills the chunks that it is in."""
         with self.stages.of("mesh"):
             bricks = self.mesher.update(self.volume)
-        for reach in self._masked:  # the surface is the same there, but not its colour
-            bricks = sorted({*bricks, *blocks.within(self._mesher.shape, *reach)})
+        for rays in self._masked:  # the surface is the same there, but not its colour
+            bricks = sorted({*bricks, *blocks.within(self._mesher.shape, *rays)})
         bricks = self._with_borders(bricks)
         self._masked, self._reached = [], []
         with self.stages.of("transfer"):

@@ -27,6 +27,24 @@ def check_surface(name: str, size, area: float, pitch: float, remedy: str = "tak
         )
 
 
+def check_block(size, pitch: float) -> None:
+    """ValueError naming the field where a block of `size` (mm) at `pitch` (mm) is none, or too large to be shown."""
+    for axis, side in zip("xyz", size, strict=True):
+        if not (math.isfinite(side) and side > 0):
+            raise ValueError(f"Size along {axis} must be a positive length in mm, not {side:g}")
+        if side < pitch:
+            raise ValueError(
+                f"Size along {axis} is {side:g} mm, less than the pitch of {pitch:g} mm: make it larger, or take a "
+                "finer pitch"
+            )
+    check_surface("The block", size, box_area(size), pitch)
+
+
+def too_thin(name: str, pitch: float) -> str:
+    """What is said of a sculpt that would have material, and nothing to be seen."""
+    return f"Nothing of {name} is thick enough for a pitch of {pitch:g} mm: take a finer one"
+
+
 def shown_area(triangles: int, pitch: float) -> float:
     """mm² of a surface that has so many triangles at `pitch`, as `check_surface` counts them."""
     return 0.5 * triangles * pitch**2

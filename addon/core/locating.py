@@ -58,7 +58,7 @@ def _entry(path, kind, point, place, what):
 
 
 def _rows(count):
-    return "1 row" if count == 1 else f"{units.format_count(count)} rows"
+    return units.counted(count, "row")
 
 
 def _mm(value):

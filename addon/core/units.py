@@ -33,9 +33,14 @@ def format_count(n: int) -> str:
     return f"{int(n):,}".replace(",", "\u00a0")
 
 
+def counted(n: int, one: str) -> str:
+    """ "1 move", "12 345 moves"."""
+    return f"{format_count(n)} {one}{'' if n == 1 else 's'}"
+
+
 def format_bytes(n: float) -> str:
-    for unit in ("bytes", "KB", "MB", "GB"):
-        if n < 1000 or unit == "GB":
+    for unit in ("bytes", "KB", "MB", "GB", "TB"):
+        if n < 999.5 or unit == "TB":
             break
         n /= 1000
     return f"{n:.0f} {unit}" if unit == "bytes" or n >= 100 else f"{n:.1f} {unit}"

@@ -10,7 +10,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import properties
-from ..bl import chunks, live, meshes, sculpts
+from ..bl import chunks, live, meshes, refusals, sculpts
 from ..core import fitting
 from ..core import units as names
 from ..core.stroke import Sample
@@ -163,12 +163,18 @@ def under(context, event):
 
 def unfit(context, ob):
     """Why that object cannot become a sculpt, with the remedy; otherwise nothing."""
-    if ob is None or ob.type not in properties.WITH_SURFACE:
+    if ob is None:
         return NOTHING
-    if ob.name not in context.view_layer.objects or not ob.visible_get():
-        return f"{ob.name} is not an object of this scene but an instance: use Object > Apply > Make Instances Real"
-    if sculpts.is_sculpt(ob) and (ob.library or ob.data.library):
-        return "The sculpt is linked from another file: make it local first"
+    if why := refusals.instance(ob):
+        return why
+    if ob.type not in properties.WITH_SURFACE:
+        return NOTHING
+    if ob.name not in context.view_layer.objects or not ob.visible_get():  # one that the pointer is on all the same
+        stands = (o for o in context.view_layer.objects if o.instance_collection is not None)
+        of = next((o for o in stands if ob.name in o.instance_collection.all_objects), None)
+        return refusals.instance(of) if of is not None else refusals.disabled(ob, context.view_layer) or NOTHING
+    if sculpts.is_sculpt(ob):
+        return refusals.linked(ob, ob.data)
     return ""
 
 

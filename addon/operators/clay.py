@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from riffler import tasks
 from riffler.mesh_notes import notes_on
 
-from ..bl import forms, masks, parts, sculpts, units
+from ..bl import forms, masks, sculpts, units
 from ..core import estimate
 from ..core import units as names
 from ..core.cache import Content
@@ -29,7 +29,7 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
     cancelled = "Pitch not changed: the sculpt is as it was"
 
     pitch: FloatProperty(
-        name="Pitch (mm)", default=0.25, min=1e-4, precision=3, description="Distance between rays from now on"
+        name="Pitch (mm)", default=0.25, min=1e-4, max=1e5, precision=3, description="Distance between rays from now on"
     )
     directions: EnumProperty(
         name="Rays", items=DIRECTIONS, default="KEEP", description="Along which axes they stand from now on"
@@ -45,10 +45,11 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
 
     def finish(self, context, job):
         before = self._before
-        self.keep(replace(before, volume=job.result, mask=masks.on_grid_of(job.result, before.mask)))
+        content = replace(before, volume=job.result, mask=masks.on_grid_of(job.result, before.mask))
+        self.keep(content, unseen=estimate.too_thin(self._object, job.result.pitch))
         context.scene.riffler.clay.pitch = job.result.pitch  # what the panel offers next
         off = job.result.volume - before.volume.volume
-        self.report({"INFO"}, f"{names.format_count(job.result.rays)} rays; material {_signed(off)}")
+        self.report({"INFO"}, f"{names.counted(job.result.rays, 'ray')}; material {_signed(off)}")
         return {"FINISHED"}
 
 
@@ -134,8 +135,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
     )
 
     def begin(self, context):
-        ob, self._before = self.take(context)
-        parts.refuse_sheared(ob)
+        _, self._before = self.take(context)
         return TaskJob(tasks.parts(self._before.volume, units.clean(self.least)))
 
     def finish(self, context, job):
@@ -160,7 +160,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
             bpy.data.batch_remove([*made, *(new.data for new in made)])
             sculpts.select_only(context, ob)
             raise
-        self.report({"INFO"}, f"{len(job.result)} parts")
+        self.report({"INFO"}, names.counted(len(job.result), "part"))
         return {"FINISHED"}
 
 
@@ -202,8 +202,8 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
             ob.modifiers.remove(modifier)
         open_edges, mended = self._report.get("open_edges", 0), notes_on(self._report)
         level = {"WARNING"} if open_edges or mended else {"INFO"}
-        note = f", {names.format_count(open_edges)} open edges were closed" if open_edges else ""
-        note += f"; {len(before.cuts)} cuts are not in the NC code any more" if before.cuts else ""
+        note = f", {names.counted(open_edges, 'open edge')} closed" if open_edges else ""
+        note += f"; no longer in the NC code: {names.counted(len(before.cuts), 'cut')}" if before.cuts else ""
         note += "".join(f"; {text}" for text in mended)
         self.report(level, f"{names.format_volume(volume.volume)} of material{note}")
         return {"FINISHED"}

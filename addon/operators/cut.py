@@ -9,10 +9,11 @@ import riffler
 from bpy_extras.io_utils import ImportHelper
 
 from .. import properties
-from ..bl import sculpts
+from ..bl import refusals, sculpts
 from ..bl.curves import deformed
-from ..core import units
+from ..core import reach, units
 from ..core.job import Cut, CutJob
+from ..translations import local
 from . import paths, shared
 from .files import FileWork
 from .sculpt_work import SculptWork
@@ -27,8 +28,6 @@ class CutShell(shared.TakesTool, SculptWork):
     def begin(self, context):
         self._begin = time.perf_counter()
         ob, self._before = self.take(context)
-        if why := sculpts.distorted(ob):
-            self.report({"WARNING"}, why)
         cuts = self.make_cuts(context, ob)
         return CutJob(self._before.volume.copy(), cuts, riffler.Tool.from_dict, self._before.mask)
 
@@ -46,9 +45,18 @@ class CutShell(shared.TakesTool, SculptWork):
         seconds = time.perf_counter() - self._begin
         changed, adds = units.format_volume(job.removed), {cut.mode == "add" for cut in job.cuts}
         done = {(False,): "Removed", (True,): "Put on"}.get(tuple(adds), "Removed and put on")
+        if any(_cut_off(cut, job.volume) for cut in job.cuts):
+            self.report({"WARNING"}, local(reach.CUT_OFF))
         level = {"INFO"} if job.removed > 0 else {"WARNING"}
-        self.report(level, f"{done} {changed} in {units.format_count(job.total)} moves, {seconds:.2f} s")
+        self.report(level, f"{done} {changed} in {units.counted(job.total, 'move')}, {seconds:.2f} s")
         return {"FINISHED"}
+
+
+def _cut_off(cut, volume):
+    """True where a cut put material on that the box cut off."""
+    if cut.mode != "add":
+        return False
+    return reach.is_cut_off(reach.outline_of(riffler.Tool.from_dict(cut.tool)), cut.poses, volume)
 
 
 class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator):
@@ -65,6 +73,8 @@ class RIFFLER_OT_cut_curve(CutShell, properties.CutSettings, bpy.types.Operator)
             raise ValueError(
                 f"there is no curve object {self.curve!r}" if self.curve else "choose a curve to cut along"
             )
+        if why := refusals.disabled(curve, context.view_layer):
+            raise ValueError(why)
         if deformed(curve):
             self.report(
                 {"WARNING"}, f"{curve.name}: modifiers and shape keys are not followed; convert it to a curve first"

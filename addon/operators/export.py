@@ -22,14 +22,16 @@ class Export(ExportHelper):
     @classmethod
     def poll(cls, context):
         if sculpts.active(context) is None:
-            return shared.deny(cls, "Select a sculpt first")
+            return shared.deny(cls, shared.no_sculpt(context))
         return True
 
     def execute(self, context):
         try:
             path = bpy.path.abspath(self.filepath)
             problems.check_target(path)
-            done = self.write(context, sculpts.active(context), path)
+            ob = sculpts.active(context)
+            shared.check_state(self, context, ob)
+            done = self.write(context, ob, path)
         except shared.ERRORS as error:
             return shared.fail(self, error)
         self.report({"INFO"}, f"{bpy.path.basename(path)}: {done}")
@@ -58,16 +60,16 @@ class ExportSurface(FileWork):
     @classmethod
     def poll(cls, context):
         if sculpts.active(context) is None:
-            return shared.deny(cls, "Select a sculpt first")
+            return shared.deny(cls, shared.no_sculpt(context))
         running = context.window_manager.riffler.running
         return not running or shared.deny(cls, f"{running}: Esc cancels")
 
     def begin(self, context):
         ob, path = sculpts.active(context), bpy.path.abspath(self.filepath)
         problems.check_target(path)
+        shared.check_state(self, context, ob)
         if live.of(ob) is None:
             shared.tell_edits(self, ob.data)
-        shared.tell_modifiers(self, ob)
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name
 
@@ -92,7 +94,7 @@ class ExportSurface(FileWork):
 
 def _said(surface):
     lower, upper = surface.bounds
-    return f"{names.format_count(len(surface.triangles))} triangles, {names.format_size(upper - lower)}"
+    return f"{names.counted(len(surface.triangles), 'triangle')}, {names.format_size(upper - lower)}"
 
 
 class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator, ExportHelper):
@@ -149,7 +151,7 @@ class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
         cuts = self.removing(ob, content)
         program = programs.of_cuts(ob.name, cuts, content.volume, feed, spindle)
         program.write(path, post=self.post)
-        return f"{len(cuts)} cuts, {names.format_count(len(program.poses))} moves"
+        return f"{names.counted(len(cuts), 'cut')}, {names.counted(len(program.poses), 'row')}"
 
 
 class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
@@ -165,7 +167,7 @@ class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
         content = live.content(ob)
         cuts = self.removing(ob, content)
         paths.to_recording(cuts, content.volume).write(path)
-        return f"{len(cuts)} strokes"
+        return names.counted(len(cuts), "stroke")
 
 
 CLASSES = (RIFFLER_OT_export_stl, RIFFLER_OT_export_3mf, RIFFLER_OT_export_nc, RIFFLER_OT_export_recording)

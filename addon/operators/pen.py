@@ -11,7 +11,7 @@ import riffler
 
 from .. import properties
 from ..bl import chosen, events, fixtures, pen_session, sculpts, states
-from ..core import brush, problems
+from ..core import brush, problems, reach
 from ..core import units as names
 from ..drawing import force, pace
 from ..translations import local
@@ -184,6 +184,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
             mode = mode_of(context, self.mode)
             if len(context.scene.riffler.sculpt.maps()) > 1:
                 self.report({"WARNING"}, local(NO_COPIES))
+            shared.check_state(self, context, ob)
             if not sculpts.behind(ob.data):
                 shared.refuse_edits(ob)
             depth = names.clean(context.scene.riffler.sculpt.depth)
@@ -241,7 +242,7 @@ def _tell(session):
 
 
 def _strokes(session):
-    return "1 stroke" if session.count == 1 else f"{session.count} strokes"
+    return names.counted(session.count, "stroke")
 
 
 def _status(text):
@@ -282,6 +283,8 @@ def _said(operator, session):
     note = f"; {session.problem}" if session.problem else ""
     changed = names.format_volume(session.changed)
     text = f"{done.capitalize()} {changed} in {_strokes(session)}, {session.seconds:.1f} s{note}"
+    if session.live.cut_off:
+        operator.report({"WARNING"}, local(reach.CUT_OFF))
     operator.report({"WARNING"} if session.problem else {"INFO"}, text)
     return {"FINISHED"}
 

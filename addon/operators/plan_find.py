@@ -92,7 +92,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         ob.riffler.plan.part = context.scene.objects[self._part]
         left = plan_curves.kept_note(plan_curves.show(ob, plan, self._mm))
         total = names.trim(sum(path.length for path in paths), 1)
-        found = f"{ob.name}: {names.format_count(len(paths))} path{'s' if len(paths) != 1 else ''}, {total} mm"
+        found = f"{ob.name}: {names.counted(len(paths), 'path')}, {total} mm"
         problems = []
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)

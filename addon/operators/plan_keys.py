@@ -9,6 +9,7 @@ from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntPrope
 from ..bl import plan_collisions, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
 from ..bl.turning import plan_object
 from ..core import keys, quaternions
+from ..core import units as names
 from ..core.job import AfterJob
 from . import shared
 from .plan_work import TimelineWork, plan_poll, tell, timeline_poll
@@ -247,9 +248,9 @@ class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
         now = plan_states.state(self.ob)
         now.near, now.clearances, now.job = self._near, self._known, None
         found = plan_collisions.show(context.scene, self.ob, job)
-        done = f"No collision at {job.computed} poses"
+        done = f"No collision at {names.counted(job.computed, 'pose')}"
         if found:
-            done = f"The tool collides at {sum(b - a + 1 for a, b in found)} frames, marked below"
+            done = f"The tool collides at {names.counted(sum(b - a + 1 for a, b in found), 'frame')}, marked below"
         shared.tell_all(self, done, self._notes, bool(found))
         return {"FINISHED"}
 

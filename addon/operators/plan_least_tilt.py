@@ -134,7 +134,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
 
     def _say(self, ob, without):
         done = len(self._paths) - len(without)
-        said = f"{names.format_count(done)} path{'s' * (done != 1)} keyed"
+        said = f"{names.counted(done, 'path')} keyed"
         if without:
             named = ", ".join(str(k + 1) for k in without[:NAMED]) + (" …" if len(without) > NAMED else "")
             ones = f"path{'s' * (len(without) > 1)} {named}"

@@ -65,7 +65,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
 
             return go
 
-        return ChainJob(*map(start, self._paths), text=f"{names.format_count(len(self._paths))} paths")
+        return ChainJob(*map(start, self._paths), text=names.counted(len(self._paths), "path"))
 
     def finish(self, context, job):
         ob, plan = self.ob, plan_store.plan(self.ob)
@@ -96,12 +96,13 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         return [said.format(names.trim(gap, 3), name) for gap, name in near]
 
     def _say(self, ob, blocked, left):
-        count, played = names.format_count(len(self._paths)), timeline.pair(ob) is not None
+        count, played = names.counted(len(self._paths), "path"), timeline.pair(ob) is not None
         notes = [*self._notes, *(plan_states.state(ob).problems if played else [])]
         if blocked:
-            done = f"{blocked} of {count} paths still collide: turn their keys, or delete them to leave a path out"
+            collide, their = ("collides", "its") if blocked == 1 else ("collide", "their")
+            done = f"{blocked} of {count} still {collide}: turn {their} keys, or delete them to leave a path out"
         else:
-            done = f"{count} path{'s are' if len(self._paths) > 1 else ' is'} free"
+            done = f"{count} {'are' if len(self._paths) > 1 else 'is'} free"
             done += f", but {left}" if left else ""
             done += f". {plan_states.state(ob).difference}" if played else ""
         shared.tell_all(self, done, notes, blocked > 0 or left != "")
@@ -167,7 +168,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
         return {"FINISHED"}
 
     def _tell(self, context, ob, path, written):
-        done = f"{bpy.path.basename(path)}: {names.format_count(written['blocks'])} blocks"
+        done = f"{bpy.path.basename(path)}: {names.counted(written['blocks'], 'block')}"
         plan = plan_store.plan(ob)
         said = (programs.left_out(plan), plan_fit.tool_note(context.scene.riffler.plan, plan.tool))
         notes = [note for note in said if note]

@@ -6,7 +6,7 @@ import riffler
 from bpy_extras.io_utils import ImportHelper
 
 from .. import properties
-from ..bl import libraries, live, parts
+from ..bl import libraries, live, parts, refusals
 from ..core import library
 from ..core import units as names
 from ..core.surroundings import check_fixture
@@ -25,7 +25,7 @@ def described(mesh):
     """What a part is worth before it is planned on: the level of the report, and its text."""
     found = riffler.plan.analyse(mesh)
     size = names.format_size(found["bounds"][1] - found["bounds"][0])
-    facts = f"{size}, {names.format_count(found['triangles'])} triangles"
+    facts = f"{size}, {names.counted(found['triangles'], 'triangle')}"
     return "WARNING" if found["warnings"] else "INFO", "; ".join([facts, *found["warnings"]])
 
 
@@ -78,7 +78,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
     def poll(cls, context):
         if not (shared.object_mode(cls, context) and _editable(cls, context.scene.riffler.plan.fixtures)):
             return False
-        if why := next(filter(None, map(parts.instance, context.selected_objects)), ""):
+        if why := next(filter(None, map(refusals.instance, context.selected_objects)), ""):
             return shared.deny(cls, f"{why} first")
         if not any(ob != context.scene.riffler.plan.part for ob in surfaces(context)):
             return shared.deny(cls, "Select the vise, the clamps: objects with a surface other than the part")
@@ -104,7 +104,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
         except ValueError as error:  # something that was put into the collection otherwise
             self.report({"WARNING"}, str(error))
             return {"FINISHED"}
-        self.report({"INFO"}, f"{settings.fixtures.name}: {len(held)} objects")
+        self.report({"INFO"}, f"{settings.fixtures.name}: {names.counted(len(held), 'object')}")
         return {"FINISHED"}
 
 

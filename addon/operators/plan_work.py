@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bl import parts, plan_states, plan_store, replan, surroundings, timeline
+from ..bl import parts, plan_states, plan_store, refusals, replan, surroundings, timeline
 from ..bl.turning import plan_object
 from . import shared
 from .long import LongWork
@@ -12,10 +12,8 @@ def plan_poll(cls, context):
     """True where there is a plan that can be changed; otherwise the button's tooltip says why not."""
     if plan_object(context) is None:
         return shared.deny(cls, "Select a plan first, or find paths on a part")
-    if plan_object(context).library:
-        return shared.deny(cls, "The plan is linked from another file: make it local first")
-    if plan_object(context).override_library:
-        return shared.deny(cls, "The plan overrides one of another file, which keeps no edits: make it local first")
+    if why := refusals.linked(plan_object(context)):
+        return shared.deny(cls, why)
     return not shared.busy(cls, context)
 
 

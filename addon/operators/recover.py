@@ -58,7 +58,7 @@ class RIFFLER_OT_recover(TakesJournal, long.LongWork, bpy.types.Operator):
         except BaseException:
             self._lock.release()
             raise
-        return TaskJob(task, f"{names.format_count(len(strokes.strokes))} strokes")
+        return TaskJob(task, names.counted(len(strokes.strokes), "stroke"))
 
     def cancel(self, context):
         super().cancel(context)

@@ -6,7 +6,7 @@ from bpy.props import FloatProperty, StringProperty
 from riffler import tasks
 
 from .. import properties
-from ..bl import attributes, live, meshes, parts, sculpts, units
+from ..bl import attributes, live, meshes, parts, refusals, sculpts, units
 from ..core import units as names
 from ..core.job import ChainJob, TaskJob
 from . import shared
@@ -24,9 +24,7 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
     leaves_mesh = True
 
     def begin(self, context):
-        ob, content = self.take(context)
-        parts.refuse_sheared(ob)
-        shared.tell_modifiers(self, ob)
+        _, content = self.take(context)
         iterations, tolerance = self.iterations, units.clean(self.tolerance)
 
         def first(_):
@@ -82,12 +80,14 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
 
 def said_of(mesh):
     """What a mesh is beside the sculpt that it was made of."""
-    count = names.format_count(len(mesh.polygons))
-    return f"{count} triangles, at most {names.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
+    count = names.counted(len(mesh.polygons), "triangle")
+    return f"{count}, at most {names.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
 
 
 def _in_world(context, ob):
-    """In mm of the scene, vertex by vertex that of the evaluated mesh."""
+    """In mm of the scene, vertex by vertex that of the evaluated mesh. ValueError where that is not known."""
+    if why := refusals.disabled(ob, context.view_layer):
+        raise ValueError(why)
     matrix = meshes.matrix(ob.matrix_world)
     matrix[:3] *= units.mm_per_unit(context.scene)
     return parts.surface(ob, context.evaluated_depsgraph_get(), matrix)
@@ -115,8 +115,8 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
     def poll(cls, context):
         if context.object is None or context.object.type != "MESH":
             return shared.deny(cls, "Select the mesh or the sculpt that is to be coloured")
-        if context.object.data.library:
-            return shared.deny(cls, f"{context.object.name} is linked from another file: make it local first")
+        if why := refusals.linked(context.object, context.object.data):
+            return shared.deny(cls, why)
         return shared.object_mode(cls, context) and not shared.busy(cls, context)
 
     def begin(self, context):
@@ -167,8 +167,8 @@ class RIFFLER_OT_hide_deviation(bpy.types.Operator):
         ob = context.object
         if ob is None or ob.type != "MESH" or attributes.SCALE not in ob.data:
             return shared.deny(cls, "The active object shows no deviation")
-        if ob.data.library:
-            return shared.deny(cls, f"{ob.name} is linked from another file: make it local first")
+        if why := refusals.linked(ob, ob.data):
+            return shared.deny(cls, why)
         return True
 
     def execute(self, context):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..bl import live, sculpts, store
+from ..bl import live, refusals, sculpts, store
 from . import shared
 from .long import LongWork
 
@@ -22,10 +22,11 @@ class SculptWork(LongWork):
         """(object, content) of the active sculpt; the content must not be changed."""
         live.end_all()
         ob = sculpts.active(context)
-        if self.leaves_mesh:
-            shared.tell_edits(self, ob.data)
-        elif not self.from_edits:
-            shared.refuse_edits(ob)
+        if self.from_edits:
+            refusals.refuse(context, ob)
+        else:
+            shared.check_state(self, context, ob)
+            shared.tell_edits(self, ob.data) if self.leaves_mesh else shared.refuse_edits(ob)
         self._object, self._identity = ob.name, store.identity(ob.data)
         return ob, store.content(ob.data)
 
@@ -39,5 +40,6 @@ class SculptWork(LongWork):
     def mesh(self):
         return bpy.data.objects[self._object].data
 
-    def keep(self, content):
-        sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh))
+    def keep(self, content, unseen=""):
+        """`unseen`: as sculpts.commit's."""
+        sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh), unseen=unseen)

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from riffler.mesh_notes import notes_on
 
-from ..bl import sculpts
+from ..bl import refusals, sculpts
 from ..core import json_object, units
 from ..core.problems import said
 from ..translations import local
@@ -47,14 +47,18 @@ def sculpt_poll(cls, context):
     """True where the active object is a sculpt that can be changed; otherwise the button's tooltip says why not."""
     ob = sculpts.active(context)
     if ob is None:
-        return deny(cls, "Select a sculpt first, or make a new stock")
+        return deny(cls, no_sculpt(context))
     if not object_mode(cls, context):
         return False
-    if ob.override_library or ob.data.override_library:
-        return deny(cls, "The sculpt overrides one of another file, which keeps no edits: make it local first")
-    if ob.library or ob.data.library:
-        return deny(cls, "The sculpt is linked from another file: make it local first")
+    if why := refusals.linked(ob, ob.data):
+        return deny(cls, why)
     return not busy(cls, context)
+
+
+def no_sculpt(context):
+    """Why the active object is none, with the step that helps."""
+    ob = context.object
+    return (refusals.instance(ob) if ob is not None else "") or "Select a sculpt first, or make a new stock"
 
 
 def object_mode(cls, context):
@@ -87,13 +91,12 @@ def tell_edits(operator, mesh):
         operator.report({"WARNING"}, local(EDITS_LEFT_OUT))
 
 
-def tell_modifiers(operator, ob):
-    """A warning where what is seen is not what is made, which comes from the volume."""
-    if sculpts.modified(ob):
-        operator.report(
-            {"WARNING"},
-            f"{ob.name} has modifiers: what is made is the volume, without them. Take Edits takes them over first",
-        )
+def check_state(operator, context, ob):
+    """ValueError where a sculpt cannot be worked with; a warning where what is seen is not its volume, as it is scaled,
+    mirrored or modified."""
+    refusals.refuse(context, ob)
+    for why in filter(None, (refusals.scaled(ob), refusals.modified(ob))):
+        operator.report({"WARNING"}, why)
 
 
 def tell_turned(operator, name, mesh):
@@ -107,8 +110,8 @@ def tell_turned(operator, name, mesh):
 def tell_made(operator, ob):
     """The size of a new sculpt's box, and what its mesh has."""
     size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
-    triangles = units.format_count(len(ob.data.polygons))
-    operator.report({"INFO"}, f"{ob.name}: {units.format_size(size)}, {triangles} triangles")
+    triangles = units.counted(len(ob.data.polygons), "triangle")
+    operator.report({"INFO"}, f"{ob.name}: {units.format_size(size)}, {triangles}")
 
 
 def tell_all(operator, done, notes, wrong=False):

@@ -13,7 +13,7 @@ def program_poll(cls, context):
     if not shared.object_mode(cls, context):
         return False
     if programs.stock_object(context) is None:
-        return shared.deny(cls, "There is no stock: select a sculpt, or make one that the part lies in")
+        return shared.deny(cls, programs.no_stock(context))
     return True
 
 
@@ -41,8 +41,8 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
             return shared.fail(self, error)
         first, last = now.course.first, now.course.last
         timeline.show_range(context.scene, first, last)
-        count = names.format_count(len(setup.program.poses))
-        done = f"{setup.name}: {count} rows at frames {first} to {last}. Esc in the view ends it"
+        count = names.counted(len(setup.program.poses), "row")
+        done = f"{setup.name}: {count} at frames {first} to {last}. Esc in the view ends it"
         shared.tell_all(self, done, setup.notes)
         return {"FINISHED"}
 

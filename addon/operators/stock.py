@@ -10,7 +10,7 @@ from riffler import tasks
 from riffler.mesh_notes import notes_on
 
 from .. import properties
-from ..bl import live, meshes, parts, sculpts, store, units
+from ..bl import live, meshes, parts, refusals, sculpts, store, units
 from ..core import estimate, fitting
 from ..core import units as names
 from ..core.cache import Content
@@ -76,19 +76,17 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         new, source, volume = self._new, self._from(), job.result
         if new.found is not None:
             self._check(source, volume)
-        ob = sculpts.new_object(context, new.name, Content(volume), new.frame)
+        unseen = estimate.too_thin(new.source[0] if new.source else "the stock", volume.pitch)
+        ob = sculpts.new_object(context, new.name, Content(volume), new.frame, unseen=unseen)
         if source is not None:
             if sculpts.is_sculpt(source):
                 sculpts.take_looks(ob, source)
             source.hide_set(True)
-        if not len(ob.data.polygons):
-            thin = {}
-            volume.to_mesh(report=thin)
-            self.report({"WARNING"}, f"{ob.name}: {thin['lost_note']}")
         shared.tell_made(self, ob)
         across = round(max(np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)) / volume.pitch)
         if across < fitting.FEW_RAYS:
-            few = f"{ob.name} has {across} rays along its longest side, so no details: undo, and use Fit Pitch"
+            rays = names.counted(across, "ray")
+            few = f"{ob.name} has {rays} along its longest side, so no details: undo, and use Fit Pitch"
             self.report({"WARNING"}, few)
         return {"FINISHED"}
 
@@ -102,8 +100,8 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
             why = found.get("lost_note") or "it has no volume at this pitch: close it, or take a finer one"
             raise ValueError(f"{source.name}: {why}")
         if found.get("open_edges"):
-            count = names.format_count(found["open_edges"])
-            self.report({"WARNING"}, f"{source.name} is not closed: {count} open edges were closed as well as could be")
+            count = names.counted(found["open_edges"], "open edge")
+            self.report({"WARNING"}, f"{source.name} is not closed: {count} closed as well as could be")
         for note in notes_on(found):
             self.report({"WARNING"}, f"{source.name}: {note}")
 
@@ -112,18 +110,25 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         size = np.array([names.clean(s) for s in self.size])
         lower = {"CORNER": 0 * size, "TOP": -size * (0.5, 0.5, 1.0), "CENTRE": -0.5 * size}[self.origin]
         pitch = names.clean(self.pitch)
-        estimate.check_surface("The block", size, estimate.box_area(size), pitch)
+        estimate.check_block(size, pitch)
         volume = riffler.Volume.block(lower, lower + size, pitch, self.directions)
         return _New("Stock", _at_cursor(context)), DoneJob(volume)
 
     def _from_object(self, context):
         source = source_object(context)
         if source is None:
-            raise ValueError("select the object that is to be the material: a mesh, curve, text, surface or metaball")
+            raise ValueError(self._no_source(context))
+        if unfit := refusals.disabled(source, context.view_layer) or refusals.flat(source):
+            raise ValueError(unfit)
         # Scale and shear become part of the shape, so that a millimetre of the sculpt is one along every axis.
         place, turn, _ = source.matrix_world.decompose()
         frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
         return (self._from_sculpt if _is_its_volume(context, source) else self._from_mesh)(context, source, frame)
+
+    @staticmethod
+    def _no_source(context):
+        instance = refusals.instance(context.object) if context.object else ""
+        return instance or "select the object that is to be the material: a mesh, curve, text, surface or metaball"
 
     def _from_mesh(self, context, source, frame):
         to_stock = meshes.matrix(frame.inverted() @ source.matrix_world)
@@ -164,12 +169,12 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
 def _is_its_volume(context, ob):
     """Of a sculpt: whether what is seen in the world is its volume, as large, not turned inside out, and neither
     modified nor edited."""
-    if not sculpts.is_sculpt(ob) or sculpts.modified(ob):
+    if not sculpts.is_sculpt(ob) or refusals.has_modifiers(ob):
         return False
     if live.of(ob) is None and sculpts.changed(ob.data):
         return False
     shown, scene = sculpts.shown_mm_per_unit(ob.data), units.mm_per_unit(context.scene)
-    return not sculpts.distorted(ob) and not ob.matrix_world.is_negative and np.isclose(shown, scene, rtol=1e-6)
+    return not refusals.scaled(ob) and np.isclose(shown, scene, rtol=1e-6)
 
 
 def _at_cursor(context):

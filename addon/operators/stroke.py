@@ -13,7 +13,7 @@ import bpy
 import riffler
 
 from ..bl import fixtures, live, sculpts
-from ..core import brush, units
+from ..core import brush, reach, units
 from ..core.stroke import Sample
 from ..drawing import force, pace, pointer
 from ..translations import local
@@ -136,6 +136,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         ob = sculpts.active(context)
         self._fresh = live.of(ob) is None
         if self._fresh:
+            shared.check_state(self, context, ob)
             shared.refuse_edits(ob)
         self._run = live.begin(context, ob)
 
@@ -213,6 +214,8 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             self._undone()
             return shared.fail(self, error)
         if changed:
+            if self._run.cut_off:
+                self.report({"WARNING"}, local(reach.CUT_OFF))
             return {"FINISHED"}
         self._undone()
         self.report({"INFO"}, nothing(self._brush, self.mode))
@@ -249,8 +252,8 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
 
 def summary(made, mode):
     what = {"REMOVE": "removed", "ADD": "put on", "MASK": "protected", "UNMASK": "unprotected"}.get(mode, "changed")
-    lifted = f", {units.format_count(made.lifted)} moves lifted over fixtures" if made.lifted else ""
-    return f"{units.format_volume(made.removed)} {what} in {units.format_count(made.moves)} moves{lifted}"
+    lifted = f", {units.counted(made.lifted, 'move')} lifted over fixtures" if made.lifted else ""
+    return f"{units.format_volume(made.removed)} {what} in {units.counted(made.moves, 'move')}{lifted}"
 
 
 def nothing(made, mode):

@@ -76,7 +76,7 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
         coloured = self._colour(context, report)
         more = " ".join([*report.not_checked, *coloured, *kept])
         if found:
-            settings.said = f"{setup.name}: {names.format_count(len(found))} finding{'s' * (len(found) > 1)}"
+            settings.said = f"{setup.name}: {names.counted(len(found), 'finding')}"
         else:
             settings.said = f"{setup.name}: nothing was found" + ("" if report.passed else ", not all was checked")
         notes = " ".join(f"{local(said)}." for said in setup.notes)

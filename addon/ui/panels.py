@@ -3,7 +3,7 @@
 import bpy
 
 from .. import properties
-from ..bl import edits, live, sculpts, units, versions
+from ..bl import edits, live, refusals, sculpts, units, versions
 from ..core import estimate, fitting, presets
 from ..core import units as names
 from ..operators import begin, clay, cut, export, scene, stock
@@ -69,7 +69,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             f"Size: {names.format_size(size)}",
             f"Pitch: {names.trim(p.pitch, 4)} mm, {rays}",
             f"Material: {names.format_volume(facts.material)}",
-            f"Cuts: {facts.cuts} ({names.format_count(facts.moves)} moves)",
+            f"Cuts: {facts.cuts} ({names.counted(facts.moves, 'move')})",
             f"Memory: {names.format_bytes(facts.nbytes)}",
         )
 
@@ -86,8 +86,8 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
-        if sculpts.distorted(ob):
-            lines(layout, "The object is scaled or sheared: tools", "are sized in its own millimetres.", icon="ERROR")
+        if refusals.scaled(ob):
+            lines(layout, "The object is scaled or mirrored: its", "millimetres are not the scene's.", icon="ERROR")
 
 
 class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
@@ -115,7 +115,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
             rays = estimate.ray_count(size, names.clean(settings.pitch), settings.directions)
             about = names.format_bytes(rays * estimate.BYTES_PER_RAY)
             many = rays > estimate.MANY_RAYS
-            layout.label(text=f"{names.format_count(rays)} rays, about {about}", icon="ERROR" if many else "NONE")
+            layout.label(text=f"{names.counted(rays, 'ray')}, about {about}", icon="ERROR" if many else "NONE")
             self._suits(layout, context, settings, size)
         self._button(layout, context, settings)
         unit = units.mm_per_unit(context.scene)

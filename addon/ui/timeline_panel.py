@@ -3,6 +3,7 @@
 import bpy
 
 from ..bl import plan_collisions, plan_states, timeline, turning
+from ..core import units as names
 from ..operators import plan_keys, plan_least_tilt
 from .panels import lines
 from .pen_panel import wrapped
@@ -39,7 +40,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         for first, last in now.colliding[:4]:
             lines(layout, f"Collides at frames {first} to {last}", icon="ERROR")
         if len(now.colliding) > 4:
-            lines(layout, f"and {len(now.colliding) - 4} times more", icon="BLANK1")
+            lines(layout, f"and {names.counted(len(now.colliding) - 4, 'time')} more", icon="BLANK1")
 
     def _turn(self, layout, context):
         """The tool in the view that turns it, and what is drawn with that."""

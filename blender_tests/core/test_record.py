@@ -92,7 +92,14 @@ def test_units_and_words():
     assert units.mm_per_unit(0.30480000376701355) == 304.8
     assert units.format_size((100, 60.5, 29.999)) == "100 × 60.5 × 30 mm"
     assert units.format_count(1234567) == "1\u00a0234\u00a0567"
-    assert [units.format_bytes(n) for n in (12, 1234, 4.2e6, 3.5e9)] == ["12 bytes", "1.2 KB", "4.2 MB", "3.5 GB"]
+    assert [units.format_bytes(n) for n in (12, 1234, 4.2e6, 3.5e9, 7.28e12)] == [
+        "12 bytes",
+        "1.2 KB",
+        "4.2 MB",
+        "3.5 GB",
+        "7.3 TB",
+    ]
+    assert [units.counted(n, "move") for n in (0, 1, 2)] == ["0 moves", "1 move", "2 moves"]
     assert units.trim(-0.0001) == "0"
     with pytest.raises(ValueError, match="scale_length"):
         units.mm_per_unit(0)

@@ -123,9 +123,23 @@ def test_whatever_is_under_the_pointer_gets_the_drag_where_the_stroke_does_not()
                 assert items[k + 1] == ("riffler.stroke_elsewhere", event)
 
 
-def test_a_hidden_excluded_or_instanced_object_is_told_from_one_that_can_be_sculpted():
+def test_an_instance_is_told_from_an_object_that_can_be_sculpted():
     begin, cube = support.part("operators.begin"), bpy.data.objects["Cube"]
     assert begin.unfit(bpy.context, cube) == ""
-    cube.hide_set(True)
-    assert "instance" in begin.unfit(bpy.context, cube)
+    home = bpy.data.collections.new("Home")
+    home.objects.link(cube)
+    for collection in [c for c in cube.users_collection if c != home]:
+        collection.objects.unlink(cube)
+    empty = bpy.data.objects.new("Stands", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", home
+    bpy.context.collection.objects.link(empty)
+    bpy.context.view_layer.update()
+    for ob in (cube, empty):
+        why = begin.unfit(bpy.context, ob)
+        assert why.startswith("Stands is an instance of Home") and "Make Instances Real" in why, why
     assert begin.unfit(bpy.context, None) == begin.unfit(bpy.context, bpy.data.objects["Light"]) == begin.NOTHING
+    support.select(empty)
+    with bpy.context.temp_override(object=empty, active_object=empty, selected_editable_objects=[empty]):
+        bpy.ops.object.duplicates_make_real()
+    real = next(ob for ob in bpy.context.view_layer.objects if ob.type == "MESH")
+    assert bpy.ops.riffler.make_sculpt(object=real.name) == {"FINISHED"}

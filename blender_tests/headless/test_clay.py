@@ -110,6 +110,20 @@ def test_room_around_a_box_of_no_whole_pitches_keeps_rays_and_symmetry_and_can_b
     assert volume(bpy.data.objects[name]).to_bytes() == grown.to_bytes()
 
 
+def test_a_pitch_at_which_nothing_would_be_left_is_refused():
+    ob = sculpt()
+    pillar = riffler.Volume.block((3, 3, 0), (4, 4, 1), 0.25, "xyz").resampled(0.25, None, (0, 0, 0), (40, 30, 20))
+    support.part("bl.sculpts").commit(ob.data, support.part("core.cache").Content(pillar), 1.0)
+    before = volume(ob).to_bytes()
+    support.refused(
+        lambda: bpy.ops.riffler.resample(pitch=15), f"Nothing of {ob.name} is thick enough", "15 mm", "finer"
+    )
+    for pitch, words in ((1e9, "longer than every side of the box, 40 × 30 × 20 mm"), (float("nan"), "not nan")):
+        support.refused(lambda pitch=pitch: bpy.ops.riffler.resample(pitch=pitch), words)
+    support.refused(lambda: bpy.ops.riffler.room(room=1e9), "mm at most")
+    assert volume(ob).to_bytes() == before and len(ob.data.polygons)
+
+
 def test_room_is_made_on_every_side_and_material_can_be_put_there():
     ob = sculpt()
     ring = circle("Ring", (20, 15, 100), 8)

@@ -169,7 +169,7 @@ def test_take_edits_keeps_the_mask_and_says_which_cuts_are_gone():
     co[co[:, 0] < 1, 0] -= 5  # one side is longer
     ob.data.vertices.foreach_set("co", co.ravel())
     ob.data.update()
-    assert "1 cuts are not in the NC code any more" in support.printed(lambda: bpy.ops.riffler.take_edits())
+    assert "no longer in the NC code: 1 cut" in support.printed(lambda: bpy.ops.riffler.take_edits())
     after = support.content(ob)
     assert after.volume.lower[0] == -5 and not after.cuts and after.shaped
     assert abs(after.mask.volume / before.mask.volume - 1) < 1e-2

@@ -218,7 +218,7 @@ def test_a_linked_sculpt_is_refused():
     try:
         live().begin(bpy.context, into.objects[0])
     except ValueError as error:
-        assert "make it local" in str(error)
+        assert "Make Local" in str(error)
     else:
         raise AssertionError("a linked sculpt was taken")
     nothing_is_left()

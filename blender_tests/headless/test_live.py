@@ -241,7 +241,7 @@ def test_a_sheared_sculpt_is_refused_with_the_remedy():
     bpy.context.scene.collection.objects.link(above)
     above.scale, ob.parent, ob.rotation_euler.z = (2, 1, 1), above, 0.6
     bpy.context.view_layer.update()
-    refused(lambda: work(name), f"{name} is sheared", "Above", "Apply > Scale")
+    refused(lambda: work(name), f"{name} is sheared", "Clear and Keep Transformation", "Clear > Scale")
     nothing_is_left()
 
 

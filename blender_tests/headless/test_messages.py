@@ -81,7 +81,7 @@ STATES = {
     nothing_selected: "Select a sculpt",
     wrong_type: "Select a sculpt",
     edit_mode: "Leave Edit Mode",
-    linked: "make it local",
+    linked: "Make Local",
     work_running: "Esc cancels",
     pen_elsewhere: "Esc ends it",
 }
@@ -201,7 +201,7 @@ def test_metres_taken_for_millimetres_are_refused_at_once():
 def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
     support.scale(1)
     ob = support.stock()
-    distorted = support.part("bl.sculpts").distorted
+    distorted = support.part("bl.refusals").scaled
     assert distorted(ob) == ""
     ob.rotation_euler, ob.location = (0.3, 0.2, 0.1), (5, 6, 7)
     bpy.context.view_layer.update()
@@ -215,7 +215,7 @@ def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
     bpy.context.collection.objects.link(above)
     ob.scale, ob.parent, above.scale = (1, 1, 1), above, (1, 3, 1)
     bpy.context.view_layer.update()
-    assert "what it hangs on" in distorted(ob)
+    assert "Parent > Clear and Keep Transformation" in distorted(ob)
 
 
 def test_a_part_that_is_sheared_or_gone():
@@ -228,7 +228,7 @@ def test_a_part_that_is_sheared_or_gone():
     bpy.context.collection.objects.link(above)
     above.scale, part.parent, part.rotation_euler = (1, 3, 1), above, (0.5, 0.3, 0.2)
     bpy.context.view_layer.update()
-    refused(bpy.ops.riffler.plan_find, "Step is sheared", "Apply")
+    refused(bpy.ops.riffler.plan_find, "Step is sheared", "Clear and Keep Transformation")
     part.parent = None
     bpy.data.objects.remove(above)
     bpy.context.collection.objects.unlink(part)

@@ -70,20 +70,16 @@ def test_a_mirrored_part_has_its_normals_outside():
     assert support.part("bl.parts").in_world(bpy.context, ob).volume > 0
 
 
-def test_a_sheared_part_is_refused_with_what_shears_it():
+def test_a_sheared_part_is_refused_with_what_makes_it_square():
     support.scale(1)
     above = cube("Above")
     above.scale = (1, 3, 1)
     ob = cube("Part")
     ob.parent, ob.rotation_euler = above, (0, 0, 0.5)
     bpy.context.view_layer.update()
-    support.refused(bpy.ops.riffler.plan_part, "Part is sheared", "select Above", "Apply > Scale")
+    support.refused(bpy.ops.riffler.plan_part, "Part is sheared", "Parent > Clear and Keep Transformation")
     assert settings().part is None
-    bpy.ops.object.select_all(action="DESELECT")
-    above.select_set(True)
-    bpy.context.view_layer.objects.active = above
-    bpy.ops.object.transform_apply(location=False, rotation=False)
-    bpy.context.view_layer.objects.active = ob
+    bpy.ops.object.parent_clear(type="CLEAR_KEEP_TRANSFORM")
     assert bpy.ops.riffler.plan_part() == {"FINISHED"}
 
 

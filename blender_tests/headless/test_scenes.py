@@ -28,7 +28,9 @@ def exclude(ob):
     for collection in ob.users_collection:
         collection.objects.unlink(ob)
     home.objects.link(ob)
-    bpy.context.view_layer.layer_collection.children["Away"].exclude = True
+    layer = bpy.context.view_layer.layer_collection.children["Away"]
+    layer.exclude = True
+    return layer
 
 
 def linked(name="Elsewhere"):
@@ -58,17 +60,20 @@ def test_a_stock_in_an_excluded_collection_is_not_simulated_and_nothing_is_left(
     stock = programs.stock()
     exclude(stock)
     before = datablocks()
-    support.refused(lambda: bpy.ops.riffler.simulate(source="PLAN"), "Stock is in no collection", "Outliner")
+    support.refused(lambda: bpy.ops.riffler.simulate(source="PLAN"), "Stock is disabled", "Outliner")
     assert support.part("bl.simulating").active() is None and datablocks() == before
 
 
-def test_a_stock_in_an_excluded_collection_is_verified_all_the_same():
+def test_a_stock_in_an_excluded_collection_is_verified_once_it_is_enabled():
+    """Where it stands is not known before: excluded objects are not evaluated."""
     programs.resolved()
     stock = programs.stock()
-    exclude(stock)
+    home = exclude(stock)
+    support.refused(lambda: bpy.ops.riffler.verify(source="PLAN"), "Stock is disabled", "Outliner")
+    home.exclude = False
     for coloured in ("PART", "LEFT"):
         assert bpy.ops.riffler.verify(source="PLAN", coloured=coloured) == {"FINISHED"}
-    assert programs.settings().hidden == "Step"
+    assert set(programs.settings().hidden.split()) == {"Step", "Stock"}
     assert bpy.ops.riffler.verify_clear() == {"FINISHED"} and not bpy.data.objects["Step"].hide_get()
 
 
@@ -94,7 +99,7 @@ def test_fixtures_of_another_file_are_not_changed():
 def test_a_mesh_of_another_file_is_not_coloured():
     linked()
     support.select(bpy.data.objects["Far Cube"])
-    support.refused(lambda: bpy.ops.riffler.show_deviation(reference="Cube"), "Far Cube is linked", "make it local")
+    support.refused(lambda: bpy.ops.riffler.show_deviation(reference="Cube"), "Far Cube is linked", "Make Local")
 
 
 # ------------------------------------------------------------------ objects
@@ -231,11 +236,11 @@ def test_pieces_are_not_lost_where_one_of_them_cannot_be_made():
     sculpts.commit(ob.data, support.part("core.cache").Content(volume, []), 1.0)
     before, count, commit, calls = support.content(ob).volume.to_bytes(), datablocks(), sculpts.commit, []
 
-    def failing(*arguments):
+    def failing(*arguments, **more):
         calls.append(arguments)
         if len(calls) == 2:
             raise MemoryError
-        return commit(*arguments)
+        return commit(*arguments, **more)
 
     sculpts.commit = failing
     try:
@@ -309,11 +314,11 @@ def test_an_overridden_plan_is_changed_only_once_it_is_local():
     ob = overridden(plans.on_timeline().name)
     plan = store.plan(ob)
     for call in ("plan_to_timeline", "plan_key", "plan_resolve"):
-        support.refused(getattr(bpy.ops.riffler, call), "overrides", "make it local")
+        support.refused(getattr(bpy.ops.riffler, call), "overrides", "Make Local")
     try:
         store.write(ob, plan)
     except ValueError as error:
-        assert f"{ob.name} overrides" in str(error) and "make it local" in str(error)
+        assert f"{ob.name} overrides" in str(error) and "Make Local" in str(error)
     else:
         raise AssertionError("edits of an override were taken")
     bpy.ops.object.make_local(type="SELECT_OBJECT")
@@ -328,4 +333,4 @@ def test_an_overridden_plan_is_changed_only_once_it_is_local():
 
 def test_an_overridden_sculpt_is_not_cut():
     overridden(support.stock().name)
-    support.refused(bpy.ops.riffler.cut_curve, "overrides", "make it local")
+    support.refused(bpy.ops.riffler.cut_curve, "overrides", "Make Local")

@@ -112,7 +112,7 @@ def test_an_nc_file_is_simulated_in_the_scene_s_and_in_the_stock_s_frame():
     stock.scale = (2, 2, 2)
     bpy.context.view_layer.update()
     call = lambda: bpy.ops.riffler.simulate(source="FILE", filepath=path, machine="3-axis")  # noqa: E731
-    support.refused(call, "scaled or mirrored", "Alt S")
+    support.refused(call, "scaled or mirrored", "Clear > Scale")
     assert now() is None and not hidden(stock)
 
 

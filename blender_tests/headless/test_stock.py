@@ -117,6 +117,27 @@ def test_what_is_refused_changes_nothing():
     assert (len(bpy.data.objects), len(bpy.data.meshes) - 1, len(bpy.data.images)) == before
 
 
+def test_sizes_that_make_no_sense_are_refused_by_the_name_of_their_field():
+    support.scale(1)
+    before = seen()
+    nan, inf = float("nan"), float("inf")
+    for size, pitch, *words in (
+        ((-5, 60, 30), 0.5, "Size along x", "0.001 mm", "pitch of 0.5 mm: make it larger"),
+        ((100, 0.001, 30), 0.5, "Size along y is 0.001 mm", "take a finer pitch"),
+        ((100, 60, nan), 0.5, "Size along z must be a positive length in mm, not nan"),
+        ((inf, 60, 30), 0.5, "100000 × 60 × 30 mm", "coarser pitch"),
+        ((100, 60, 30), 1000, "Size along x is 100 mm", "pitch of 1000 mm"),
+        ((100, 60, 30), -1, "at 0.0001 mm", "coarser pitch"),
+        ((100, 60, 30), nan, "pitch must be a positive length in mm, not nan"),
+    ):
+        support.refused(lambda size=size, pitch=pitch: support.stock(size=size, pitch=pitch), *words)
+        assert seen() == before, (size, pitch)
+    bpy.ops.mesh.primitive_cube_add(size=10)
+    support.refused(
+        lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=1000), "1000 mm is longer than", "10 × 10 × 10 mm"
+    )
+
+
 def seen():
     """What there is, what of it is seen and selected, and what is active."""
     kinds = bpy.data.objects, bpy.data.meshes, bpy.data.images
@@ -172,6 +193,8 @@ def test_a_linked_mesh_is_hidden_itself_and_not_one_that_is_called_as_it_is():
     support.select(linked)
     assert of_mesh() == {"FINISHED"}
     assert linked.hide_get() and not own.hide_get()
+    support.select(linked)
+    assert bpy.ops.riffler.plan_part() == {"FINISHED"} and bpy.context.scene.riffler.plan.part == linked
 
 
 def test_fit_pitch():

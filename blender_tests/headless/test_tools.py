@@ -144,6 +144,39 @@ def test_material_is_put_on_within_the_stocks_box():
     assert hollow < volume_of(ob).volume < 24000
 
 
+def test_material_that_the_box_cuts_off_is_said_at_once():
+    support.scale(1)
+    ob = support.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
+    settings(depth=1.0)
+    stroke((10, 15), (30, 15))
+    add = lambda: stroke((14, 15), (26, 15), mode="ADD")  # noqa: E731
+    settings(depth=0.5)
+    assert "cut off" not in support.printed(add)  # it ends half a millimetre below the box
+    settings(depth=1.5)
+    assert "cut off at the stock's box: Make Room" in support.printed(add)
+    support.part("bl.live").end_all()
+    top = support.coordinates(ob.data)[:, 2].max()
+    assert top <= 20 + 1e-4
+    assert bpy.ops.riffler.room(room=3.0) == {"FINISHED"}
+    assert "cut off" not in support.printed(add)
+    support.part("bl.live").end_all()
+    assert support.coordinates(ob.data)[:, 2].max() > top + 0.5
+    assert "cut off" not in support.printed(lambda: stroke((10, 8), (30, 8)))  # of what was added before
+    path = support.out("added.rjournal")
+    recorded(path, ob)
+    assert "cut off at the stock's box" in support.printed(lambda: bpy.ops.riffler.cut_recording(filepath=path))
+
+
+def recorded(path, ob):
+    """A recording of a stroke that puts material on beyond the box of a sculpt."""
+    volume, journal = volume_of(ob), riffler.Journal()
+    journal.set_stock(volume.lower, volume.upper, volume.pitch, volume.directions)
+    journal.add_tool(1, riffler.Tool.ball(6, 4).to_dict())
+    z = volume.upper[2] - 1
+    journal.add_stroke(1, [[10, 5, z, 0, 0, 1], [30, 5, z, 0, 0, 1]], mode="add")
+    journal.write(path)
+
+
 @support.core_bound
 def test_every_copy_of_a_stroke_is_made():
     support.scale(1)

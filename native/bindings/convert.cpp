@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bindings/bindings.hpp"
+#include "geom/numbers.hpp"
 
 namespace riffler {
 
@@ -31,7 +32,9 @@ Vec3 to_vec3(const py::object& object, const char* name) {
   if (!array || array.ndim() != 1 || array.shape(0) != 3)
     throw py::value_error(std::string(name) + " must be three numbers");
   const Vec3 v{array.at(0), array.at(1), array.at(2)};
-  if (!finite(v)) throw py::value_error(std::string(name) + " must be finite");
+  if (!finite(v))
+    throw py::value_error(std::string(name) + " must be finite, not (" + in_figures(v.x) + ", " + in_figures(v.y) +
+                          ", " + in_figures(v.z) + ")");
   return v;
 }
 

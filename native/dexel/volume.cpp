@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
-#include <sstream>
+#include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <utility>
+
+#include "geom/numbers.hpp"
 
 namespace riffler {
 
@@ -21,29 +25,59 @@ double available_memory() {
 
 namespace {
 
+std::string sides(const Vec3& size) {
+  return in_figures(size.x) + " × " + in_figures(size.y) + " × " + in_figures(size.z) + " mm";
+}
+
+/// 7280000000000 → "7.3 TB".
+std::string in_bytes(double count) {
+  const char* const units[] = {"bytes", "kB", "MB", "GB", "TB"};
+  std::size_t unit = 0;
+  for (; count >= 999.5 && unit + 1 < std::size(units); count /= 1000) ++unit;
+  char out[64];
+  std::snprintf(out, sizeof out, unit == 0 || count >= 99.95 ? "%.0f %s" : "%.1f %s", count, units[unit]);
+  return out;
+}
+
+double longest(const Vec3& size) {
+  return std::max({size.x, size.y, size.z});
+}
+
+void check_box(const Box3& box) {
+  const char* const names = "xyz";
+  for (int k = 0; k < 3; ++k) {
+    const double lower = box.lower[k], upper = box.upper[k];
+    const std::string along = std::string(" along ") + names[k];
+    for (const auto& [name, x] : {std::pair{"lower", lower}, std::pair{"upper", upper}})
+      if (!std::isfinite(x)) throw std::invalid_argument(name + (" must be finite, not " + in_figures(x)) + along);
+    if (!(lower < upper))
+      throw std::invalid_argument("lower must be less than upper;" + along + " they are " + in_figures(lower) +
+                                  " and " + in_figures(upper) + " mm");
+    if (!(upper - lower <= kMaxBox))
+      throw std::invalid_argument("the box is " + in_figures(upper - lower) + " mm long" + along + ", and may be " +
+                                  in_figures(kMaxBox) + " mm at most: give its size in millimetres");
+  }
+}
+
 void check(const Frame& frame) {
   parse_directions(frame.directions);
-  const char* names = "xyz";
-  for (int k = 0; k < 3; ++k) {
-    if (!std::isfinite(frame.box.lower[k]) || !std::isfinite(frame.box.upper[k]))
-      throw std::invalid_argument(std::string("lower and upper must be finite; ") + names[k] + " is not");
-    if (!(frame.box.lower[k] < frame.box.upper[k]))
-      throw std::invalid_argument(std::string("lower must be less than upper; it is not in ") + names[k]);
-  }
-  if (!std::isfinite(frame.pitch) || !(frame.pitch > 0))
-    throw std::invalid_argument("pitch must be a positive length in mm");
-  const Vec3 largest = glm::max(glm::abs(frame.box.lower), glm::abs(frame.box.upper));
-  if (std::max({largest.x, largest.y, largest.z}) > 1e15 * frame.pitch)
-    throw std::invalid_argument("pitch is too fine for coordinates as large as the box's: rays would coincide");
+  check_box(frame.box);
+  const double pitch = frame.pitch;
+  if (!std::isfinite(pitch) || !(pitch > 0))
+    throw std::invalid_argument("pitch must be a positive length in mm, not " + in_figures(pitch));
+  const Vec3 size = frame.box.size();
+  if (pitch > longest(size))
+    throw std::invalid_argument("pitch " + in_figures(pitch) + " mm is longer than every side of the box, " +
+                                sides(size) + ": take a finer pitch");
+  if (longest(glm::max(glm::abs(frame.box.lower), glm::abs(frame.box.upper))) > 1e15 * pitch)
+    throw std::invalid_argument("pitch " + in_figures(pitch) +
+                                " mm is too fine for coordinates as large as the box's, whose rays would coincide: " +
+                                "take a coarser pitch, or move the box to the origin");
   const double bytes = estimated_bytes(frame), free = available_memory();
-  const Vec3 sides = frame.box.size() / frame.pitch;
-  if (bytes > free || std::max({sides.x, sides.y, sides.z}) > 1e9) {
-    std::ostringstream text;
-    text.precision(0);
-    text << std::fixed << "pitch " << std::defaultfloat << frame.pitch << " mm needs " << std::fixed << bytes
-         << " bytes for the rays of this box, and " << free << " are free; take a coarser pitch or a smaller box";
-    throw std::invalid_argument(text.str());
-  }
+  if (bytes > free || longest(size) > 1e9 * pitch)
+    throw std::invalid_argument("pitch " + in_figures(pitch) + " mm needs " + in_bytes(bytes) +
+                                " for the rays of this box, " + sides(size) + ", and " + in_bytes(free) +
+                                " are free: take a coarser pitch or a smaller box");
 }
 
 }  // namespace

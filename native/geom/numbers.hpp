@@ -13,27 +13,30 @@ namespace riffler {
 inline constexpr double kMinTolerance = 1e-8;         // mm: of cutting and planning
 inline constexpr double kMinToleranceOfSize = 1e-10;  // and as a share of the tool's size: doubles have no more to give
 inline constexpr double kMaxSize = 1e30;              // mm: of tolerances and distances
+inline constexpr double kMaxBox = 1e7;                // mm: a side of a volume's box, 10 km
 inline constexpr double kMinTime = 1e-12;             // s: of a move
 inline constexpr double kMaxTime = 1e12;              // s
 inline constexpr double kMaxTurn = 1e6;               // rad: beyond, sines are noise
 inline constexpr double kMaxConstant = 1e12;          // of materials: N·s/mm³ and the like
 
+/// A number as messages have it.
+inline std::string in_figures(double value) {
+  char out[32];
+  std::snprintf(out, sizeof out, "%g", value);
+  return out;
+}
+
 /// std::invalid_argument naming the number unless it is finite.
 inline void require_finite(double x, std::string_view name) {
-  if (!std::isfinite(x)) throw std::invalid_argument(std::string(name) + " must be finite");
+  if (!std::isfinite(x)) throw std::invalid_argument(std::string(name) + " must be finite, not " + in_figures(x));
 }
 
 /// std::invalid_argument unless low ≤ x ≤ high. `what` and `unit`: "a positive length" and "mm".
 inline void require_between(double x, double low, double high, std::string_view name, const char* what,
                             const char* unit) {
   if (x >= low && x <= high) return;
-  const auto text = [](double value) {
-    char out[32];
-    std::snprintf(out, sizeof out, "%g", value);
-    return std::string(out);
-  };
-  throw std::invalid_argument(std::string(name) + " must be " + what + " in " + unit + ", from " + text(low) + " to " +
-                              text(high));
+  throw std::invalid_argument(std::string(name) + " must be " + what + " in " + unit + ", from " + in_figures(low) +
+                              " to " + in_figures(high) + ", not " + in_figures(x));
 }
 
 /// A tolerance of cutting: mm.

@@ -31,10 +31,13 @@ void expect_clean(const Volume& volume, const std::string& what) {
 TEST(ToMesh, HandlesSingleRaysAndIsolatedColumns) {
   for (const char* directions : {"z", "xyz", "x", "y"})
     for (const double size : {0.01, 0.1, 0.125, 0.25, 0.3, 0.374, 0.6}) {
-      const Frame frame = frame_at({1, 2, 3}, Vec3(size), 0.25, directions);
-      const Mesh mesh = to_mesh(Volume::block(frame));
-      EXPECT_TRUE(float_audit(mesh).clean()) << directions << ' ' << size;
-      EXPECT_FALSE(mesh.empty()) << directions << ' ' << size;
+      for (const int longest : {0, 1, 2}) {
+        Vec3 sides(size);
+        sides[longest] = std::max(size, 0.25);  // a pitch longer than every side is refused
+        const Mesh mesh = to_mesh(Volume::block(frame_at({1, 2, 3}, sides, 0.25, directions)));
+        EXPECT_TRUE(float_audit(mesh).clean()) << directions << ' ' << size;
+        EXPECT_FALSE(mesh.empty()) << directions << ' ' << size;
+      }
     }
   Random random(7);
   Volume volume(frame_at(Vec3(0.0), Vec3(5, 5, 5), 0.25, "z"));

@@ -117,7 +117,7 @@ TEST(Engrave, BadInputNamesTheCurveAndItsPoint) {
   EXPECT_EQ(message({{0, 0, 50}, {0, 0, 50}}, {}), "curve 1 has all its points at one place");
   EXPECT_NE(message({{0, 0, 50}, {0, 0, 80}}, {}).find("curve 1, point 1 is 30"), std::string::npos);
   EXPECT_EQ(message({{0, 0, 50}, {1, 0, 50}}, {.tolerance = 0}),
-            "tolerance must be a positive length in mm, from 1e-08 to 1e+30");
+            "tolerance must be a positive length in mm, from 1e-08 to 1e+30, not 0");
   EXPECT_THROW(engrave(Mesh{}, {}, tool), std::invalid_argument);
   EXPECT_TRUE(engrave(part, {}, tool).empty());
 }

@@ -9,6 +9,7 @@ import pytest
 import riffler
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from riffler import tasks
 
 UP = [0.0, 0, 1]
 BALL = riffler.Tool.ball(6, 30)
@@ -55,19 +56,52 @@ def test_rays_stand_where_the_contract_says():
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (([0, 0, 0], [1, 1, 1], 0), "pitch"),
-        (([0, 0, 0], [1, 1, 1], -1), "pitch"),
-        (([0, 0, 0], [1, 1, 1], np.nan), "pitch"),
-        (([0, 0, 0], [1, 0, 1], 0.1), "in y"),
-        (([0, 0, np.inf], [1, 1, 1], 0.1), "lower"),
-        (([0, 0], [1, 1, 1], 0.1), "lower"),
+        (([0, 0, 0], [1, 1, 1], 0), "pitch must be a positive length in mm, not 0"),
+        (([0, 0, 0], [1, 1, 1], -1), "pitch must be a positive length in mm, not -1"),
+        (([0, 0, 0], [1, 1, 1], np.nan), "pitch must be a positive length in mm, not nan"),
+        (([0, 0, 0], [1, 1, 1], np.inf), "pitch must be a positive length in mm, not inf"),
+        (
+            ([0, 0, 0], [1, 1, 1], 1000),
+            "pitch 1000 mm is longer than every side of the box, 1 × 1 × 1 mm: take a finer",
+        ),
+        (([0, 0, 0], [1, 1, 1], 1e-300), "take a coarser pitch"),
+        (([0, 0, 0], [1, 0, 1], 0.1), "lower must be less than upper; along y they are 0 and 0 mm"),
+        (([0, 0, 0], [-5, 1, 1], 0.1), "along x they are 0 and -5 mm"),
+        (([-1e9, 0, 0], [1e9, 1, 1], 1e6), r"the box is 2e\+09 mm long along x, .* give its size in millimetres"),
+        (([0, 0, np.inf], [1, 1, 1], 0.1), r"lower must be finite, not \(0, 0, inf\)"),
+        (([0, 0], [1, 1, 1], 0.1), "lower must be three numbers"),
         (([0, 0, 0], [1, 1, 1], 0.1, "xy"), "directions"),
-        (([0, 0, 0], [1000, 1000, 10], 1e-4), "bytes"),
+        (
+            ([0, 0, 0], [1000, 1000, 10], 1e-4),
+            r"pitch 0.0001 mm needs 2000 TB for .*, 1000 × 1000 × 10 mm, and .* GB are",
+        ),
     ],
 )
-def test_a_block_that_makes_no_sense_is_refused(arguments, word):
+def test_a_box_or_pitch_that_makes_no_sense_is_refused_by_whatever_makes_a_volume(arguments, word):
+    lower, upper, pitch, *directions = arguments
+    for make in (riffler.Volume.block, riffler.Volume.empty):
+        with pytest.raises(ValueError, match=word):
+            make(*arguments)
+    mesh, sound = box_mesh([0, 0, 0], [1, 1, 1]), riffler.Volume.block([0, 0, 0], [1, 1, 1], 0.25)
     with pytest.raises(ValueError, match=word):
-        riffler.Volume.block(*arguments)
+        riffler.Volume.from_mesh(mesh, pitch, *directions, lower=lower, upper=upper)
+    with pytest.raises(ValueError, match=word):
+        sound.resampled(pitch, *directions, lower=lower, upper=upper)
+    with pytest.raises(ValueError, match=word):
+        tasks.from_mesh(mesh, pitch, *directions, lower=lower, upper=upper).result()
+
+
+@pytest.mark.parametrize("directions", ["z", "xyz"])
+def test_a_plate_thinner_than_the_pitch_is_a_volume_and_a_mesh(directions):
+    """No ray stands within it; the lone one beside it stands for it. Walls beside rays are found within half a pitch,
+    those that rays end at exactly."""
+    low, high = [0, 0, 0], [0.4, 10, 10]
+    mesh = box_mesh(low, high)
+    for made in (riffler.Volume.block(low, high, 1, directions), riffler.Volume.from_mesh(mesh, 1, directions)):
+        assert made.volume == pytest.approx(40)
+        surface = made.to_mesh(report=(found := {}))
+        assert len(surface.triangles) and not found["lost_note"]
+        assert surface.bounds == pytest.approx(np.array([low, high]), abs=1e-5 if directions == "xyz" else 0.5 + 1e-5)
 
 
 def test_removed_is_the_loss_of_volume_and_force_needs_dt():
