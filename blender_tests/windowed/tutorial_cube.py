@@ -1,0 +1,209 @@
+"""The first minute (docs/first-chip.md, "The cube"): Blender's cube is there, Carve is chosen, and the mouse is dragged
+over it. The cube stays, Riffler asks, Return is pressed, and the drag is a stroke; Ctrl Z takes back first the stroke,
+then the sculpt. A drag off everything says what to do, a drag over another sculpt strokes that one. At the end the cube
+is a small figure, by the mouse and keys alone."""
+
+import itertools
+import time
+from pathlib import Path
+
+import bpy
+import harness
+import numpy as np
+from mathutils import Euler
+
+import support
+
+stroke = harness.load(Path(__file__).with_name("window_stroke.py"))
+lessons = harness.load(Path(__file__).with_name("lessons.py"))
+UNIT = 50.0  # mm in a unit of the scene, once the cube is a sculpt of 100 mm
+
+
+def cube():
+    return bpy.data.objects["Cube"]
+
+
+def pixel(screen, place):
+    """In the window, of a place in the world."""
+    region = screen.region()
+    matrix = np.array(screen.area.spaces.active.region_3d.perspective_matrix)
+    sight = support.part("core.sight").Sight(matrix, (region.width, region.height))
+    return (sight.project([place])[0] + (region.x, region.y)).round().astype(int)
+
+
+def drag(screen, *places):
+    way = [pixel(screen, p) for p in places]
+    screen.move(*map(int, way[0]))
+    yield 0.3
+    stroke.press(screen, *way[0], "PRESS")
+    yield 0.1
+    for a, b in itertools.pairwise(way):
+        for share in np.linspace(0, 1, 8)[1:]:
+            screen.move(*map(int, a + share * (b - a)))
+            yield 0.02
+    stroke.press(screen, *way[-1], "RELEASE")
+    yield 0.5
+
+
+def answered(screen, key="RET"):
+    x, y = screen.at
+    for value in ("PRESS", "RELEASE"):
+        screen.window.event_simulate(key, value, x=x, y=y)
+    yield 0.3
+
+
+def steps(screen):
+    lessons.plain_window()
+    view = screen.area.spaces.active.region_3d
+    view.view_distance *= 0.45
+    place = cube().matrix_world.copy()
+    stroke.tool(screen, "riffler.carve")
+    yield 1.0
+    yield from drag(screen, (-0.6, -0.4, 1), (0.6, 0.3, 1))
+    yield 0.5
+    assert cube().matrix_world == place and "Cube Stock" not in bpy.data.objects
+    yield from lessons.picture(screen, "cube-1", lessons.view_box(screen))
+
+    # somebody who does not want to: nothing has happened
+    yield from answered(screen, "ESC")
+    yield 0.5
+    assert "Cube Stock" not in bpy.data.objects and bpy.context.scene.unit_settings.scale_length == 1
+
+    yield from drag(screen, (-0.6, -0.4, 1), (0.6, 0.3, 1))
+    yield 0.5
+    begin = time.perf_counter()
+    yield from answered(screen)
+    yield lambda: "Cube Stock" in bpy.data.objects and volume() < 1e6
+    support.figure("click to first chip, default cube, s", round(time.perf_counter() - begin, 2))
+    assert cube().matrix_world == place and cube().hide_get()
+    yield 1.0
+    carved = volume()
+    screen.move(*map(int, pixel(screen, (0, -0.3, 1))))
+    yield 0.7
+    yield from lessons.picture(screen, "cube-2", lessons.view_box(screen))
+
+    # the next one is a stroke like any other
+    yield from drag(screen, (-0.6, 0.2, 1), (0.5, -0.5, 1))
+    yield lambda: volume() < carved and support.part("drawing.pointer").held is None
+    screen.to_view()
+    for expected in (carved, 1e6):
+        screen.key("Z", ctrl=True)
+        yield 1.5
+        assert volume() == expected
+    screen.key("Z", ctrl=True)
+    yield 1.5
+    assert "Cube Stock" not in bpy.data.objects and not cube().hide_get() and cube().matrix_world == place
+    assert bpy.context.scene.unit_settings.scale_length == 1
+    yield from off_everything(screen, place)
+    yield from over_another_sculpt(screen)
+    yield from figure(screen)
+
+
+def volume():
+    return support.part("bl.live").content(bpy.data.objects["Cube Stock"]).volume.volume
+
+
+def off_everything(screen, place):
+    """Nothing is under the pointer, and what is active has no surface."""
+    bpy.context.view_layer.objects.active = bpy.data.objects["Light"]
+    region = screen.region()
+    screen.move(region.x + 150, region.y + 100)
+    yield 0.3
+    screen.button("PRESS")
+    yield 0.1
+    screen.move(region.x + 250, region.y + 140)
+    yield 0.1
+    screen.button("RELEASE")
+    yield 1.0
+    assert cube().matrix_world == place and len(bpy.data.objects) == 3
+    yield from answered(screen, "ESC")
+
+
+def over_another_sculpt(screen):
+    """It becomes the active one, and the stroke is made at once."""
+    with screen.override():
+        assert bpy.ops.riffler.make_sculpt("EXEC_DEFAULT", True, object="Cube") == {"FINISHED"}
+    bpy.context.view_layer.objects.active = bpy.data.objects["Light"]
+    whole = volume()
+    yield 0.5
+    yield from drag(screen, (-0.6, -0.4, 1), (0.6, 0.3, 1))
+    yield lambda: volume() < whole and support.part("drawing.pointer").held is None
+    assert bpy.context.object.name == "Cube Stock"
+    screen.to_view()
+    screen.key("Z", ctrl=True)
+    yield lambda: volume() == whole
+
+
+def sized(screen, radius, depth):
+    """F, Shift F, digits, Return."""
+    for shift, size in ((False, radius), (True, depth)):
+        screen.to_view()
+        for key in ("F", *f"{size:g}", "RET"):
+            name = {".": "PERIOD"}.get(key, WORDS[int(key)] if key.isdigit() else key)
+            x, y = screen.at
+            for value in ("PRESS", "RELEASE"):
+                screen.window.event_simulate(name, value, x=x, y=y, shift=shift and key == "F")
+            yield 0.05
+    yield 0.2
+    found = bpy.context.scene.riffler.sculpt
+    assert np.allclose((found.radius, found.depth), (radius, depth)), (found.radius, found.depth)
+
+
+WORDS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+
+
+def seen(screen, tilt, turn):
+    """From where a person has turned the view: degrees down from above, and around z from the front."""
+    view = screen.area.spaces.active.region_3d
+    view.view_perspective = "ORTHO"
+    view.view_rotation = Euler(np.radians((tilt, 0, turn))).to_quaternion()
+    yield 0.4
+
+
+def carved(screen, *places, **modifiers):
+    ob = bpy.data.objects["Cube Stock"]
+    way = [np.array(p) / UNIT for p in places]
+    yield from lessons.brushed(screen, ob, way, steps=6, together=6, **modifiers)
+
+
+def figure(screen):
+    """A bear's head: a flat cutter bevels the edges, a ball carves eyes, snout and mouth, all with Mirror on."""
+    view, shown, h = screen.area.spaces.active.region_3d, bpy.context.window_manager.riffler, 50.0
+    whole = volume()
+    shown.sculpt.mirror, shown.tool.kind = {"X"}, "flat"
+    yield from sized(screen, 28, 6)
+    for turn, y in ((45, -h), (135, h)):
+        yield from seen(screen, 90, turn)
+        yield from carved(screen, (h, y, -h + 1), (h, y, h - 1))
+    for turn, a, b in (
+        (0, (0, -h, h), (h - 8, -h, h)),
+        (90, (h, -h, h), (h, h, h)),
+        (180, (0, h, h), (h - 8, h, h)),
+    ):
+        yield from seen(screen, 45, turn)
+        yield from carved(screen, a, b)
+    yield from seen(screen, 90, 0)
+    shown.tool.kind = "ball"
+    yield from sized(screen, 13, 8)
+    yield from carved(screen, (18, -h, 10), (18.5, -h, 10.5))  # sockets
+    yield from sized(screen, 7, 6)
+    yield from carved(screen, (18, -h, 10), (18.3, -h, 10.2), ctrl=True)  # eyes
+    yield from sized(screen, 9, 5)
+    yield from carved(screen, (7, -h, 0), (15, -h, -7), (24, -h, -16), (28, -h, -26))  # beside the snout
+    yield from sized(screen, 3, 2.5)
+    yield from carved(screen, (0, -h, -14), (0, -h, -22), (7, -h, -28), (15, -h, -27))  # the mouth
+    yield from carved(screen, (-4, -h, -8), (4, -h, -8))  # the nose
+    after = volume()
+    assert 0.6 * whole < after < 0.97 * whole, (whole, after)
+    body = support.part("bl.live").content(bpy.data.objects["Cube Stock"]).volume
+    places = np.random.default_rng(2).uniform(-49, 49, (4000, 3))
+    inside, other = body.contains(places), body.contains(places * (-1, 1, 1))
+    assert (inside != other).mean() < 5e-3, (inside != other).mean()
+    yield from seen(screen, 74, 24)
+    view.view_perspective, view.view_distance = "PERSP", view.view_distance * 0.75
+    screen.area.spaces.active.shading.show_cavity = True
+    screen.move(screen.region().x + 60, screen.area.y + screen.area.height + 40)  # off the view: no cursor, no planes
+    yield 1.0
+    yield from lessons.picture(screen, "cube-3", lessons.view_box(screen))
+    support.part("bl.live").end_all()
+    yield 0.5
