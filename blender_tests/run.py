@@ -7,8 +7,9 @@
 Each (Blender, way of installing), and each script of a window, is one process with a time limit; a few run at a time.
 Ways of installing: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
 source folder, of which one Blender tests what goes by the way of installing, and everything where --blender or --mode
-names it. Ends with the slowest tests and the number of those that passed, failed and were skipped, with reasons; exit
-code 1 if one failed.
+names it. Tests whose time goes into the core (support.core_bound) run in the oldest and the newest Blender, and in any
+that --blender or --mode names. Ends with the slowest tests and the number of those that passed, failed and were
+skipped, with reasons; exit code 1 if one failed.
 """
 
 from __future__ import annotations
@@ -58,6 +59,7 @@ class Tally:
     times: list[tuple[float, str]] = field(default_factory=list)
     failed: list[tuple[str, str]] = field(default_factory=list)  # name and message
     skipped: list[str] = field(default_factory=list)
+    left: list[str] = field(default_factory=list)  # tests that other Blenders run, by process
 
     def add(self, where: str, result: dict) -> None:
         name, outcome = f"{where}: {result['name']}", result["outcome"]
@@ -72,6 +74,11 @@ class Tally:
             self.failed.append((name, result["message"]))
             note = indented(result["message"])
         print(f"  {outcome:8}{result['seconds']:7.2f} s  {result['name']}{note}", flush=True)
+
+    def leave(self, where: str, count: int, others: str) -> None:
+        why = "because their time goes into the core"
+        self.left.append(f"{where}: tests that run in {others} only, {why}: {count}")
+        print(f"  left out          {self.left[-1]}", flush=True)
 
     def skip(self, what: str, reason: str) -> None:
         self.skipped.append(f"{what}: {reason}")
@@ -140,6 +147,8 @@ class Bench:
                 begun = message["start"]
             elif "note" in message:
                 print(f"  note              {message['note']}", flush=True)
+            elif "left" in message:
+                self.tally.leave(where, message["left"], self.ends)
             elif "figure" in message:
                 print(f"  figure            {message['figure']}: {message['value']}", flush=True)
                 self.figures.append({"where": where, **message})
@@ -159,6 +168,7 @@ class Bench:
             )
 
     figures: list[dict] = field(default_factory=list)
+    ends: str = ""  # the Blenders that run every test
     printing: threading.Lock = field(default_factory=threading.Lock)  # what one process says stays together
 
 
@@ -275,6 +285,10 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
             bench.tally.skip(environment.name, environment.missing)
             continue
         usable.append(environment)
+    ends = usable[:1] + usable[-1:]
+    bench.ends = " and ".join(environment.name for environment in ends)
+    for environment in usable:
+        more = {"leave_out": environment not in ends and not (arguments.blender or arguments.mode)}
         for mode in modes(environment, arguments):
             if mode != "source" and mode not in bench.zips:
                 bench.tally.skip(f"{environment.name}, {mode}", "no wheel in build/wheel or dist to make the zip from")
@@ -282,7 +296,7 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
             chosen = files
             if mode == "source" and not (arguments.mode or arguments.blender):
                 chosen = [file for file in files if file.stem.removeprefix("test_") in OF_THE_PLACE]
-            runs.append(partial(bench.run, environment, mode, chosen))
+            runs.append(partial(bench.run, environment, mode, chosen, more))
         if arguments.mode in (None, "source"):
             runs.append(partial(bench.run, environment, "none", [HERE / "broken" / "test_fallback.py"]))
             if arguments.figures:
@@ -369,6 +383,8 @@ def close(tally: Tally) -> int:
     for seconds, name in sorted(tally.times, reverse=True)[:SLOWEST]:
         print(f"  {seconds:7.2f} s  {name}")
     print(f"\n{tally.passed} passed, {len(tally.failed)} failed, {len(tally.skipped)} skipped")
+    for line in tally.left:
+        print(f"  left out {line}")
     for line in tally.skipped:
         print(f"  skipped  {line}")
     for name, message in tally.failed:

@@ -27,6 +27,13 @@ def out(name):
     return str(path / name)
 
 
+def core_bound(test):
+    """Marks a test whose time goes into the core and that uses nothing that differs between Blender's versions: it runs
+    in the oldest and in the newest of them only. Undo, opening files, frames and mesh attributes need all."""
+    test.core_bound = True
+    return test
+
+
 def scale(mm_per_unit):
     """Sets what one Blender unit is worth, in mm."""
     bpy.context.scene.unit_settings.scale_length = mm_per_unit / 1000

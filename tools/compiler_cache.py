@@ -19,11 +19,15 @@ STATISTICS = ROOT / "build" / "ccache-statistics.log"
 SIZE = "2G"
 
 
+def user_caches() -> Path:
+    """The user's folder for caches."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+
+
 def folder() -> Path:
     """Where compiled objects are kept."""
     chosen = os.environ.get("CCACHE_DIR")
-    caches = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return Path(chosen) if chosen else caches / "riffler" / "ccache"
+    return Path(chosen) if chosen else user_caches() / "riffler" / "ccache"
 
 
 @cache

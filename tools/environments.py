@@ -9,6 +9,7 @@ import shutil
 import sys
 from pathlib import Path
 
+import environment_cache
 from shell import ROOT, StepError, digest, is_stamped, run, say, tool_environment, write_stamp
 
 REQUIREMENTS = ROOT / "requirements"
@@ -55,29 +56,44 @@ def docs_environment() -> Path:
 
 def make_environment(path: Path, requirements: Path, fallback: list[str] | None = None) -> None:
     """An environment with exactly what `requirements` pins. Made anew if that changed or was not finished, so that what
-    is pinned is what is there; pip's cache makes that cheap."""
+    is pinned is what is there; packages that another checkout has installed are linked."""
     pip_requirements = REQUIREMENTS / "pip.txt"
     key = digest([requirements, pip_requirements], sys.version, sys.base_prefix)
     stamp, unfinished = path / STAMP, path / UNFINISHED
     if is_stamped(stamp, key):
         return
-    if path.exists():
-        if not (stamp.exists() or unfinished.exists()):
-            raise StepError(f"{path.relative_to(ROOT)} was not made by `make setup`: move it away")
-        shutil.rmtree(path)
+    if path.exists() and not (stamp.exists() or unfinished.exists()):
+        raise StepError(f"{path.relative_to(ROOT)} was not made by `make setup`: move it away")
     say(f"{path.relative_to(ROOT)}: packages of {requirements.relative_to(ROOT)}")
-    path.mkdir(parents=True)
-    unfinished.touch()
-    bare_environment(path, pip_requirements)
-    install = [*pip(path), "install", "--quiet", *network_options(), "-r", requirements]
-    try:
-        run(*install)
-    except StepError:
-        if fallback is None:
-            raise
-        run(*install, *fallback)
+    kept = environment_cache.entry(requirements.stem, key)
+    start(path)
+    if not (os.path.isdir(kept) and linked(path, kept)):
+        start(path)
+        bare_environment(path, pip_requirements)
+        install = [*pip(path), "install", "--quiet", *network_options(), "-r", requirements]
+        try:
+            run(*install)
+        except StepError:
+            if fallback is None:
+                raise
+            run(*install, *fallback)
+        environment_cache.keep(path, kept)
     unfinished.unlink()
     write_stamp(stamp, key)
+
+
+def start(path: Path) -> None:
+    """An empty folder that is marked as unfinished."""
+    if path.exists():
+        shutil.rmtree(path)
+    path.mkdir(parents=True)
+    (path / UNFINISHED).touch()
+
+
+def linked(path: Path, kept: Path) -> bool:
+    """Whether the environment is there now: an interpreter of its own, packages of the cache."""
+    run(sys.executable, "-m", "venv", "--without-pip", path)
+    return environment_cache.restore(path, kept)
 
 
 def bare_environment(path: Path, pip_requirements: Path) -> None:

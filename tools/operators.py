@@ -23,8 +23,9 @@ ADDON = "riffler_addon"
 
 # Topic → its operators. Every registered one stands in exactly one, which `page` checks.
 TOPICS = {
-    "Stock and tools": ["new_stock", "fit_pitch", "rebuild", "millimetres", "tool_preset"],
-    "Sculpting": ["stroke", "frame", "leave", "cut_curve", "cut_recording"],
+    "Stock and tools": ["new_stock", "add_solid", "fit_pitch", "rebuild", "millimetres", "tool_preset"],
+    "Sculpting": ["stroke", "stroke_elsewhere", "make_sculpt", "edits_first", "resize", "size_step", "frame", "leave",
+                  "cut_curve", "cut_recording"],
     "Clay": ["resample", "room", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"],
     "Devices": ["pen_sculpt", "pen_stop", "pen_home", "pen_reset"],
     "Meshes and files": ["to_mesh", "show_deviation", "hide_deviation", "export_stl", "export_3mf", "export_nc",

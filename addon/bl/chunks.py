@@ -81,13 +81,15 @@ class Chunks:
         ob = bpy.data.objects.get(self._names.get(block, ""))
         if ob is None:  # somebody has removed it: it is not wanted
             return
-        vertices, triangles, *edges = mesher.patch(bricks, edges=True)
-        meshes.fill(ob.data, vertices / self._mm, triangles, edges)
+        angle = meshes.SHARP_ANGLE if versions.OWN_NORMALS else None
+        vertices, triangles, ends, corners, *normals = mesher.patch(bricks, edges=True, normals=angle)
+        edges = ends, corners
+        meshes.fill(ob.data, vertices / self._mm, triangles, edges, *normals)
         masks.show(ob.data, mask, vertices, triangles)
         self.fillings[block] = next(_fillings)
         ob.data[FILLING] = self.fillings[block]
         if stages:
-            size = sum(a.nbytes for a in (vertices, triangles, *edges))
+            size = sum(a.nbytes for a in (vertices, triangles, *edges, *normals))
             stages.count(bricks=len(bricks), chunks=1, triangles=len(triangles), bytes=size)
 
     def place(self, matrix):
@@ -188,6 +190,7 @@ def _new_collection(context, ob):
     collection = bpy.data.collections.new("Riffler Live")
     collection[MARK], collection[MADE] = ob.riffler.mark, collection.name
     collection["hidden"], collection["selected"] = ob.hide_get(), ob.select_get()
+    collection["selectable"] = not ob.hide_select
     collection["scene"], collection["layer"] = context.scene.name, context.view_layer.name
     # Views that draw a line around every object would draw it around every chunk. It is written down here, so that it
     # is given back after a crash, too.
@@ -200,13 +203,28 @@ def _new_collection(context, ob):
 
 
 def hide(ob):
-    """The sculpt's own mesh is not seen, and does not weigh on each undo, where that would cost."""
+    """The sculpt's own mesh is not seen, and does not weigh on each undo, where that would cost. It stays visible for
+    Blender, as one that only its instances are drawn of, which it has none of: to a view a hidden object is not the
+    active one, and its menu of modes is empty. Whatever has children, or instances of its own, is hidden by its eye."""
     versions.lighten(ob.data)
-    ob.hide_set(True)  # deselects it, too
+    ob.select_set(False)
+    if ob.hide_get():
+        return
+    if ob.children or ob.instance_type != "NONE":
+        ob.hide_set(True)
+        return
+    ob.instance_type, ob.show_instancer_for_viewport, ob.hide_select = "VERTS", False, True
 
 
-def reveal(ob, select=False, layers=None):
-    """Undoes the hiding, in these view layers, or in every one."""
+def is_hidden(ob):
+    """Whether `hide` has hidden it, so that its instances would be drawn only."""
+    return ob.instance_type == "VERTS" and not ob.show_instancer_for_viewport
+
+
+def reveal(ob, select=False, layers=None, selectable=True):
+    """Undoes the hiding, in these view layers, or in every one. `selectable`: as it was."""
+    if is_hidden(ob):
+        ob.instance_type, ob.show_instancer_for_viewport, ob.hide_select = "NONE", True, not selectable
     if layers is None:
         layers = [layer for scene in bpy.data.scenes for layer in scene.view_layers]
     for layer in layers:
@@ -223,6 +241,7 @@ class Before:
 
     hidden: bool
     selected: bool
+    selectable: bool
     layer: tuple  # names of scene and view layer
     outlined: list
 
@@ -230,7 +249,8 @@ class Before:
 def _before(collection):
     """Of a collection of chunks; an older add-on did not write down the layer."""
     layer = collection.get("scene", ""), collection.get("layer", "")
-    return Before(collection["hidden"], collection["selected"], layer, collection["outlined"].split("\n"))
+    selectable = bool(collection.get("selectable", True))
+    return Before(collection["hidden"], collection["selected"], selectable, layer, collection["outlined"].split("\n"))
 
 
 def _reveal(ob, before):
@@ -238,7 +258,7 @@ def _reveal(ob, before):
         return
     scene = bpy.data.scenes.get(before.layer[0])
     layer = scene and scene.view_layers.get(before.layer[1])
-    reveal(ob, before.selected, None if layer is None else [layer])
+    reveal(ob, before.selected, None if layer is None else [layer], before.selectable)
 
 
 def _outline(places):

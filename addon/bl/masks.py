@@ -13,6 +13,10 @@ def on_grid_of(volume, mask):
     """The mask of a sculpt that becomes `volume`, which has other rays or another box; None where nothing is left."""
     if mask is None or mask.volume == 0:
         return None
+    if (mask.pitch, mask.directions) == (volume.pitch, volume.directions):
+        made = mask.grown(volume.lower, volume.upper)
+        if np.array_equal([made.lower, made.upper], [volume.lower, volume.upper]):
+            return made  # on the rays that it had
     made = mask.resampled(volume.pitch, volume.directions, volume.lower, volume.upper)
     return made if made.volume > 0 else None
 

@@ -11,15 +11,18 @@ import numpy as np
 
 from . import versions
 
-# Dexel surfaces facet curved cuts by a few degrees; edges that a tool leaves are steeper than this.
-SHARP_ANGLE = math.radians(30)
+# Dexel surfaces facet curved cuts by a few degrees, and edges that a tool leaves are steeper than this. The seam of a
+# bead or groove of the default radius and depth has 25 to 40 degrees: with an angle among these, one of its edges is
+# sharp and the next smooth, which looks like crumbs along the seam.
+SHARP_ANGLE = math.radians(20)
 
 
-def fill(mesh, co, tri, edges=None):
+def fill(mesh, co, tri, edges=None, normals=None):
     """Replaces the mesh's geometry: `co` (V, 3) Blender units, `tri` (F, 3) vertex indices. Keeps material slots.
 
     `edges`, where they are known: (E, 2) vertex indices, each edge once, and (F, 3), of each triangle's corners the
-    edge to the next one. Blender needs three times as long to find them."""
+    edge to the next one. Blender needs three times as long to find them. Such a mesh is one of the chunks: `normals`
+    are of versions.shade_chunk."""
     co = np.ascontiguousarray(co, np.float32)
     tri = np.ascontiguousarray(tri, np.int32)
     _forget_shape_keys(mesh)
@@ -38,8 +41,8 @@ def fill(mesh, co, tri, edges=None):
     mesh.update(calc_edges=edges is None)
     if edges is None:
         versions.shade_by_angle(mesh, SHARP_ANGLE)
-    else:
-        versions.shade_chunk(mesh, SHARP_ANGLE)
+    elif len(tri):
+        versions.shade_chunk(mesh, SHARP_ANGLE, normals)
 
 
 def _forget_shape_keys(mesh):

@@ -78,6 +78,7 @@ class Live:
         self.cut_off = False  # whether the box has cut off what this stroke, or this session, put on
         self._outline = None, None  # a tool, and its cutter's
         self._masked, self._painted = [], []  # where the mask has changed since the last look, and in this stroke
+        self._reached, self._swept = [], []  # what tools have swept since the last look, and in this stroke
         self.token = ""
         self._facts = None  # (token, of it)
         self._objects = -1  # in the file, when copies were last looked for
@@ -131,7 +132,7 @@ class Live:
         ob = self.object
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
-        self._strokes, self._painted, self.cut_off = [], [], False
+        self._strokes, self._painted, self._swept, self.cut_off = [], [], [], False
         self._apart.clear()
         self._begin = self.volume.copy(), _copy(self.mask)
         self._next = uuid.uuid4().hex  # the token of the state that the stroke makes
@@ -214,6 +215,8 @@ class Live:
             self._masked.append(self._reach(tool, poses))
             self._painted.append(self._masked[-1])
             return self.mask.carve(tool, poses, dt=dt, mode="add" if mode == "mask" else "remove")
+        self._reached.append(self._reach(tool, poses))
+        self._swept.append(self._reached[-1])
         if mode == "soften":
             self.volume.soften(poses[:, :3], 0.5 * tool.diameter, self.strength, self.mask)
             return None
@@ -244,11 +247,20 @@ class Live:
             bricks = self.mesher.update(self.volume)
         for rays in self._masked:  # the surface is the same there, but not its colour
             bricks = sorted({*bricks, *blocks.within(self._mesher.shape, *rays)})
-        self._masked = []
+        bricks = self._with_borders(bricks)
+        self._masked, self._reached = [], []
         with self.stages.of("transfer"):
             self.chunks.update(self._mesher, bricks, self.mask, self.stages)
             self.chunks.place(self.object.matrix_world)
         self.stages.looked()
+
+    def _with_borders(self, bricks):
+        """And those whose triangles are the same, but whose normals at the border to a changed one are others."""
+        if not versions.OWN_NORMALS or not len(bricks):
+            return bricks
+        shape = self._mesher.shape
+        swept = {b for reach in self._reached for b in blocks.within(shape, *reach)}
+        return sorted({*bricks, *(swept & blocks.beside(shape, bricks))})
 
     def finish_stroke(self, context, label=""):
         """What was carved since `begin_stroke` is a state of its own. The caller's operator makes the undo step; a
@@ -271,7 +283,7 @@ class Live:
         begin, self._begin = self._begin, None
         if begin is not None:
             self.volume, self.mask = begin
-            self._masked = self._painted
+            self._masked, self._reached = self._painted, self._swept
             self.keeping.cancelled()
             self.show()
 

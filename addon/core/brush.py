@@ -21,6 +21,9 @@ MODES = ("remove", "add", "soften", "mask", "unmask")
 OPPOSITE = {"remove": "add", "add": "remove", "soften": "soften", "mask": "unmask", "unmask": "mask"}
 NUMBERS = len(Sample._fields)
 DABS = 1 / 6  # of the tool's width: from one dab of smoothing to the next
+AROUND = 0.25  # of the tool's width: the surface's normal is the mean of what is so far around a place
+TURN = 2 * np.pi * np.arange(16) / 8
+SPOKES, RINGS = np.stack([np.cos(TURN), np.sin(TURN)], axis=1), np.repeat([1.0, 0.5], 8)  # eight in each of two rings
 
 
 @dataclass(frozen=True)
@@ -112,8 +115,23 @@ class Brush:
         if found is None:
             return None
         _, point, normal, _ = found
+        point, normal = np.asarray(point), self._around(np.asarray(point), np.asarray(normal))
         # Material is put on from within: by the tool's mirror image, whose tip comes out of the surface.
-        return Hit(np.asarray(point), -np.asarray(normal) if self._outwards else np.asarray(normal))
+        return Hit(point, -normal if self._outwards else normal)
+
+    def _around(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """The surface's normal without the jerks of its facets: the mean of a place and of two rings around it. Rays
+        come in from all sides at 45°, so what lies behind an edge counts before the tool is there. It is a function of
+        the place: on a curved surface a mean along the way would lag behind it."""
+        spokes = SPOKES @ across(normal)
+        far = AROUND * self.tool.diameter * RINGS
+        directions = -np.sqrt(0.5) * (spokes + normal)
+        distance, _, normals, _ = self._surface.pick(point + far[:, None] * (2 * spokes + normal), directions)
+        near = distance <= 2 * np.sqrt(2) * far
+        from_outside = (normals * directions).sum(axis=1) < 0  # NaN where there is none
+        mean = normal + normals[near & from_outside].sum(axis=0)
+        size = np.sqrt(mean @ mean)
+        return mean / size if size > 1e-6 else normal
 
     def _carve(self, pieces) -> bool:
         for piece in pieces:
@@ -136,6 +154,19 @@ class Brush:
             if len(cut.force):
                 self.force, self.torque = np.array(cut.force[-1]), np.array(cut.torque[-1])
         return bool(pieces)
+
+
+def across(normal: np.ndarray) -> np.ndarray:
+    """(2, 3) unit vectors square to a unit vector and to each other. np.cross takes ten times as long."""
+    x, y, z = normal.tolist()
+    if abs(z) > 0.7:
+        size = math.hypot(y, z)
+        first = (0.0, z / size, -y / size)
+    else:
+        size = math.hypot(x, y)
+        first = (y / size, -x / size, 0.0)
+    a, b, c = first
+    return np.array([first, (y * c - z * b, z * a - x * c, x * b - y * a)])
 
 
 def stub(tool, depth: float):

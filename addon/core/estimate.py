@@ -16,15 +16,14 @@ MANY_RAYS = 100_000_000
 MOST_TRIANGLES = 50_000_000
 
 
-def check_surface(name: str, size, area: float, pitch: float) -> None:
+def check_surface(name: str, size, area: float, pitch: float, remedy: str = "take a coarser pitch") -> None:
     """ValueError where a surface of `area` (mm²) is too large to be shown at `pitch` (mm): two triangles for each cell
     that it goes through, and one that leans goes through more."""
     triangles = 2 * area / pitch**2
     if triangles > MOST_TRIANGLES:
         raise ValueError(
             f"{name} is {units.format_size(size)}, which are {units.format_count(round(triangles))} triangles at "
-            f"{units.trim(pitch, 4)} mm: take a coarser pitch; or where a unit was to be a millimetre, use Scene in "
-            "Millimetres"
+            f"{units.trim(pitch, 4)} mm: {remedy}; or where a unit was to be a millimetre, use Scene in Millimetres"
         )
 
 
@@ -73,13 +72,3 @@ def ray_count(size, pitch: float, directions: str) -> int:
 
 def stock_bytes(size, pitch: float, directions: str) -> int:
     return BYTES_PER_RAY * ray_count(size, pitch, directions)
-
-
-def fitting_pitch(size, rays_across: int = 400) -> float:
-    """A round pitch (1, 2, 2.5 or 5 × 10ⁿ mm) that gives about `rays_across` along the longest side."""
-    wanted = max(float(s) for s in size) / rays_across
-    if not (math.isfinite(wanted) and wanted > 0):
-        raise ValueError(f"size must be three positive lengths, not {tuple(size)}")
-    decade = 10.0 ** math.floor(math.log10(wanted))
-    step = min((1, 2, 2.5, 5, 10), key=lambda s: abs(math.log(s * decade / wanted)))
-    return float(f"{step * decade:.3g}")

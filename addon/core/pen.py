@@ -69,6 +69,11 @@ class PenRun:
             self.in_stroke, self.push = False, np.zeros((2, 3))
         return ""
 
+    @property
+    def pushes(self) -> bool:
+        """True where the device has motors, so that the hand feels what is cut."""
+        return any(axis["pushes"] for axis in self.device.limits.values())
+
     def close(self) -> None:
         self.device.stop()
 

@@ -1,4 +1,5 @@
-"""What showing a sculpt costs: milliseconds of the last looks, by stage, and counts that no machine changes."""
+"""What showing a sculpt costs: milliseconds of the last looks, by stage, how long the hand's samples waited to be seen,
+and counts that no machine changes."""
 
 from __future__ import annotations
 
@@ -16,6 +17,7 @@ class Stages:
     def __init__(self, keep: int = 30, clock=time.perf_counter):
         self._clock = clock
         self._looks: deque[dict[str, float]] = deque(maxlen=keep)
+        self._waits: deque[float] = deque(maxlen=keep)
         self._now = dict.fromkeys((*NAMES, *COUNTS), 0.0)
         self.counts = dict.fromkeys(COUNTS, 0)
 
@@ -38,6 +40,14 @@ class Stages:
     def looked(self) -> None:
         self._looks.append(self._now)
         self._now = dict.fromkeys((*NAMES, *COUNTS), 0.0)
+
+    def waited(self, seconds: float) -> None:
+        """At most, from an event of the hand until what it has done was drawn."""
+        self._waits.append(seconds)
+
+    def lag(self) -> tuple[float, float]:
+        """Milliseconds: the median and the longest of the waits that were kept."""
+        return 1000 * _median(list(self._waits)), 1000 * max(self._waits, default=0.0)
 
     @property
     def newest(self) -> dict[str, float]:

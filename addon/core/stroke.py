@@ -1,7 +1,8 @@
 """A stroke of a mouse or a tablet as tool poses: the tool follows the surface under the cursor.
 
 Nothing here knows of Blender: a `pick` says what the surface is at a place of the view, and what comes back are poses
-to carve, piece by piece as the hand moves on. The same samples on the same surface give the same poses.
+to carve, piece by piece as the hand moves on. The tool goes along a smooth path through the samples (smooth_path.py),
+some pixels behind the hand. The same samples on the same surface give the same poses.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
+
+from .smooth_path import SmoothPath
 
 MOST_TILT = 1.0  # rad: tablets tell nonsense near the horizon
 MOST_PICKS = 1024  # between two samples: a hand that jumps across the view in one event
@@ -51,7 +54,6 @@ class Settings:
     pressure: str = "NONE"  # what it does: NONE, DEPTH (share of depth), FEED (share of feed)
     feed: float = 50.0  # mm/s, where the clock says nothing and for FEED
     string: float = 0.0  # pixels: the tool hangs on a string of this length
-    settle: float = 3.0  # mm of way over which normals are averaged
     gap: float = 10.0  # mm: what is further from one place to the next is another part of the surface
 
 
@@ -93,45 +95,61 @@ class StrokeMaker:
     view: View
     _last: _Place | None = field(default=None, init=False)
     _newest: Sample | None = field(default=None, init=False)
-    _normal: np.ndarray | None = field(default=None, init=False)
+    _pulled: Sample | None = field(default=None, init=False)  # where the string's end is
+    _path: SmoothPath = field(default_factory=SmoothPath, init=False)
+    _along: float = field(default=0.0, init=False)  # the path, in its pixels: where the tool is
 
     def add(self, sample: Sample) -> list[Piece]:
-        self._newest = sample
-        return self._to(self._pull(sample))
+        self._newest, self._pulled = sample, self._pull(sample)
+        self._path.add(self._pulled)
+        return self._follow()
 
     def end(self) -> list[Piece]:
         """The tool comes to where the hand let go, string or not."""
-        return [] if self._newest is None else self._to(self._newest)
+        if self._newest is None:
+            return []
+        self._path.add(self._newest)
+        self._path.finish()
+        return self._follow(end=True)
 
     # ------------------------------------------------------------------ where
     def _pull(self, sample: Sample) -> Sample:
-        if self._last is None or self.settings.string <= 0:
+        if self._pulled is None or self.settings.string <= 0:
             return sample
-        here = self._last.sample
+        here = self._pulled
         way = np.hypot(sample.x - here.x, sample.y - here.y)
         share = 0.0 if way <= self.settings.string else 1 - self.settings.string / way
         return sample._replace(x=here.x + share * (sample.x - here.x), y=here.y + share * (sample.y - here.y))
 
-    def _to(self, sample: Sample) -> list[Piece]:
-        last = self._last
-        if last is not None and sample[:3] == last.sample[:3]:
+    def _follow(self, end: bool = False) -> list[Piece]:
+        """Along the path as far as it is certain; not for less than half a spacing, unless it is the end."""
+        ready = self._path.ready
+        if self._last is None:
+            return self._pieces(self._places([0.0]))
+        if ready <= self._along:
             return []
-        goal = self._place(sample)
-        return self._pieces([goal] if last is None else [*self._between(last, goal), goal])
+        (goal,) = self._places([ready])
+        wanted = self._wanted(goal, ready - self._along)
+        if wanted < 0.5 and not end:
+            return []
+        count = max(1, int(np.ceil(min(wanted, (ready - self._along) / FINEST, MOST_PICKS))))
+        between = self._places(self._along + (ready - self._along) * np.arange(1, count) / count)
+        self._along = ready
+        self._path.forget(ready)
+        return self._pieces([*between, goal])
 
-    def _place(self, sample: Sample) -> _Place:
-        return _Place(sample, self.pick(sample.x, sample.y))
+    def _places(self, along) -> list[_Place]:
+        samples = [Sample(*row) for row in self._path.at(along).tolist()]
+        return [_Place(s, self.pick(s.x, s.y)) for s in samples]
 
-    def _between(self, last: _Place, goal: _Place) -> list[_Place]:
-        """Places on the way, so that the tool does not go straight through what lies between."""
-        start, end = np.array(last.sample), np.array(goal.sample)
-        pixels = float(np.hypot(*(end - start)[:2]))
-        if last.hit is not None and goal.hit is not None:
-            wanted = np.linalg.norm(goal.hit.point - last.hit.point) / self.settings.spacing
-        else:
-            wanted = pixels  # onto the surface or off it: the edge may be at any of them
-        count = int(np.ceil(min(wanted, pixels / FINEST, MOST_PICKS)))
-        return [self._place(Sample(*(start + (end - start) * k / count))) for k in range(1, count)]
+    def _wanted(self, goal: _Place, pixels: float) -> float:
+        """How many steps the way there is, so that the tool does not go straight through what lies between."""
+        last = self._last
+        if last.hit is None or goal.hit is None:
+            return pixels  # onto the surface or off it: the edge may be at any of them
+        pressed = abs(goal.sample.pressure - last.sample.pressure) if self.settings.pressure == "DEPTH" else 0.0
+        way = np.linalg.norm(goal.hit.point - last.hit.point) + pressed * self.settings.depth
+        return float(way / self.settings.spacing)
 
     # ------------------------------------------------------------------ how
     def _pieces(self, places: list[_Place]) -> list[Piece]:
@@ -145,7 +163,6 @@ class StrokeMaker:
             if not joined:
                 self._close(pieces, rows, times, new)
                 rows, times, new = [], [], True
-                self._normal = None
             if place.hit is not None:
                 if joined and not rows:
                     rows, new = [last.row], False
@@ -155,7 +172,7 @@ class StrokeMaker:
         return pieces
 
     def _row(self, place: _Place, joined: bool, rows: list, times: list) -> None:
-        normal = self._settled(place, joined)
+        normal = place.hit.normal
         depth = self.settings.depth * (place.sample.pressure if self.settings.pressure == "DEPTH" else 1.0)
         axis = self._axis(place.sample, normal)
         place.row = self._pose(place.hit.point, normal, axis, depth)
@@ -166,19 +183,6 @@ class StrokeMaker:
             way = float(np.linalg.norm(place.row[:3] - rows[-1][:3]))
             times.append(self._seconds(way, place.sample, place.sample.time - self._last.sample.time))
         rows.append(place.row)
-
-    def _settled(self, place: _Place, joined: bool) -> np.ndarray:
-        """The surface's normal without the jerks of its facets: a mean that forgets over `settle`."""
-        if not joined or self._normal is None:
-            self._normal = place.hit.normal
-        else:
-            way = np.linalg.norm(place.hit.point - self._last.hit.point)
-            keep = float(np.exp(-way / self.settings.settle)) if self.settings.settle > 0 else 0.0
-            mean = keep * self._normal + (1 - keep) * place.hit.normal
-            size = np.linalg.norm(mean)
-            if size > 1e-6:
-                self._normal = mean / size
-        return self._normal
 
     def _axis(self, sample: Sample, normal: np.ndarray) -> np.ndarray:
         kind = self.settings.axis
@@ -214,6 +218,6 @@ class StrokeMaker:
 
 
 def settings_for(pitch: float, diameter: float, **chosen) -> Settings:
-    """Spacing, settling and gap that suit a volume's pitch and a tool's width."""
-    fitting = Settings(spacing=max(pitch, diameter / 12), settle=0.5 * diameter, gap=max(diameter, 4 * pitch))
+    """Spacing and gap that suit a volume's pitch and a tool's width."""
+    fitting = Settings(spacing=max(pitch, diameter / 12), gap=max(diameter, 4 * pitch))
     return replace(fitting, **chosen)

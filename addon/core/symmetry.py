@@ -45,3 +45,23 @@ def copies(poses: np.ndarray, about: list[np.ndarray], origin) -> list[np.ndarra
         if not any(np.abs(copy - other).max(initial=0.0) < near for other in kept):
             kept.append(copy)
     return kept
+
+
+def outlines(mirror, count: int, axis: str, box, middle) -> list[tuple[np.ndarray, str, bool]]:
+    """Where the copies come from, within a box (`lower`, `upper`, mm): of each mirror a rectangle (4, 3), the letter it
+    is square to, and True; of turns the axis (2, 3), its letter, and False."""
+    lower, upper, middle = np.asarray(box.lower, float), np.asarray(box.upper, float), np.asarray(middle, float)
+    found = []
+    for letter in sorted(mirror):
+        i = "XYZ".index(letter)
+        j, k = (i + 1) % 3, (i + 2) % 3
+        corners = np.tile(middle, (4, 1))
+        corners[:, j] = lower[j], upper[j], upper[j], lower[j]
+        corners[:, k] = lower[k], lower[k], upper[k], upper[k]
+        found.append((corners, letter, True))
+    if count > 1:
+        ends = np.tile(middle, (2, 1))
+        i = "XYZ".index(axis)
+        ends[:, i] = lower[i], upper[i]
+        found.append((ends, axis, False))
+    return found

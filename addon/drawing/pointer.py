@@ -7,8 +7,9 @@ Blender draws cursors over the finished view, so following the pointer costs no 
 import numpy as np
 
 from ..bl import live, meshes, sculpts, units
-from ..core import brush, glyphs, poses
+from ..core import brush, fitting, glyphs, poses, symmetry
 from ..core.sight import Sight
+from ..properties.plan import WITH_SURFACE
 from . import batches
 
 COLOURS = {
@@ -18,11 +19,13 @@ COLOURS = {
     "mask": (0.85, 0.85, 0.85),
     "unmask": (0.6, 0.6, 0.6),
 }
+AXES = ((1.0, 0.25, 0.3), (0.45, 0.8, 0.1), (0.25, 0.55, 1.0))  # planes square to x, y and z, as Blender's axes
 SHADOW = (0.0, 0.0, 0.0, 0.55)
 SHOWN = 1.5  # diameters of the tool above its tip: more would cover the view
 
 kept = batches.Batches()
 pixels_per_mm = 10.0  # where the pointer was last: for Blender's radial control, which knows no place
+sizing = None  # core/sizing.Drag, while a size is set by the pointer's distance
 held = None  # the Brush of the stroke that is made now, and what its tool is
 
 
@@ -35,9 +38,19 @@ def draw(context, mode, xy):
     """`mode`: of core/brush.py; `xy`: the pointer in the window."""
     region, space = context.region, context.region_data
     ob = sculpts.active(context)
-    if region is None or space is None or ob is None or context.window_manager.riffler.sculpting:
+    if region is None or space is None or context.window_manager.riffler.sculpting:
         return  # while a device sculpts, its tool is the cursor
     at = xy[0] - region.x, xy[1] - region.y
+    zoom, corner = context.preferences.system.ui_scale, (region.x, region.y)
+    if sizing is not None:
+        rings = [(sizing.middle, sizing.first * sizing.scale, False), (sizing.middle, sizing.radius, True)]
+        _draw([(_ring(*ring), True, strong) for *ring, strong in rings], corner, COLOURS[mode], zoom)
+        return
+    if ob is None:
+        _draw(_before(context, region, space, at), corner, COLOURS[mode], zoom)
+        return
+    if held is None:
+        _planes(context, ob, region, space, corner, zoom)
     tool = context.scene.riffler.tool.dictionary()
     run = live.of(ob)
     lines = None
@@ -45,7 +58,7 @@ def draw(context, mode, xy):
         lines = _on_surface(context, mode, run, tool, at)
     if lines is None:
         lines = _beside(context, ob, region, space, at)
-    _draw(lines, (region.x, region.y), COLOURS[mode], context.preferences.system.ui_scale)
+    _draw(lines, corner, COLOURS[mode], zoom)
 
 
 def _on_surface(context, mode, run, tool, at):
@@ -87,6 +100,38 @@ def tool_lines(cutter, pose, place, normal, view):
     return [(view.project(points), closed, strong) for points, closed, strong in out]
 
 
+def _planes(context, ob, region, space, corner, zoom):
+    """Where strokes are mirrored, as outlines of the planes within the stock's box; and the axis of radial copies."""
+    settings, p = context.scene.riffler.sculpt, ob.data.riffler
+    if not settings.mirror and settings.radial < 2:
+        return
+    world = meshes.matrix(ob.matrix_world)
+    world[:3, :3] /= sculpts.shown_mm_per_unit(ob.data)
+    seen = Sight(meshes.matrix(space.perspective_matrix), (region.width, region.height))
+    middle = 0.5 * np.add(p.lower, p.upper) - np.array(p.off_middle)
+    for line, axis, closed in symmetry.outlines(settings.mirror, settings.radial, settings.radial_axis, p, middle):
+        pixels = seen.project(poses.transform_points(world, line))
+        if np.isfinite(pixels).all():
+            _draw([(pixels, closed, False)], corner, AXES["XYZ".index(axis)], zoom, f"plane {axis} {closed}")
+
+
+def _before(context, region, space, at):
+    """Where no sculpt is active: a ring as wide as the cutter would be on the active object if it were one
+    (core/fitting.py); without an object, any ring."""
+    ob, pixels = context.object, 0.0
+    if ob is not None and ob.type in WITH_SURFACE and min(ob.dimensions) > 0:
+        middle = meshes.matrix(ob.matrix_world) @ np.append(np.mean(ob.bound_box, axis=0), 1.0)
+        seen = Sight(meshes.matrix(space.perspective_matrix), (region.width, region.height))
+        pixels = 0.5 * max(ob.dimensions) / fitting.CUTTERS * seen.pixels_per_unit(middle[:3])
+    return [(_ring(at, min(max(pixels, 6.0), 200.0)), True, True)]
+
+
+def _ring(at, radius):
+    """(64, 2) pixels."""
+    angle = 2 * np.pi * np.arange(64) / 64
+    return np.asarray(at) + radius * np.c_[np.cos(angle), np.sin(angle)]
+
+
 def _beside(context, ob, region, space, at):
     """Off the surface, and before the first stroke: a ring as wide as the tool would be in the sculpt's middle."""
     global pixels_per_mm
@@ -97,11 +142,10 @@ def _beside(context, ob, region, space, at):
     scale = float(np.cbrt(abs(np.linalg.det(meshes.matrix(ob.matrix_world)[:3, :3]))))
     pixels_per_mm = seen.pixels_per_unit(middle) * scale / mm
     radius = 0.5 * units.clean(context.scene.riffler.tool.diameter) * pixels_per_mm
-    angle = 2 * np.pi * np.arange(64) / 64
-    return [(np.asarray(at) + radius * np.c_[np.cos(angle), np.sin(angle)], True, True)]
+    return [(_ring(at, radius), True, True)]
 
 
-def _draw(lines, corner, colour, zoom):
+def _draw(lines, corner, colour, zoom, named=""):
     import gpu
 
     with batches.state(), gpu.matrix.push_pop():
@@ -115,7 +159,7 @@ def _draw(lines, corner, colour, zoom):
             ):
                 batches.draw(
                     kept.get(
-                        f"{name} {k}",
+                        f"{named} {name} {k}",
                         signature,
                         lambda p=points, w=width + extra, c=closed: batches.flat(glyphs.ribbon(p, w, c)),
                     ),

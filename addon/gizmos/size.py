@@ -37,12 +37,12 @@ class RIFFLER_GGT_size(bpy.types.GizmoGroup):
         if ob is None:
             return
         settings = context.scene.riffler.sculpt
-        middle, self._unit = _place(ob)
+        middle, unit = _place(ob)
         for gizmo in (self._ring, self._radius, self._depth):
-            gizmo.hide = self._unit == 0  # scaled to nothing
+            gizmo.hide = unit == 0  # scaled to nothing
         turn = ob.matrix_world.to_quaternion().to_matrix().to_4x4()
-        self._ring.matrix_basis = Matrix.Translation(middle) @ turn
-        self._ring.scale_basis = settings.radius * self._unit
+        # Without the view's scale, Blender does not look at scale_basis either.
+        self._ring.matrix_basis = Matrix.Translation(middle) @ turn @ Matrix.Scale(settings.radius * unit, 4)
         # An arrow's own way is its z: along the stock's x for the radius, down for the depth.
         for gizmo, way in ((self._radius, (1, 0, 0)), (self._depth, (0, 0, -1))):
             lean = Vector((0, 0, 1)).rotation_difference(Vector(way)).to_matrix().to_4x4()
@@ -55,14 +55,20 @@ class RIFFLER_GGT_size(bpy.types.GizmoGroup):
         gizmo.length = 0.35
 
         def get():
-            return getattr(bpy.context.scene.riffler.sculpt, field) * self._unit
+            return getattr(bpy.context.scene.riffler.sculpt, field) * _unit()
 
         def put(offset):
-            setattr(bpy.context.scene.riffler.sculpt, field, max(offset, 0.0) / (self._unit or 1.0))
+            setattr(bpy.context.scene.riffler.sculpt, field, max(offset, 0.0) / (_unit() or 1.0))
 
-        self._unit = 1.0
         gizmo.target_set_handler("offset", get=get, set=put)
         return gizmo
+
+
+def _unit():
+    """Blender units in the world for a millimetre of the active sculpt. Asked anew each time: the scene's units may
+    change while the handles are there."""
+    ob = sculpts.active(bpy.context)
+    return _place(ob)[1] if ob is not None else 1.0
 
 
 def _place(ob):

@@ -47,6 +47,7 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
         before = self._before
         content = replace(before, volume=job.result, mask=masks.on_grid_of(job.result, before.mask))
         self.keep(content, unseen=estimate.too_thin(self._object, job.result.pitch))
+        context.scene.riffler.clay.pitch = job.result.pitch  # what the panel offers next
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{names.counted(job.result.rays, 'ray')}; material {_signed(off)}")
         return {"FINISHED"}
@@ -66,17 +67,17 @@ class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
 
     def begin(self, context):
         _, self._before = self.take(context)
-        volume = self._before.volume
-        # whole pitches, so that rays stand where they stood
-        room = volume.pitch * np.ceil(units.clean(self.room) / volume.pitch - 1e-6)
-        lower, upper = volume.lower - room, volume.upper + room
-        return TaskJob(tasks.resampled(volume, volume.pitch, volume.directions, lower, upper))
+        volume, room = self._before.volume, units.clean(self.room)
+        return TaskJob(tasks.grown(volume, volume.lower - room, volume.upper + room))
 
     def finish(self, context, job):
         before, volume = self._before, job.result
         self.keep(replace(before, volume=volume, mask=masks.on_grid_of(volume, before.mask)))
-        off = _signed(volume.volume - before.volume.volume)
-        self.report({"INFO"}, f"The box is {names.format_size(volume.upper - volume.lower)}; material {off}")
+        counted = volume.volume - before.volume.volume
+        note = ""
+        if abs(counted) > 1e-9 * before.volume.volume:
+            note = f"; {_signed(counted)} are counted, as the rays at the old border stand for whole cells now"
+        self.report({"INFO"}, f"The box is {names.format_size(volume.upper - volume.lower)}{note}")
         return {"FINISHED"}
 
 
@@ -183,12 +184,10 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         ob, self._before = self.take(context)
         volume = self._before.volume
         surface = forms.of_object(context, ob, ob)
-        # whole pitches further out, so that what has not moved stands on the rays that it stood on
-        bounds, h = surface.bounds, volume.pitch
-        lower = volume.lower - h * np.ceil(np.maximum(volume.lower - bounds[0], 0) / h)
-        upper = volume.upper + h * np.ceil(np.maximum(bounds[1] - volume.upper, 0) / h)
+        box = volume.grown(*surface.bounds)  # so that what has not moved stands on the rays that it stood on
         self._report = {}
-        return TaskJob(tasks.from_mesh(surface, h, volume.directions, lower=lower, upper=upper, report=self._report))
+        rays = box.pitch, box.directions
+        return TaskJob(tasks.from_mesh(surface, *rays, lower=box.lower, upper=box.upper, report=self._report))
 
     def finish(self, context, job):
         if job.result.volume <= 0:

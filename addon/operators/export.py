@@ -69,7 +69,7 @@ class ExportSurface(FileWork):
         problems.check_target(path, self.filename_ext)
         shared.check_state(self, context, ob)
         if live.of(ob) is None:
-            shared.tell_edits(self, ob.data, lost=False)
+            shared.tell_edits(self, ob.data)
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name
 

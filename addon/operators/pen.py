@@ -172,7 +172,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
             return {"CANCELLED"}
         _take_up_tool(context)
         settings, session = context.scene.riffler.sculpt, pen_session.running
-        if settings.show_force:
+        if session.run.pushes and mode_of(context, self.mode) not in ("mask", "unmask"):
             _shown = force.begin(names.clean(settings.limit), session.diameter, session.live.to_world)
         pace.begin(session.live.stages)
         bpy.app.timers.register(_look, first_interval=FRAME)
@@ -186,7 +186,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
                 self.report({"WARNING"}, local(NO_COPIES))
             shared.check_state(self, context, ob)
             if not sculpts.behind(ob.data):
-                shared.tell_edits(self, ob.data)
+                shared.refuse_edits(ob)
             depth = names.clean(context.scene.riffler.sculpt.depth)
             tool = tool_for(mode, riffler.Tool.from_dict(self.tool_dict(context)), depth)
             folder, options = recordings(self), session_options(context, ob, self, mode)

@@ -1,10 +1,11 @@
 """What the operators have in common."""
 
 import bpy
+import numpy as np
 from riffler.mesh_notes import notes_on
 
 from ..bl import refusals, sculpts
-from ..core import json_object
+from ..core import json_object, units
 from ..core.problems import capitalised, said
 from ..translations import local
 
@@ -22,10 +23,7 @@ NAVIGATION = {
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
 
 
-EDITS_LOST = (
-    "The mesh had been edited: this starts from the volume, the edits are gone. To keep them, undo this and use Take "
-    "Edits first"
-)
+EDITS_FIRST = "{} was edited in Blender's own modes: Take Edits keeps that, Rebuild Mesh drops it; then go on"
 EDITS_LEFT_OUT = "The mesh was edited: what is made is the volume, without the edits. Take Edits takes them over first"
 
 
@@ -80,11 +78,17 @@ def busy(cls, context, simulation=True):
     return bool(state.running or state.sculpting or (state.simulating and simulation))
 
 
-def tell_edits(operator, mesh, lost=True):
-    """A warning where Blender's own tools have changed the mesh since it was shown. `lost`: it will be shown anew."""
-    if not sculpts.changed(mesh):
-        return
-    operator.report({"WARNING"}, local(EDITS_LOST if lost else EDITS_LEFT_OUT))
+def refuse_edits(ob):
+    """ValueError where Blender's own tools have changed the mesh of a sculpt since it was shown: it would be shown anew
+    from the volume, and nobody's work is dropped unasked."""
+    if sculpts.changed(ob.data):
+        raise ValueError(local(EDITS_FIRST).format(ob.name))
+
+
+def tell_edits(operator, mesh):
+    """A warning where the same is true of what only reads the volume."""
+    if sculpts.changed(mesh):
+        operator.report({"WARNING"}, local(EDITS_LEFT_OUT))
 
 
 def check_state(operator, context, ob):
@@ -101,6 +105,13 @@ def tell_turned(operator, name, mesh):
     mesh.oriented(found)
     for note in notes_on(found):
         operator.report({"WARNING"}, f"{name}: {note}")
+
+
+def tell_made(operator, ob):
+    """The size of a new sculpt's box, and what its mesh has."""
+    size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
+    triangles = units.counted(len(ob.data.polygons), "triangle")
+    operator.report({"INFO"}, f"{ob.name}: {units.format_size(size)}, {triangles}")
 
 
 def tell_all(operator, done, notes, wrong=False):

@@ -11,7 +11,7 @@ from riffler.mesh_notes import notes_on
 
 from .. import properties
 from ..bl import live, meshes, parts, refusals, sculpts, store, units
-from ..core import estimate
+from ..core import estimate, fitting
 from ..core import units as names
 from ..core.cache import Content
 from ..core.job import DoneJob, TaskJob
@@ -82,9 +82,12 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
             if sculpts.is_sculpt(source):
                 sculpts.take_looks(ob, source)
             source.hide_set(True)
-        size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
-        triangles = names.counted(len(ob.data.polygons), "triangle")
-        self.report({"INFO"}, f"{ob.name}: {names.format_size(size)}, {triangles}")
+        shared.tell_made(self, ob)
+        across = round(max(np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)) / volume.pitch)
+        if across < fitting.FEW_RAYS:
+            rays = names.counted(across, "ray")
+            few = f"{ob.name} has {rays} along its longest side, so no details: undo, and use Fit Pitch"
+            self.report({"WARNING"}, few)
         return {"FINISHED"}
 
     def _from(self):
@@ -204,7 +207,7 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
             return shared.fail(self, ValueError("a recording has the pitch of the stock that it was made on"))
         size = stock.size if stock.source == "BLOCK" else source_size(source, context.scene)
         try:
-            stock.pitch = estimate.fitting_pitch(size)
+            stock.pitch = fitting.pitch(fitting.longest(size), 400)
         except ValueError as error:
             return shared.fail(self, error)
         return {"FINISHED"}

@@ -1,5 +1,9 @@
 """A stroke of the sculpt tool: from the press of a button to its release, of a mouse or a tablet's pen.
 
+Events only queue up samples. Blender handles all events that are waiting before it draws, and sends a timer's event
+after them: there the samples are carved, and there is one look, however many events there were. So a look that takes
+longer than an event makes no queue.
+
 The same stroke can be made from a script: `stroke` is what Brush.text says of one that was made (`last`).
 """
 
@@ -28,6 +32,7 @@ ONE_DIRECTION = (
     "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in the box "
     "at the lower left"
 )
+CHIPS = {"REMOVE", "ADD"}  # what has a force
 LIFTED = {"remove", "soften"}  # what a tool does from outside; fixtures are in its way
 
 _held = None  # the operator whose stroke is being made in a window
@@ -77,6 +82,9 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         global _held
         if self.stroke or bpy.app.background or context.region_data is None:
             return self.execute(context)
+        ob = sculpts.active(context)
+        if live.of(ob) is None and sculpts.changed(ob.data):  # somebody is asked first, and the drag kept meanwhile
+            return bpy.ops.riffler.stroke_elsewhere("INVOKE_DEFAULT", mode=self.mode)
         context.window.cursor_modal_set("WAIT")  # the first stroke brings the sculpt into chunks
         try:
             self._take_up(context)
@@ -88,10 +96,13 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             context.window.cursor_modal_restore()
         settings = context.scene.riffler.sculpt
         self._region = context.region.x, context.region.y
-        self._begin = self._looked = time.perf_counter()
-        self._dirty = False
+        self._begin = self._looked = self._taken = time.perf_counter()
+        self._queue = [self._sample(event)]
+        self._oldest = self._drawn = (
+            None  # since when what is carved, and what the last look has shown, may have waited
+        )
         self._shown = None
-        if settings.show_force:
+        if settings.show_force and self.mode in CHIPS:
             limit = units.clean(settings.limit)
             self._shown = force.begin(limit, self._brush.tool.diameter, self._run.to_world)
         pointer.held = self._brush
@@ -99,7 +110,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         self._timer = context.window_manager.event_timer_add(LOOK, window=context.window)
         context.window_manager.modal_handler_add(self)
         _held = self
-        return self._step(context, event)
+        return self._step(context)
 
     def modal(self, context, event):
         if live.lives.get(self._run.mark) is not self._run:
@@ -110,8 +121,10 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             return self._give_up(context)
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             return self._end(context)
-        if event.type in MOVES or event.type == "TIMER":
-            return self._step(context, event)
+        if event.type in MOVES:
+            self._queue.append(self._sample(event))
+        elif event.type == "TIMER":
+            return self._step(context)
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
@@ -124,7 +137,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         self._fresh = live.of(ob) is None
         if self._fresh:
             shared.check_state(self, context, ob)
-            shared.tell_edits(self, ob.data)
+            shared.refuse_edits(ob)
         self._run = live.begin(context, ob)
 
     def _start(self, context, view):
@@ -141,13 +154,17 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         self._run.keep_out = keep_out
         self._brush = brush.Brush(self._run, tool, view, settings.choice(mode), keep_out)
 
-    def _step(self, context, event):
+    def _step(self, context):
+        """Once for each picture that Blender draws."""
         try:
-            if event.type != "TIMER":
-                self._dirty |= self._brush.add(self._sample(event))
-            now = time.perf_counter()
-            if self._dirty and now - self._looked >= LOOK:
-                self._looked, self._dirty = now, False
+            before, now = self._taken, time.perf_counter()
+            if self._drawn is not None:  # since the last look Blender has drawn
+                self._run.stages.waited(now - self._drawn)
+                self._drawn = None
+            if self._carve(now) and self._oldest is None:
+                self._oldest = before
+            if self._oldest is not None and now - self._looked >= LOOK:
+                self._looked, self._drawn, self._oldest = now, self._oldest, None
                 self._brush.look()
                 self._tell(context)
         except shared.ERRORS as error:
@@ -155,11 +172,20 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             return shared.fail(self, error)
         return {"RUNNING_MODAL"}
 
+    def _carve(self, now):
+        """All samples that are waiting. Nobody knows when their events were made: evenly since the last time."""
+        before, queue, carved = self._taken, self._queue, False
+        self._taken, self._queue = now, []
+        for k, sample in enumerate(queue, 1):
+            passed = before + (now - before) * k / len(queue) - self._begin
+            carved |= self._brush.add(sample._replace(time=passed))
+        return carved
+
     def _sample(self, event):
         x, y = event.mouse_x - self._region[0], event.mouse_y - self._region[1]
         pressure, lean = (event.pressure, event.tilt) if event.is_tablet else (1.0, (0.0, 0.0))
         # A tablet's second tilt grows towards whoever holds the pen: down the view (GHOST_TabletData).
-        return Sample(x, y, pressure, lean[0], -lean[1], time.perf_counter() - self._begin)
+        return Sample(x, y, pressure, lean[0], -lean[1])
 
     def _tell(self, context):
         made = self._brush
@@ -171,6 +197,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
     def _end(self, context):
         global last
         try:
+            self._carve(time.perf_counter())
             self._brush.end()
         except shared.ERRORS as error:
             self._give_up(context)

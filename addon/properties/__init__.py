@@ -16,6 +16,7 @@ from .sculpt import RifflerSculpt
 from .stock import RifflerMesh, RifflerObject, RifflerStock, StockSettings
 from .tool import RifflerTool
 from .verify import ProgramSettings, RifflerVerify, VerifySettings
+from .without_undo import RifflerStrokeFields, RifflerToolFields
 
 __all__ = [
     "DEVICES",
@@ -48,7 +49,10 @@ class RifflerScene(bpy.types.PropertyGroup):
 
 
 class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
-    """On the window manager: what runs now."""
+    """On the window manager: what runs now, and what panels change without undo steps."""
+
+    sculpt: PointerProperty(type=RifflerStrokeFields)
+    tool: PointerProperty(type=RifflerToolFields)
 
 
 CLASSES = (
@@ -68,6 +72,8 @@ CLASSES = (
     RifflerMesh,
     RifflerPlanObject,
     RifflerObject,
+    RifflerStrokeFields,
+    RifflerToolFields,
     RifflerProgress,
 )
 _OWNERS = (

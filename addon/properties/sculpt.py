@@ -1,7 +1,7 @@
 """How the sculpt tool's strokes are made; on the scene, beside the cutter."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ..core import brush, symmetry, units
 from .fields import length
@@ -27,18 +27,6 @@ def _radius(self):
 
 def _set_radius(self, value):
     self.id_data.riffler.tool.diameter = 2 * value
-
-
-def _zoom(self):
-    from ..drawing import pointer
-
-    return (pointer.pixels_per_mm,) * 2
-
-
-def _colour(self):
-    from ..drawing import pointer
-
-    return pointer.COLOURS["remove"]
 
 
 class RifflerSculpt(bpy.types.PropertyGroup):
@@ -97,7 +85,10 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         "hand is pushed back; empty: nothing is in the way",
     )
     show_force: BoolProperty(
-        name="Show force", default=True, description="Draw force, torque and a gauge while the tool cuts"
+        name="Show force",
+        default=False,
+        description="Draw force, torque and a gauge while a mouse or a tablet cuts, which cannot feel them; a pen with "
+        "motors always shows them",
     )
     limit: FloatProperty(
         name="Limit",
@@ -119,9 +110,6 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         set=_set_radius,
         description="Of the cutter: half its diameter, in mm",
     )
-    # For Blender's radial control, which works in pixels: what a millimetre is under the pointer.
-    zoom: FloatVectorProperty(size=2, get=_zoom, options={"HIDDEN", "SKIP_SAVE"})
-    colour: FloatVectorProperty(size=3, subtype="COLOR", get=_colour, options={"HIDDEN", "SKIP_SAVE"})
 
     def choice(self, mode):
         """How a stroke is made; `mode`: of core/brush.py."""

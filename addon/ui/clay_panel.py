@@ -7,7 +7,7 @@ from ..bl import sculpts
 from ..core import units as names
 from ..operators import clay, mask, relief
 from ..translations import CONTEXT, local
-from .panels import Sidebar, give, lines
+from .panels import Sidebar, at_work, give, lines
 
 
 class Clay(Sidebar):
@@ -18,6 +18,7 @@ class Clay(Sidebar):
 class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_clay"
     bl_label = "Clay (mm)"
+    bl_order = 4
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -27,6 +28,8 @@ class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
         ob = sculpts.active(context)
         if ob is None:
             lines(layout, "No sculpt is active.", icon="INFO")
+        if at_work(layout, context, *clay.CLASSES):
+            return
         column = layout.column(align=True)
         row = column.row(align=True)
         row.prop(settings, "pitch", text="Pitch", text_ctxt=CONTEXT)
@@ -58,6 +61,8 @@ class RIFFLER_PT_mask(Clay, bpy.types.Panel):
     def draw(self, context):
         layout = self.layout
         settings = context.scene.riffler.clay
+        if at_work(layout, context, mask.RIFFLER_OT_mask_form):
+            return
         layout.prop(settings, "form")
         row = layout.row(align=True)
         for how, text in (("REPLACE", "Mask"), ("ADD", "Add"), ("SUBTRACT", "Subtract")):
@@ -83,6 +88,8 @@ class RIFFLER_PT_relief(Clay, bpy.types.Panel):
         column = layout.column(align=True)
         for key in properties.ReliefSettings.__annotations__:
             column.prop(settings, key, **({"text": "Follow"} if key == "follow" else {}))  # whole in a narrow sidebar
+        if at_work(layout, context, relief.RIFFLER_OT_relief):
+            return
         op = layout.operator(relief.RIFFLER_OT_relief.bl_idname, icon="MOD_DISPLACE")
         op.image = settings.image.name if settings.image else ""
         op.place = settings.place.name if settings.place else ""

@@ -3,7 +3,20 @@
 import bpy
 
 from .. import properties
-from ..operators import clay, cut, export, mask, plan_find, plan_least_tilt, plan_setup, recover, result, stock
+from ..operators import (
+    begin,
+    clay,
+    cut,
+    export,
+    mask,
+    plan_find,
+    plan_least_tilt,
+    plan_setup,
+    recover,
+    result,
+    solid,
+    stock,
+)
 from .panels import give
 
 
@@ -15,6 +28,7 @@ class RIFFLER_MT_object(bpy.types.Menu):
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.riffler
+        layout.operator(begin.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT")
         op = layout.operator(stock.RIFFLER_OT_new_stock.bl_idname, text="Stock from Object", icon="MESH_DATA")
         give(op, settings.stock, properties.StockSettings)
         op.source = "OBJECT"
@@ -46,11 +60,25 @@ def _object(self, context):
     self.layout.menu(RIFFLER_MT_object.bl_idname)
 
 
+class RIFFLER_MT_add(bpy.types.Menu):
+    """Solids to be sculpted"""
+
+    bl_idname = "RIFFLER_MT_add"
+    bl_label = "Riffler"
+
+    def draw(self, context):
+        layout = self.layout
+        for shape, label, _, icon, _ in solid.SHAPES:
+            layout.operator(solid.RIFFLER_OT_add_solid.bl_idname, text=label, icon=icon).shape = shape
+        layout.separator()
+        op = layout.operator(stock.RIFFLER_OT_new_stock.bl_idname, text="Stock in mm", icon="MESH_CUBE")
+        give(op, context.scene.riffler.stock, properties.StockSettings)
+        op.source = "BLOCK"
+
+
 def _add(self, context):
     self.layout.separator()
-    op = self.layout.operator(stock.RIFFLER_OT_new_stock.bl_idname, text="Riffler Stock", icon="CUBE")
-    give(op, context.scene.riffler.stock, properties.StockSettings)
-    op.source = "BLOCK"
+    self.layout.menu(RIFFLER_MT_add.bl_idname, icon="SCULPTMODE_HLT")
 
 
 def _export(self, context):
@@ -67,7 +95,7 @@ PLACES = (
     ("VIEW3D_MT_object_context_menu", _object),
     ("TOPBAR_MT_file_export", _export),
 )
-CLASSES = (RIFFLER_MT_object,)
+CLASSES = (RIFFLER_MT_object, RIFFLER_MT_add)
 _drawn = []  # those of PLACES that Blender has
 
 

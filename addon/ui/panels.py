@@ -3,14 +3,16 @@
 import bpy
 
 from .. import properties
-from ..bl import live, refusals, sculpts, units, versions
-from ..core import estimate, presets
+from ..bl import edits, live, refusals, sculpts, units, versions
+from ..core import estimate, fitting, presets
 from ..core import units as names
-from ..operators import clay, cut, export, scene, stock
+from ..operators import begin, clay, cut, export, scene, stock
 from ..translations import CONTEXT
 
 
 class Sidebar:
+    """In the tab of artists: what is sculpted and with what comes first, by bl_order; machining comes last."""
+
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Riffler"
@@ -29,15 +31,28 @@ def give(op, settings, group):
         setattr(op, key, getattr(settings, key))
 
 
+def at_work(layout, context, *operators):
+    """True where one of these runs, whose progress takes the place of the buttons, so that nothing moves."""
+    state = context.window_manager.riffler
+    if state.running not in {operator.doing for operator in operators}:
+        return False
+    versions.progress(layout, state)
+    layout.label(text=state.text)
+    return True
+
+
 class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_sculpt"
     bl_label = "Sculpt"
+    bl_order = 1
 
     def draw(self, context):
         layout = self.layout
         ob = sculpts.active(context)
         if ob is None:
-            lines(layout, "No sculpt is active.", "Make a new stock below.", icon="INFO")
+            lines(layout, "No sculpt is active.", "Make one, or add one by Add > Mesh.", icon="INFO")
+            if stock.source_object(context) is not None:
+                layout.operator(begin.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT")
             return
         self._facts(layout, ob)
         self._warnings(layout, context, ob)
@@ -63,16 +78,11 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         if live.of(ob) is not None:
             return  # its mesh is not what is shown, and the work goes on from the volume
         stale = sculpts.shown_mm_per_unit(mesh) != units.mm_per_unit(context.scene)
-        edited = sculpts.edited(mesh)
+        edited = edits.noticed(ob)
         if stale:
             lines(layout, "The scene's units have changed;", "the mesh shows another size.", icon="ERROR")
         elif edited:
-            lines(
-                layout,
-                "The mesh was edited; the next cut",
-                "starts from the volume.",
-                icon="ERROR",
-            )
+            lines(layout, "The mesh was edited in Blender's", "own modes. Keep that, or drop it:", icon="ERROR")
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
@@ -83,6 +93,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
 class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_stock"
     bl_label = "New Stock (mm)"
+    bl_order = 5
 
     def draw(self, context):
         layout = self.layout
@@ -92,7 +103,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         if settings.source == "RECORDING":
-            self._button(layout, settings)
+            self._button(layout, context, settings)
             return
         row = layout.row(align=True)
         row.prop(settings, "pitch", text="Pitch", text_ctxt=CONTEXT)
@@ -105,12 +116,29 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
             about = names.format_bytes(rays * estimate.BYTES_PER_RAY)
             many = rays > estimate.MANY_RAYS
             layout.label(text=f"{names.counted(rays, 'ray')}, about {about}", icon="ERROR" if many else "NONE")
-        self._button(layout, settings)
+            self._suits(layout, context, settings, size)
+        self._button(layout, context, settings)
         unit = units.mm_per_unit(context.scene)
         if unit != 1:
             layout.separator()
             lines(layout, f"1 unit = {names.trim(unit, 4)} mm", icon="INFO")
             layout.operator(scene.RIFFLER_OT_millimetres.bl_idname)
+
+    def _suits(self, layout, context, settings, size):
+        """Warns of a lump of a few rays, and of a cutter as large as the stock; one button mends both."""
+        longest = max(size)
+        across = round(longest / names.clean(settings.pitch))
+        told = [f"Longest side {names.trim(longest, 3)} mm:"]
+        if across < fitting.FEW_RAYS:
+            told.append(f"only {across} rays, so no details.")
+        diameter = context.scene.riffler.tool.diameter
+        if diameter > fitting.SUITS[1] * longest:
+            told.append(f"the cutter is large, {names.trim(diameter, 3)} mm.")
+        if len(told) == 1:
+            return
+        lines(layout, *told, icon="ERROR")
+        if settings.source == "OBJECT":
+            layout.operator(begin.RIFFLER_OT_make_sculpt.bl_idname, text="Fit Size, Pitch, Cutter…", icon="SHADERFX")
 
     def _size(self, layout, context, settings):
         if settings.source == "BLOCK":
@@ -129,7 +157,9 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         lines(layout, source.name, names.format_size(size), icon="OBJECT_DATA")
         return size
 
-    def _button(self, layout, settings):
+    def _button(self, layout, context, settings):
+        if at_work(layout, context, stock.RIFFLER_OT_new_stock):
+            return
         op = layout.operator(stock.RIFFLER_OT_new_stock.bl_idname, icon="CUBE")
         give(op, settings, properties.StockSettings)
 
@@ -147,14 +177,15 @@ class RIFFLER_MT_tools(bpy.types.Menu):
 class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_tool"
     bl_label = "Tool (mm)"
+    bl_order = 3
 
     def draw(self, context):
         layout = self.layout
-        tool = context.scene.riffler.tool
-        preset = tool.from_preset()
+        preset = context.scene.riffler.tool.from_preset()
         layout.menu(RIFFLER_MT_tools.bl_idname, text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
         layout.use_property_split = True
         layout.use_property_decorate = False
+        tool = context.window_manager.riffler.tool  # whose fields make no undo steps
         layout.prop(tool, "kind")
         column = layout.column(align=True)
         for key in presets.SIZES[tool.kind]:
@@ -164,6 +195,7 @@ class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
 class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_cut"
     bl_label = "Cut (mm)"
+    bl_order = 8
 
     def draw(self, context):
         layout = self.layout
@@ -176,10 +208,7 @@ class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
         column.prop(settings, "depth")
         column.prop(settings, "tolerance")
         layout.prop(settings, "follow")
-        state = context.window_manager.riffler
-        if state.running:  # in the place of the two buttons, so that nothing moves
-            versions.progress(layout, state)
-            layout.label(text=state.text)
+        if at_work(layout, context, cut.RIFFLER_OT_cut_curve, cut.RIFFLER_OT_cut_recording):
             return
         op = layout.operator(cut.RIFFLER_OT_cut_curve.bl_idname, icon="CURVE_DATA")
         op.curve = settings.curve.name if settings.curve else ""
@@ -190,9 +219,12 @@ class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
 class RIFFLER_PT_export(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_export"
     bl_label = "Export"
+    bl_order = 9
 
     def draw(self, context):
         layout = self.layout
+        if at_work(layout, context, export.RIFFLER_OT_export_stl):
+            return
         row = layout.row(align=True)
         row.operator(export.RIFFLER_OT_export_stl.bl_idname, text="STL…", icon="EXPORT")
         row.operator(export.RIFFLER_OT_export_3mf.bl_idname, text="3MF…")

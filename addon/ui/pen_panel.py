@@ -20,6 +20,7 @@ def wrapped(context, text):
 class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_pen"
     bl_label = "Pen (mm, N)"
+    bl_order = 7
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):

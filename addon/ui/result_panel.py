@@ -5,12 +5,13 @@ import bpy
 from .. import properties
 from ..bl import attributes
 from ..operators import result
-from .panels import Sidebar, give, lines
+from .panels import Sidebar, at_work, give, lines
 
 
 class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_result"
     bl_label = "Mesh (mm)"
+    bl_order = 6
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
@@ -18,6 +19,8 @@ class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.riffler.result
+        if at_work(layout, context, result.RIFFLER_OT_to_mesh, result.RIFFLER_OT_show_deviation):
+            return
         column = layout.column(align=True)
         for key in properties.ResultSettings.__annotations__:
             if key != "smooth_tolerance" or settings.iterations:

@@ -4,6 +4,7 @@ import bpy
 
 from ..bl import live, sculpts
 from ..core import presets, units
+from ..operators import begin, stock
 from ..translations import CONTEXT
 from .panels import Sidebar, lines
 
@@ -16,26 +17,48 @@ def tool_of(context):
     return tool.idname if tool is not None and tool.idname in MODES else ""
 
 
+def fields(context):
+    """(of strokes, of the cutter): what panels show of the scene's settings, without undo steps."""
+    shown = context.window_manager.riffler
+    return shown.sculpt, shown.tool
+
+
 def draw_header(context, layout):
-    settings = context.scene.riffler
-    preset = settings.tool.from_preset()
+    stroke, _ = fields(context)
+    if sculpts.active(context) is None:
+        begin_button(layout, context)
+    preset = context.scene.riffler.tool.from_preset()
     layout.menu("RIFFLER_MT_tools", text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
-    layout.prop(settings.sculpt, "radius", text="Radius (mm)")
-    layout.prop(settings.sculpt, "depth", text="Depth (mm)")
-    layout.prop(settings.sculpt, "axis", text="")
+    layout.prop(stroke, "radius", text="Radius (mm)")
+    if tool_of(context) == "riffler.smooth":
+        layout.prop(stroke, "strength", slider=True)
+    else:
+        layout.prop(stroke, "depth", text="Depth (mm)")
+        layout.prop(stroke, "axis", text="")
+    row = layout.row(align=True)
+    row.label(icon="MOD_MIRROR")
+    row.prop(stroke, "mirror", expand=True)
     layout.popover(RIFFLER_PT_sculpt_tool.bl_idname, text="Stroke", text_ctxt=CONTEXT)
+
+
+def begin_button(layout, context):
+    """Makes the active object a sculpt, where it is none and could be one."""
+    source = stock.source_object(context)
+    if source is not None:
+        layout.operator(begin.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT")
 
 
 class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_sculpt_tool"
     bl_label = "Stroke (mm, mm/s, N)"
+    bl_order = 2
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        settings = context.scene.riffler.sculpt
+        settings, _ = fields(context)
         self._tools(layout, context)
         column = layout.column(align=True)
         column.prop(settings, "radius")
@@ -47,7 +70,7 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
         layout.prop(settings, "string")
         layout.prop(settings, "strength")
         layout.prop(settings, "accumulate")
-        layout.prop(settings, "fixtures")
+        layout.prop(context.scene.riffler.sculpt, "fixtures")
         self._symmetry(layout, settings)
         column = layout.column(align=True)
         column.prop(settings, "show_force")
@@ -83,12 +106,15 @@ def looks(stages):
     if not whole:
         return []
     shares = {name: f"{name} {100 * ms / whole:.0f} %" for name, ms in times.items()}
+    middle, longest = stages.lag()
+    lag = [f"Behind the hand: {middle:.0f} ms, at most {longest:.0f} ms"] if longest else []
     return [
         f"A look: {whole:.1f} ms",
         f"{shares['cut']}, {shares['mesh']}",
         f"{shares['transfer']}, {shares['draw']}",
         f"{counts['bricks']:.1f} tiles, {counts['chunks']:.1f} chunks",
         f"{units.format_count(counts['triangles'])} triangles, {units.format_bytes(counts['bytes'])}",
+        *lag,
     ]
 
 
@@ -100,12 +126,11 @@ class RIFFLER_MT_sculpt_pie(bpy.types.Menu):
         pie = self.layout.menu_pie()
         for name, label in MODES.items():  # left, right, below, above
             pie.operator("wm.tool_set_by_id", text=label, text_ctxt=CONTEXT).name = name
-        tool = context.scene.riffler.tool
+        settings, tool = fields(context)
         box = pie.box().column()
         box.prop(tool, "kind", text="")
         for key in presets.SIZES[tool.kind][:2]:
             box.prop(tool, key)
-        settings = context.scene.riffler.sculpt
         box = pie.box().column()
         box.prop(settings, "depth")
         box.prop(settings, "axis", text="")

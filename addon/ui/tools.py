@@ -16,15 +16,21 @@ ICONS = Path(__file__).resolve().parent.parent / "icons"  # an absolute path is 
 
 
 def _stroke(mode, **modifiers):
+    """On the active sculpt; where Blender may not call that, on whatever is under the pointer."""
     event = {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}
-    return ("riffler.stroke", event, {"properties": [("mode", mode.upper())]})
+    given = {"properties": [("mode", mode.upper())]}
+    return ("riffler.stroke", event, given), ("riffler.stroke_elsewhere", event, given)
 
 
-def _radial(field, **modifiers):
-    """Blender's own control of a size by the pointer's distance."""
-    paths = {"data_path_primary": field, "zoom_path": "zoom", "fill_color_path": "colour"}
-    given = [(name, f"scene.riffler.sculpt.{path}") for name, path in paths.items()]
-    return ("wm.radial_control", {"type": "F", "value": "PRESS", **modifiers}, {"properties": given})
+def _size(mode):
+    """F and Shift F, as in Sculpt Mode, where the second is strength; of a cutter that is its depth."""
+    second = "STRENGTH" if mode == "soften" else "DEPTH"
+    for field, shift in (("RADIUS", False), (second, True)):
+        event = {"type": "F", "value": "PRESS", "shift": shift}
+        yield ("riffler.resize", event, {"properties": [("field", field)]})
+    for key, larger in (("LEFT_BRACKET", False), ("RIGHT_BRACKET", True)):
+        event = {"type": key, "value": "PRESS", "repeat": True}
+        yield ("riffler.size_step", event, {"properties": [("larger", larger)]})
 
 
 class SculptTool:
@@ -54,15 +60,14 @@ def _tool(mode, label, text):
             "bl_description": text,
             "bl_icon": str(ICONS / f"riffler.{name}"),
             "bl_keymap": (
-                _stroke(mode),
-                _stroke(brush.OPPOSITE[mode], ctrl=True),
-                _stroke("soften", shift=True),
+                *_stroke(mode),
+                *_stroke(brush.OPPOSITE[mode], ctrl=True),
+                *_stroke("soften", shift=True),
                 ("riffler.pen_stop", {"type": "ESC", "value": "PRESS"}, None),
                 ("riffler.frame", {"type": "NUMPAD_PERIOD", "value": "PRESS"}, None),
                 ("riffler.leave", {"type": "TAB", "value": "PRESS"}, None),
                 ("riffler.leave", {"type": "TAB", "value": "PRESS", "ctrl": True}, {"properties": [("menu", True)]}),
-                _radial("radius"),
-                _radial("depth", shift=True),
+                *_size(mode),
                 (
                     "wm.call_menu_pie",
                     {"type": "W", "value": "PRESS"},

@@ -43,6 +43,14 @@ def test_stages_tell_the_median_look_and_count():
     assert Stages().milliseconds() == dict.fromkeys(("cut", "mesh", "transfer", "draw"), 0.0)
 
 
+def test_stages_tell_how_long_the_hand_waits():
+    stages = Stages(keep=3)
+    assert stages.lag() == (0.0, 0.0)
+    for seconds in (9.0, 0.02, 0.08, 0.03):
+        stages.waited(seconds)
+    assert stages.lag() == pytest.approx((30, 80))  # of the three that are kept
+
+
 def test_snapshots_that_undo_may_ask_for_are_kept():
     kept = Snapshots(most=3)
     for k in range(3):

@@ -87,11 +87,6 @@ def test_rays_are_counted_as_the_volume_counts_them():
         estimate.ray_count((1, 1, 1), 0, "z")
 
 
-@pytest.mark.parametrize(("longest", "pitch"), [(100, 0.25), (2000, 5), (40, 0.1), (1, 0.0025)])
-def test_fitting_pitch(longest, pitch):
-    assert estimate.fitting_pitch((longest, 1, 1)) == pitch
-
-
 def test_units_and_words():
     assert units.mm_per_unit(0.0010000000474974513) == 1
     assert units.mm_per_unit(0.30480000376701355) == 304.8

@@ -13,6 +13,7 @@ def slot(length, diameter, depth):
     return (length * diameter + np.pi * diameter**2 / 4) * depth
 
 
+@support.core_bound
 def test_a_straight_slot_has_the_volume_of_the_formula_in_any_scene():
     for unit in (1000.0, 1.0):
         bpy.ops.wm.read_homefile()

@@ -143,5 +143,6 @@ def test_the_examples_of_planning_run():
     in_its_scene("planning.md")
 
 
+@support.core_bound
 def test_the_example_of_sessions_runs():
     in_its_scene("sessions.md")

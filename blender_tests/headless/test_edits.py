@@ -7,7 +7,7 @@ import numpy as np
 
 import support
 
-LOST, LEFT_OUT = "the edits are gone", "without the edits"
+LEFT_OUT = "without the edits"
 
 
 def ball():
@@ -49,7 +49,8 @@ def local_pull():
     return ob
 
 
-def test_whatever_changes_the_sculpt_says_that_the_edits_go():
+def test_whatever_changes_the_sculpt_asks_first_what_becomes_of_the_edits():
+    """Nothing is dropped, and either remedy that the message names works."""
     import sculpting
 
     line = support.curve("Line", [(-30, 0, 18), (30, 0, 18)], mm_per_unit=1.0)
@@ -59,17 +60,41 @@ def test_whatever_changes_the_sculpt_says_that_the_edits_go():
         "crop": lambda: bpy.ops.riffler.crop(point=(0, 0, 15), normal=(0, 0, 1)),
         "mask": lambda: bpy.ops.riffler.mask_invert(),
         "units": lambda: bpy.ops.riffler.millimetres(),
+        "stroke": lambda: bpy.ops.riffler.stroke(stroke=STROKE),
     }
     for name, call in calls.items():
-        local_pull()
-        said = support.printed(call)
-        assert LOST in said and "Take Edits" in said, (name, said)
-        assert "edits" not in support.printed(lambda: bpy.ops.riffler.mask_invert()), name
-    local_pull()
-    support.push("pull")
-    assert LOST in support.printed(lambda: bpy.ops.riffler.stroke(stroke=STROKE))
-    assert "edits" not in support.printed(lambda: bpy.ops.riffler.stroke(stroke=STROKE))
-    sculpting.live().end_all()
+        for remedy in (bpy.ops.riffler.take_edits, bpy.ops.riffler.rebuild):
+            ob = local_pull()
+            support.push("pull")
+            kept, before = support.coordinates(ob.data), support.shape(support.content(ob).volume)
+            support.refused(call, ob.name, "Take Edits", "Rebuild Mesh")
+            assert np.array_equal(support.coordinates(ob.data), kept), name
+            assert support.same(support.shape(support.content(ob).volume), before), name
+            assert remedy() == {"FINISHED"} and call() == {"FINISHED"}, name
+            sculpting.live().end_all()
+
+
+def test_the_panel_notices_every_edit():
+    ob, edits = local_pull(), support.part("bl.edits")
+    bpy.context.view_layer.update()
+    assert edits.noticed(ob)
+    bpy.ops.riffler.rebuild()
+    bpy.context.view_layer.update()
+    assert not edits.noticed(ob)
+    pull(ob, (12.0, 9.0, 13.0), by=0.01)
+    bpy.context.view_layer.update()
+    assert edits.noticed(ob) and not support.part("bl.sculpts").edited(ob.data)
+
+
+def test_the_answer_to_the_question_goes_on_with_the_stroke():
+    for choice in ("TAKE", "DROP"):
+        ob = local_pull()
+        support.push("pull")
+        volume = support.content(ob).volume.volume
+        assert bpy.ops.riffler.edits_first(edits=choice, stroke=STROKE) == {"FINISHED"}
+        after = support.part("bl.live").content(ob).volume.volume
+        assert after > volume + 50 if choice == "TAKE" else after < volume
+        support.part("bl.live").end_all()
 
 
 STROKE = (

@@ -31,7 +31,7 @@ def test_chunks_show_the_volume_and_only_dirty_ones_move():
     name = sculpt()
     run = work(name)
     is_shown(name)
-    assert bpy.data.objects[name].hide_get()
+    assert support.part("bl.chunks").is_hidden(bpy.data.objects[name])
     run.stages.take_counts()
     stroke(name, 1)
     counts = run.stages.take_counts()
@@ -46,6 +46,68 @@ def test_chunks_show_the_volume_and_only_dirty_ones_move():
     live().end_all()
     nothing_is_left()
     matches_its_volume(name)
+
+
+def test_seams_of_added_material_are_sharp_all_along():
+    """Not one edge sharp and the next smooth: crumbs. Beads of the default radius and depth, on a ball of 25 mm."""
+    radius, depth, ball = 3.0, 0.5, 25.0
+    volume = riffler.Volume.empty((-20, -15, 14), (20, 15, 28), 0.25, "xyz")
+    volume.carve(riffler.Tool.ball(2 * ball, 2 * ball), [(0, 0, ball, 0, 0, -1)] * 2, mode="add")
+    t = np.linspace(-0.5, 0.5, 200)
+    for k in range(5):
+        normals = np.stack([t, 0.1 * k - 0.2 + 0.05 * np.sin(9 * t + k), np.ones_like(t)], axis=1)
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        poses = np.hstack([(ball + depth) * normals, -normals])
+        volume.carve(riffler.Tool.ball(2 * radius, radius), poses, mode="add")
+    mesh = volume.to_mesh()
+    vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
+    corners = vertices[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    order = np.lexsort(ends.T)
+    first, second = order[0::2] % len(triangles), order[1::2] % len(triangles)
+    assert (ends[order[0::2]] == ends[order[1::2]]).all()
+    bend = np.degrees(np.arccos(np.clip((normals[first] * normals[second]).sum(axis=1), -1, 1)))
+    seams = bend[(bend > 12) & (bend < 60) & (corners[first][:, :, 2].min(axis=1) > 15)]
+    undecided = np.abs(seams - np.degrees(support.part("bl.meshes").SHARP_ANGLE)) < 2
+    assert len(seams) > 500 and undecided.mean() < 0.08, undecided.mean()
+    assert (np.abs(seams - 30) < 2).mean() > 0.2, "what they were told apart by before"
+
+
+def corner_keys(vertices, triangles):
+    """Of all corners: the vertex's place and the triangle's, as bytes."""
+    corners = np.ascontiguousarray(vertices, np.float32)[triangles]
+    return [at.tobytes() + whole.tobytes() for whole in corners for at in whole]
+
+
+def test_chunks_are_smooth_from_the_start_and_have_the_normals_of_the_whole():
+    """Before 4.5 Blender makes the normals at a chunk's border from the chunk's own triangles."""
+    name = sculpt()
+    run = work(name)
+    meshes, versions = support.part("bl.meshes"), support.part("bl.versions")
+    for k in (None, 1, 7, 14):
+        if k is not None:
+            stroke(name, k)
+        objects = [ob for ob in support.part("bl.chunks").collection_of(run.mark).objects if "riffler_chunk" in ob]
+        filled = [ob.data for ob in objects if len(ob.data.polygons)]
+        for mesh in filled:
+            smooth = np.empty(len(mesh.polygons), bool)
+            mesh.polygons.foreach_get("use_smooth", smooth)
+            assert smooth.all()
+        if not versions.OWN_NORMALS:
+            continue
+        whole = riffler.Mesher(run.volume)
+        vertices, triangles, normals = whole.patch(whole.patches(), normals=meshes.SHARP_ANGLE)
+        expected = dict(zip(corner_keys(vertices / run.mm, triangles), normals, strict=True))
+        for mesh in filled:
+            shown = np.empty((len(mesh.loops), 3), np.float32)
+            mesh.corner_normals.foreach_get("vector", shown.ravel())
+            corners = np.empty(len(mesh.loops), np.int32)
+            mesh.loops.foreach_get("vertex_index", corners)
+            keys = corner_keys(support.coordinates(mesh), corners.reshape(-1, 3))
+            off = np.linalg.norm(shown - [expected[key] for key in keys], axis=1)
+            assert np.degrees(off.max()) < 0.01
 
 
 def test_chunks_hang_on_one_go_where_the_sculpt_goes_and_stay_there_without_it():
@@ -272,6 +334,30 @@ def test_undo_after_the_end_brings_the_work_back():
     assert support.content(bpy.data.objects[name]).volume.to_bytes() == third != second
     matches_its_volume(name)
     nothing_is_left()
+
+
+def test_strokes_before_and_after_room_was_made_are_undone_and_told_again_to_the_byte():
+    name = sculpt()
+
+    def now():
+        ob = bpy.data.objects[name]
+        run = live().of(ob)
+        return (support.content(ob) if run is None else run).volume.to_bytes()
+
+    made = [now(), stroke(name, 0)]
+    support.select(bpy.data.objects[name])
+    assert bpy.ops.riffler.room("EXEC_DEFAULT", True, room=3.0) == {"FINISHED"}
+    made += [now(), stroke(name, 1, "add"), stroke(name, 2)]
+    run = live().of(bpy.data.objects[name])
+    assert run.keeping.journal.state(run.token).volume.to_bytes() == made[-1]
+    for state in made[-2::-1]:
+        bpy.ops.ed.undo()
+        assert now() == state
+    for state in made[1:]:
+        bpy.ops.ed.redo()
+        assert now() == state
+    live().end_all()
+    matches_its_volume(name)
 
 
 def test_two_sculpts_are_worked_at_and_undone_in_turn():

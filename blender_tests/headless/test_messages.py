@@ -183,7 +183,7 @@ def test_an_open_object_is_closed_and_that_is_said():
     assert "is not closed: 4 open edges" in support.printed(from_object)
     assert abs(support.content(bpy.context.object).volume.volume - 8000) < 1
     cube(location=(50, 0, 0))
-    assert "Warning" not in support.printed(from_object)
+    assert "closed" not in support.printed(from_object)
 
 
 def test_metres_taken_for_millimetres_are_refused_at_once():

@@ -232,6 +232,7 @@ def test_what_is_masked_gets_no_material_put_on():
     nothing_is_left()
 
 
+@support.core_bound
 def test_a_session_does_what_the_tool_at_hand_does():
     operators = support.part("operators.pen")
     at_hand = operators._at_hand

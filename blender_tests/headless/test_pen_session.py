@@ -72,7 +72,7 @@ def test_a_recording_is_a_device_and_ends_by_itself():
 def test_what_is_shown_follows_and_somebody_who_removes_it_spoils_nothing():
     ob = sculpt()
     hand = Hand(ob)
-    assert ob.hide_get() and bpy.context.object == ob
+    assert support.part("bl.chunks").is_hidden(ob) and bpy.context.object == ob
     hand.down(20)
     assert hand.look(lambda: hand.session.run.in_stroke)
     is_shown(NAME)
@@ -330,6 +330,7 @@ def test_fixtures_keep_the_tool_of_a_device_out():
     assert height(10, 25)[0] == 20, "it went through the clamp"
 
 
+@support.core_bound
 def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():
     """A SpaceMouse of umockdev, in a Blender of its own: it has to be there when that one starts."""
     if bpy.app.binary_path:

@@ -54,6 +54,7 @@ def shift(ob, z):
     bpy.context.view_layer.update()
 
 
+@support.core_bound
 def test_a_part_that_was_moved_since_is_said_and_makes_no_code():
     ob = found_on_the_step()
     take(plans.TOOL)
@@ -187,6 +188,7 @@ def test_how_many_paths_are_resolved_is_kept_for_the_panel():
 # ---- the tool
 
 
+@support.core_bound
 def test_a_holder_that_was_changed_after_the_search_is_said():
     ob = programs.resolved()
     take(plans.TOOL)

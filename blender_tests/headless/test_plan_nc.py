@@ -31,6 +31,7 @@ def free(poses):
     return riffler.Collider(riffler.Mesh(*plans.step())).clearance(plans.TOOL, poses).min()
 
 
+@support.core_bound
 def test_resolved_paths_become_nc_code_that_reads_back():
     ob = programs.resolved()
     (rows,) = programs.content(ob).cl
@@ -101,6 +102,7 @@ def test_what_collides_is_lifted_and_listed():
     assert track.nearest(bpy.context.scene.frame_current_final) == first["point"] > 0
 
 
+@support.core_bound
 def test_unresolved_paths_are_refused():
     ob = programs.plan(plans.ring())
     path = support.out("refused.ngc")
@@ -138,6 +140,7 @@ def test_a_key_that_changes_takes_the_path_s_locations_away():
     assert np.array_equal(programs.content(ob).cl[1], kept) and programs.content(ob).cl[0] is not None
 
 
+@support.core_bound
 def test_blocked_paths_stay_unresolved_and_name_their_points():
     """No lift of at most a hundredth of a millimetre frees a shank that stands in the wall."""
     ob = programs.plan(programs.valley(programs.INTO))
@@ -148,6 +151,7 @@ def test_blocked_paths_stay_unresolved_and_name_their_points():
     support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "path 1 may collide", "left out")
 
 
+@support.core_bound
 def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
     """The valley's finish is the same with 0.3 mm of it; where the shank is too near for 15 mm the tool is lifted, and
     that is said."""
@@ -170,6 +174,7 @@ def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
     assert "material stays" in said
 
 
+@support.core_bound
 def test_a_cutter_nearer_to_a_fixture_than_the_clearance_is_said():
     ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
     settings = bpy.context.scene.riffler.plan
@@ -200,6 +205,7 @@ def clamped(location, scale):
     return ob, settings
 
 
+@support.core_bound
 def test_a_clamp_that_the_holder_would_meet_on_the_way_in_is_gone_round():
     ob, _ = clamped((30, -66.5, 75), (140, 17, 30))
     (rows,) = programs.content(ob).cl
@@ -220,6 +226,7 @@ def test_a_clamp_that_the_holder_would_meet_on_the_way_in_is_gone_round():
     assert near.clearance(plans.TOOL, between).min() > -0.03
 
 
+@support.core_bound
 def test_how_a_tool_gets_into_its_cuts_is_said_in_the_panel():
     ob, settings = clamped((30, -300, 5), (10, 10, 10))
     (rows,) = programs.content(ob).cl
@@ -239,8 +246,9 @@ def test_how_a_tool_gets_into_its_cuts_is_said_in_the_panel():
     support.refused(lambda: bpy.ops.riffler.plan_nc(filepath=support.out("x.ngc")), "Clearance Plane must be above")
 
 
+@support.core_bound
 def test_what_cannot_be_linked_is_refused_with_its_place_until_the_fixture_is_moved():
-    _, settings = clamped((30, 20, 100), (300, 300, 10))
+    _, settings = clamped((30, 20, 100), (200, 200, 10))
     path = support.out("roofed.ngc")
     Path(path).unlink(missing_ok=True)
     support.refused(
@@ -336,6 +344,7 @@ def test_rows_that_were_inserted_beside_a_lift_play_too():
     assert found.difference.small, found.difference
 
 
+@support.core_bound
 def test_options_reach_the_machine():
     programs.resolved()
     chosen = {"rot_point": [0, 0, -40], "offset": [0, 0, 25]}

@@ -109,6 +109,7 @@ def test_points_are_gone_to_and_free_keys_set_there():
     assert close(paths(ob)[0].keys[72], np.array((0, -1, 1)) / math.sqrt(2), 1e-9)
 
 
+@support.core_bound
 def test_where_nothing_is_free_no_key_is_set():
     """A plate over the step's whole floor, 5 mm above the ball's tip."""
     part = plans.part_object()

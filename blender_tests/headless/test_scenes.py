@@ -170,7 +170,9 @@ def test_shape_keys_go_with_the_vertices_that_they_were_of():
     ob.shape_key_add(name="Basis")
     ob.shape_key_add(name="Key").value = 1.0
     edited = support.part("bl.sculpts").edited
-    assert edited(ob.data)  # so the panel says that they go, and offers to take them over
+    assert edited(ob.data)  # so the panel offers to take them over, or to drop them
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=support.FLAT, depth=2.0), "Take Edits")
+    assert ob.data.shape_keys is not None and bpy.ops.riffler.rebuild() == {"FINISHED"}
     assert bpy.ops.riffler.cut_curve(curve="Line", tool=support.FLAT, depth=2.0) == {"FINISHED"}
     bpy.context.view_layer.update()
     seen = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data

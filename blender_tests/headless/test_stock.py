@@ -228,3 +228,17 @@ def test_every_preset_makes_a_tool():
     tool.diameter = 5.5
     assert tool.from_preset() is None
     assert riffler.Tool.from_dict(tool.dictionary()).diameter == 5.5
+
+
+def test_a_lump_of_a_few_rays_is_warned_of():
+    """Suzanne in a scene in millimetres, at the pitch that the panel begins with."""
+    support.scale(1)
+    bpy.ops.mesh.primitive_monkey_add(size=2)
+    said = support.printed(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.06))
+    assert "46 rays along its longest side" in said and "Fit Pitch" in said, said
+    bpy.context.scene.riffler.stock.source = "OBJECT"
+    support.select(bpy.data.objects["Suzanne"])
+    bpy.ops.riffler.fit_pitch()
+    pitch = bpy.context.scene.riffler.stock.pitch
+    said = support.printed(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=pitch))
+    assert "rays along" not in said, said

@@ -62,18 +62,63 @@ def test_the_toolbar_has_the_tools_in_one_group_with_icons_that_are_there():
         assert data[:4] == b"VCO\0" and len(data) > 500 and (len(data) - 8) % 18 == 0
         assert tool.draw_cursor and tool.draw_settings and tool.widget
     keys = [line for line in leftovers.keymaps() if "riffler.stroke" in line]
-    assert len(keys) == 3 * len(tools())
+    assert len(keys) == 6 * len(tools())  # each on the active sculpt, and elsewhere
 
 
-def test_the_paths_that_blenders_radial_control_is_given_lead_somewhere():
-    scene = bpy.context.scene
-    for tool in tools():
-        for name, _, more in tool.bl_keymap:
-            if name == "wm.radial_control":
-                for _, path in more["properties"]:
-                    assert path.startswith("scene.") and scene.path_resolve(path.removeprefix("scene.")) is not None
+def test_fields_of_the_panels_are_the_scenes_but_make_no_undo_steps():
+    scene, shown = bpy.context.scene.riffler, bpy.context.window_manager.riffler
+    for place in ("sculpt", "tool"):
+        kept, fields = getattr(scene, place), getattr(shown, place)
+        own = set(fields.bl_rna.properties.keys()) - {"rna_type", "name"}
+        assert own == set(kept.bl_rna.properties.keys()) - {"rna_type", "name", "fixtures", "preset"}
+        for key in own:
+            field, same = (group.bl_rna.properties[key] for group in (fields, kept))
+            assert (field.name, field.description, field.type) == (same.name, same.description, same.type)
+            value = getattr(kept, key)
+            assert getattr(fields, key) == value, key
+    shown.sculpt.radius, shown.sculpt.axis, shown.sculpt.mirror = 4.0, "UP", {"X", "Z"}
+    assert scene.tool.diameter == 8.0 and scene.sculpt.axis == "UP" and scene.sculpt.mirror == {"X", "Z"}
+    assert shown.tool.diameter == 8.0 and shown.sculpt.mirror == {"X", "Z"}
+    shown.tool.kind = "taper"
+    assert scene.tool.kind == "taper" == shown.tool.kind
+
+
+def test_undo_takes_back_strokes_and_leaves_the_brush_as_it_is():
+    support.scale(1)
+    name = support.stock(pitch=0.5).name
+    support.push("stock")
+    before = volume_of(bpy.data.objects[name]).volume
+    settings(radius=3.0, depth=0.5, mirror=set())
+    bpy.ops.riffler.stroke(
+        "EXEC_DEFAULT", True, stroke=json.dumps({"view": view((20, 15)), "rows": [[180, 150], [220, 150]]})
+    )
+    assert volume_of(bpy.data.objects[name]).volume < before
+    settings(radius=1.5, depth=0.25, mirror={"X"}, axis="UP")
+    bpy.context.scene.riffler.tool.kind = "flat"
+    for step in (bpy.ops.ed.undo, bpy.ops.ed.redo):
+        step()
+        found = bpy.context.scene.riffler
+        chosen = found.sculpt.radius, found.sculpt.depth, found.sculpt.mirror, found.sculpt.axis, found.tool.kind
+        assert chosen == (1.5, 0.25, {"X"}, "UP", "flat"), chosen
+    bpy.ops.ed.undo()
+    assert volume_of(bpy.data.objects[name]).volume == before
+
+
+def test_sizes_go_in_steps_as_in_sculpt_mode_and_no_key_leaves_an_undo_step():
     sculpt = settings(radius=4.0)
-    assert scene.riffler.tool.diameter == 8.0 and sculpt.radius == 4.0 and len(sculpt.zoom) == 2
+    bpy.ops.riffler.size_step(larger=True)
+    bpy.ops.riffler.size_step(larger=True)
+    assert abs(sculpt.radius - 4 / 0.81) < 1e-5
+    bpy.ops.riffler.size_step()
+    bpy.ops.riffler.size_step()
+    assert abs(sculpt.radius - 4) < 1e-5
+    for tool in tools():
+        sizes = [(name, event["type"], event.get("shift", False)) for name, event, _ in tool.bl_keymap]
+        for key in (("riffler.resize", "F", False), ("riffler.resize", "F", True)):
+            assert key in sizes
+        assert {e for n, e, _ in sizes if n == "riffler.size_step"} == {"LEFT_BRACKET", "RIGHT_BRACKET"}
+    for cls in (*support.part("operators.resize").CLASSES, support.part("operators.scene").RIFFLER_OT_tool_preset):
+        assert "UNDO" not in cls.bl_options
 
 
 def test_a_stroke_from_a_script_is_the_groove_of_the_formula_in_any_scene():
@@ -132,6 +177,7 @@ def recorded(path, ob):
     journal.write(path)
 
 
+@support.core_bound
 def test_every_copy_of_a_stroke_is_made():
     support.scale(1)
     ob = support.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")

@@ -129,6 +129,7 @@ def test_a_plan_s_findings_have_the_lines_of_its_nc_code():
     assert track.first < found["frame"] < track.last
 
 
+@support.core_bound
 def test_the_same_is_found_wherever_the_stock_stands():
     prepared()
     path, _ = nc(slip=60)
@@ -165,6 +166,7 @@ def test_what_is_left_is_shown_with_its_distances():
     assert "Stock Left" not in bpy.data.objects and not stock.hide_get() and not part.hide_get()
 
 
+@support.core_bound
 def test_fixtures_are_hit():
     prepared()
     path, _ = nc()
@@ -182,6 +184,7 @@ def test_fixtures_are_hit():
     assert "fixture" in kinds()
 
 
+@support.core_bound
 def test_a_program_that_was_edited_is_verified_only_where_it_differs():
     prepared()
     good, _ = nc(name="good.ngc")
@@ -197,6 +200,7 @@ def test_a_program_that_was_edited_is_verified_only_where_it_differs():
     assert support.part("operators.verify")._last.verification is not kept and kinds() == []
 
 
+@support.core_bound
 def test_every_machine_s_program_is_verified():
     """Also of one whose language is not read: it has no lines then."""
     prepared()

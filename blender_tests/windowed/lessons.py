@@ -7,6 +7,7 @@ tutorials` puts them there.
 import itertools
 import subprocess
 from pathlib import Path
+from typing import ClassVar
 
 import bpy
 import harness
@@ -58,30 +59,61 @@ def view_box(screen):
     return a.x, a.y, a.x + a.width, a.y + a.height
 
 
+class Look(bpy.types.Operator):
+    """Notes the command of the button under the mouse, or an empty text, by the mouse's height."""
+
+    bl_idname = "wm.riffler_test_look"
+    bl_label = "Look"
+    KEY = "F19"
+    seen: ClassVar[dict[int, str]] = {}
+
+    def invoke(self, context, pointer):
+        context.window_manager.clipboard = ""
+        if bpy.ops.ui.copy_python_command_button.poll():
+            bpy.ops.ui.copy_python_command_button()
+        self.seen[pointer.mouse_y] = context.window_manager.clipboard
+        return {"FINISHED"}
+
+
+def enable_looking():
+    """Once in a Blender: KEY looks, over any panel."""
+    if not hasattr(bpy.types, "WM_OT_riffler_test_look"):
+        bpy.utils.register_class(Look)
+        keymap = bpy.context.window_manager.keyconfigs.addon.keymaps.new("User Interface")
+        keymap.keymap_items.new(Look.bl_idname, Look.KEY, "PRESS")
+
+
+def commands(screen, x, heights):
+    """Steps: {height: command} of the buttons there, by events that Blender handles together, between two drawings:
+    each drawing costs a software renderer 40 ms. A button that the mouse leaves takes one move, and the next button
+    another. A field for text or for an object takes the key for itself, and has no entry."""
+    Look.seen.clear()
+    for y in heights:
+        screen.move(x, y)
+        screen.move(x + 1, y)
+        for value in ("PRESS", "RELEASE"):
+            event(screen, Look.KEY, value, screen.at)
+    yield 0.2
+    return dict(Look.seen)
+
+
 def found(screen, region, words, share):
-    """Steps: the mouse goes down a region, at a share of its width, until the button under it has all `words` in the
-    command that it gives; what lies below is scrolled to."""
+    """Steps: the mouse over the first button of a region, at a share of its width, that has all `words` in the command
+    that it gives; what lies below is scrolled to."""
+    enable_looking()
     x, middle = region.x + int(region.width * share), region.y + region.height // 2
+    heights = range(region.y + region.height - 8, region.y + 8, -STEP)
     for turns in (-60, 12, 12, 12):
         for _ in range(abs(turns)):
             event(screen, "WHEELDOWNMOUSE" if turns > 0 else "WHEELUPMOUSE", "PRESS", (x, middle))
         yield 0.3
-        for y in range(region.y + region.height - 8, region.y + 8, -STEP):
-            screen.move(x, y)
-            yield 0.01
-            if all(word in pointed_at(screen, region) for word in words):
-                return
+        there = yield from commands(screen, x, heights)
+        fitting = [y for y in heights if all(word in there.get(y, "") for word in words)]
+        if fitting:
+            screen.move(x, fitting[0])
+            yield 0.1
+            return
     raise AssertionError(f"no button has {words}")
-
-
-def pointed_at(screen, region):
-    """The command of the button under the mouse, or nothing."""
-    wm = bpy.context.window_manager
-    wm.clipboard = ""
-    with bpy.context.temp_override(window=screen.window, area=screen.area, region=region):
-        if bpy.ops.ui.copy_python_command_button.poll():
-            bpy.ops.ui.copy_python_command_button()
-    return wm.clipboard
 
 
 def press(screen, *words, region="UI", share=0.6):

@@ -27,12 +27,17 @@ def steps(screen):
     yield from framed(screen)
     yield from tabbed(screen)
     yield from in_modeling(screen)
+    yield from from_the_header(screen)
     yield from in_local_view(screen)
     yield from saved_in_mid_stroke(screen)
 
 
 def sculpt():
     return bpy.data.objects["Stock"]
+
+
+def hidden():
+    return stroke.module("bl.chunks").is_hidden(sculpt()) or sculpt().hide_get()
 
 
 def groove(screen, y, **more):
@@ -48,7 +53,7 @@ def in_mesh(y):
 
 def framed(screen):
     yield from groove(screen, 10)
-    assert stroke.run() is not None and sculpt().hide_get()
+    assert stroke.run() is not None and hidden()
     view = screen.area.spaces.active.region_3d
     view.view_location, view.view_distance = (1.0, 2.0, 3.0), 9.0
     yield 0.5
@@ -73,20 +78,51 @@ def tabbed(screen):
 
 
 def in_modeling(screen):
-    """A workspace that opens in Edit Mode and asks no operator of ours; by 5.2 it leaves what is hidden, as a sculpt is
-    while somebody works at it, in Object Mode."""
+    """A workspace that opens in Edit Mode and asks no operator of ours."""
     yield from groove(screen, 22)
     assert stroke.run() is not None
     before = screen.window.workspace
     screen.window.workspace = bpy.data.workspaces["Modeling"]
-    opened = "EDIT" if bpy.app.version < (5, 2) else "OBJECT"
-    yield lambda: sculpt().mode == opened and not stroke.module("bl.working").lives
-    assert not sculpt().hide_get()
+    yield lambda: sculpt().mode == "EDIT" and not stroke.module("bl.working").lives
+    assert not hidden()
     yield 1.0
     screen.window.workspace = before
     yield lambda: sculpt().mode == "OBJECT"
     yield 1.0
     assert in_mesh(22) and not stroke.module("bl.sculpts").edited(sculpt().data)
+
+
+def from_the_header(screen):
+    """The menu of modes has Sculpt Mode while somebody works at the sculpt; what its brush does there is asked about at
+    the next stroke, and kept."""
+    yield from groove(screen, 32)
+    assert stroke.run() is not None and not sculpt().hide_get()
+    with screen.override():
+        assert bpy.context.active_object == sculpt()  # whose modes the header's menu has
+        bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
+    yield lambda: not stroke.module("bl.working").lives
+    assert sculpt().mode == "SCULPT" and not hidden() and in_mesh(32)
+    yield 1.0
+    before = support.coordinates(sculpt().data)
+    yield from screen.drag([tuple(map(int, stroke.pixel(screen, (x, 50, 20)))) for x in (20, 25, 30, 35, 40)], 0.1)
+    yield 1.0
+    assert not np.array_equal(support.coordinates(sculpt().data), before), "the brush of Sculpt Mode did nothing"
+    with screen.override():
+        bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="OBJECT")
+    stroke.tool(screen, "riffler.carve")
+    yield 0.5
+    assert stroke.module("bl.edits").noticed(sculpt())
+    edited = support.coordinates(sculpt().data)[:, 2].max()
+    yield from groove(screen, 44)
+    yield 0.5
+    for value in ("PRESS", "RELEASE"):
+        screen.window.event_simulate("RET", value, x=screen.at[0], y=screen.at[1])
+    yield lambda: stroke.run() is not None and stroke.module("drawing.pointer").held is None
+    stroke.module("bl.live").end_all()
+    yield 0.5
+    assert in_mesh(32) and in_mesh(44)
+    mm = sculpt().data.riffler.mm_per_unit
+    assert abs(support.coordinates(sculpt().data)[:, 2].max() - edited) * mm < 0.1, "the edits were dropped"
 
 
 def in_local_view(screen):

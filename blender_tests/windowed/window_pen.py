@@ -121,7 +121,7 @@ def steps(screen):
     folder, since = autosaves(), time.perf_counter()
     assert begin(screen, removal_constant=0.005) == {"FINISHED"} and sculpting()
     tool = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
-    assert tool.idname == "riffler.carve" and bpy.data.objects[NAME].hide_get()
+    assert tool.idname == "riffler.carve" and support.part("bl.chunks").is_hidden(bpy.data.objects[NAME])
     looks = []
     counted(looks)
     force = support.part("drawing.force")
@@ -176,7 +176,7 @@ def steps(screen):
     yield lambda: support.part("bl.live").of(bpy.data.objects[NAME]) is None
     assert volume().to_bytes() == last and volume().volume < whole
     after = cut.state()
-    assert after[0] < before[0] and not bpy.data.objects[NAME].hide_get()
+    assert after[0] < before[0] and not support.part("bl.chunks").is_hidden(bpy.data.objects[NAME])
     assert "Riffler Tool" not in bpy.data.objects and len(bpy.data.collections) == 1
 
     # called again, it ends; so it does with another tool, and with the object's end

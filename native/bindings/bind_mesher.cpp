@@ -1,3 +1,5 @@
+#include <numbers>
+#include <optional>
 #include <variant>
 
 #include "bindings/bindings.hpp"
@@ -45,21 +47,29 @@ py::list to_list(const std::vector<std::size_t>& numbers) {
 
 using BrickOrBricks = std::variant<std::size_t, std::vector<std::size_t>>;
 
-py::tuple patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges) {
+py::tuple patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges, const std::optional<double>& sharp) {
+  if (sharp && !(*sharp >= 0 && *sharp <= std::numbers::pi))
+    throw std::invalid_argument("normals: the angle must be 0 to pi rad");
   MeshPatch patch;
   PatchEdges edges;
+  BulkVector<Vec3f> normals;
   {
     const NoGil release;
     const auto held = lock(self);
     const auto* const one = std::get_if<std::size_t>(&bricks);
     patch = one ? self.mesher.patch(*one) : self.mesher.patch(std::get<std::vector<std::size_t>>(bricks));
     if (with_edges) edges = edges_of(patch);
+    if (sharp) normals = self.mesher.corner_normals(patch, *sharp);
   }
-  auto vertices = take<float>(std::move(patch.vertices), 3);
-  auto triangles = take<std::int32_t>(std::move(patch.triangles), 3);
-  if (!with_edges) return py::make_tuple(std::move(vertices), std::move(triangles));
-  return py::make_tuple(std::move(vertices), std::move(triangles), take<std::int32_t>(std::move(edges.vertices), 2),
-                        take<std::int32_t>(std::move(edges.of_corner), 3));
+  py::list out;
+  out.append(take<float>(std::move(patch.vertices), 3));
+  out.append(take<std::int32_t>(std::move(patch.triangles), 3));
+  if (with_edges) {
+    out.append(take<std::int32_t>(std::move(edges.vertices), 2));
+    out.append(take<std::int32_t>(std::move(edges.of_corner), 3));
+  }
+  if (sharp) out.append(take<float>(std::move(normals), 3));
+  return py::tuple(out);
 }
 
 using Hits = std::vector<std::optional<SurfaceHit>>;
@@ -209,7 +219,7 @@ always, bit for bit, what ``volume.to_mesh()`` gives. It keeps a snapshot of the
             return py::make_tuple(shape.x, shape.y, shape.z);
           },
           "Bricks along each axis, with triangles or without: brick n stands at ``numpy.unravel_index(n, shape)``.")
-      .def("patch", &patch, py::arg("bricks"), py::arg("edges") = false,
+      .def("patch", &patch, py::arg("bricks"), py::arg("edges") = false, py::arg("normals") = py::none(),
            R"((vertices (n, 3) float32, triangles (k, 3) int32) of a brick, empty where nothing is left.
 
 The brick's own vertices come first, then those of its neighbours that its triangles touch; what two patches share has
@@ -217,7 +227,10 @@ the same coordinates in both, bit for bit. A sequence of bricks gives one patch 
 
 ``edges=True`` adds edges (e, 2) int32, each once, and of each triangle's corners the edge to the next one, (k, 3)
 int32: Blender's ``.edge_verts`` and ``.corner_edge``. IndexError for a brick that there is not, ValueError for one
-that is there twice.)")
+that is there twice.
+
+``normals``, an angle in rad, adds normals (3 k, 3) float32 of the triangles' corners on the whole mesh: the mean of the
+triangles around the vertex, in whatever brick, whose normals are within that angle of the corner's own.)")
       .def("pick", &pick_live, py::arg("origin"), py::arg("direction"), kPickText)
       .def("freeze", &freeze,
            R"(The surface as it is now, to be picked while the mesher goes on: a ``FrozenSurface``.

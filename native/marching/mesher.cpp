@@ -1,6 +1,7 @@
 #include "marching/mesher.hpp"
 
 #include "geom/parallel.hpp"
+#include "marching/corner_normals.hpp"
 #include "marching/facets.hpp"
 #include "marching/mesh_state.hpp"
 #include "marching/to_mesh.hpp"
@@ -54,6 +55,11 @@ Vec3i Mesher::shape() const {
 MeshPatch Mesher::patch(std::span<const std::size_t> bricks) const {
   state_->check_whole();
   return patch_of(*state_, bricks);
+}
+
+BulkVector<Vec3f> Mesher::corner_normals(const MeshPatch& patch, double sharp) const {
+  state_->check_whole();
+  return marching::corner_normals(*state_, patch.bricks, patch, sharp);
 }
 
 Mesh Mesher::mesh() const {

@@ -43,6 +43,9 @@ class Mesher {
   /// std::out_of_range for a number that no brick has, std::invalid_argument for one that is there twice.
   MeshPatch patch(std::span<const std::size_t> bricks) const;
   MeshPatch patch(std::size_t brick) const { return patch(std::span(&brick, 1)); }
+  /// Of each corner of a patch's triangles the normal on the whole mesh: the mean of the triangles around its vertex,
+  /// in whatever brick, that are within `sharp` (rad) of its own. (3 triangles), unit.
+  BulkVector<Vec3f> corner_normals(const MeshPatch& patch, double sharp) const;
   /// The whole mesh: the same as to_mesh of the volume.
   Mesh mesh() const;
   std::size_t triangles() const;

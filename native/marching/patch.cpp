@@ -18,7 +18,8 @@ struct Own {
   bool operator<(const Own& o) const { return first < o.first; }
 };
 
-std::vector<const ActiveBrick*> active_of(const MeshState& state, std::span<const std::size_t> bricks) {
+std::vector<const ActiveBrick*> active_of(const MeshState& state, std::span<const std::size_t> bricks,
+                                          std::vector<std::size_t>& found) {
   std::vector<std::size_t> sorted(bricks.begin(), bricks.end());
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
@@ -28,15 +29,16 @@ std::vector<const ActiveBrick*> active_of(const MeshState& state, std::span<cons
                             std::to_string(state.bricks.size()));
   std::vector<const ActiveBrick*> out;
   for (const std::size_t n : bricks)
-    if (const ActiveBrick* const active = state.bricks.active(n); active && active->edges() > 0) out.push_back(active);
+    if (const ActiveBrick* const active = state.bricks.active(n); active && active->edges() > 0)
+      out.push_back(active), found.push_back(n);
   return out;
 }
 
 }  // namespace
 
 MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) {
-  const std::vector<const ActiveBrick*> active = active_of(state, bricks);
   MeshPatch out;
+  const std::vector<const ActiveBrick*> active = active_of(state, bricks, out.bricks);
   std::vector<Own> own;
   std::size_t triangles = 0;
   for (const ActiveBrick* const brick : active) {
@@ -51,7 +53,7 @@ MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) 
   out.triangles.resize(triangles);
   // Corners at other bricks' vertices: where they stand in the patch is known when all have been seen.
   std::vector<std::int32_t*> open;
-  std::vector<std::int32_t> foreign;
+  std::vector<std::int32_t>& foreign = out.foreign;
   Vec3i* next = out.triangles.data();
   for (std::size_t b = 0; b < active.size(); ++b) {
     const Own here = own[b];

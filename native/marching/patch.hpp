@@ -1,7 +1,9 @@
 // Part of a mesh, with numbers of its own.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "mesh/mesh.hpp"
 
@@ -13,7 +15,9 @@ namespace riffler {
 struct MeshPatch {
   BulkVector<Vec3f> vertices;
   Triangles triangles;
-  std::size_t own = 0;  ///< vertices that are the bricks' own
+  std::size_t own = 0;                ///< vertices that are the bricks' own
+  std::vector<std::size_t> bricks;    ///< those of them that have triangles, in order
+  std::vector<std::int32_t> foreign;  ///< the others' numbers in the whole mesh, ascending
 };
 
 namespace marching {

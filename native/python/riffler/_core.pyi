@@ -306,6 +306,14 @@ class Volume:
         A box full of material. ValueError, before anything is allocated, if it does not fit in memory.
         """
     @staticmethod
+    def cylinder(centre: typing.Any, radius: typing.SupportsFloat, height: typing.SupportsFloat, pitch: typing.SupportsFloat, directions: str = 'z', axis: typing.Any = (0, 0, 1), lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None) -> Volume:
+        """
+        A cylinder of material along ``axis``, of any length but 0; ``centre`` is the middle of it. mm.
+
+        Made of exact rays as ``sphere``: the caps are planes, and meet the side at a sharp edge in volumes of three directions.
+        Box and errors as there.
+        """
+    @staticmethod
     def empty(lower: typing.Any, upper: typing.Any, pitch: typing.SupportsFloat, directions: str = 'z') -> Volume:
         """
         The box without material: what is put on (``carve``, ``add``) is all that it has. mm.
@@ -338,6 +346,15 @@ class Volume:
     def load(path: os.PathLike | str | bytes, progress: typing.Any = None) -> Volume:
         """
         Reads a .rvol file; FormatError where it is damaged or not one.
+        """
+    @staticmethod
+    def sphere(centre: typing.Any, radius: typing.SupportsFloat, pitch: typing.SupportsFloat, directions: str = 'z', lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None) -> Volume:
+        """
+        A ball of material around ``centre``, mm, made of exact rays: it has no facets.
+
+        Each end of a span is where its ray crosses the sphere, to the rounding of doubles, and has the sphere's normal. Covers
+        the ball's box, or ``lower`` to ``upper``, clipping what lies outside. ValueError where all rays of a direction miss a
+        ball that lies in the box: the message has a pitch at which they do not.
         """
     def __copy__(self) -> Volume:
         ...
@@ -376,6 +393,16 @@ class Volume:
     def copy(self) -> Volume:
         """
         An independent volume; shares its tiles until one of the two is written.
+        """
+    def grown(self, lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None) -> Volume:
+        """
+        This volume in a larger box: a new volume with the same spans and normals, bit for bit.
+
+        Rays stay where they stand, and others, without material, are put beside them: each side of the box moves outward by
+        whole pitches until it lies at or beyond that of ``lower`` to ``upper`` (mm; default: its own), to 1e-6 of a pitch. A
+        side that does already stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more;
+        ``volume`` then counts the rays that were last with whole cells. ValueError, before anything is allocated, if the box
+        does not fit in memory.
         """
     def intersect(self, other: Volume, progress: typing.Any = None) -> Volume:
         """
@@ -544,7 +571,7 @@ class Mesher:
         """
         The whole mesh, the same as ``to_mesh()`` of the volume.
         """
-    def patch(self, bricks: typing.SupportsInt | collections.abc.Sequence[typing.SupportsInt], edges: bool = False) -> tuple:
+    def patch(self, bricks: typing.SupportsInt | collections.abc.Sequence[typing.SupportsInt], edges: bool = False, normals: typing.SupportsFloat | None = None) -> tuple:
         """
         (vertices (n, 3) float32, triangles (k, 3) int32) of a brick, empty where nothing is left.
 
@@ -554,6 +581,9 @@ class Mesher:
         ``edges=True`` adds edges (e, 2) int32, each once, and of each triangle's corners the edge to the next one, (k, 3)
         int32: Blender's ``.edge_verts`` and ``.corner_edge``. IndexError for a brick that there is not, ValueError for one
         that is there twice.
+
+        ``normals``, an angle in rad, adds normals (3 k, 3) float32 of the triangles' corners on the whole mesh: the mean of the
+        triangles around the vertex, in whatever brick, whose normals are within that angle of the corner's own.
         """
     def patches(self) -> list:
         """

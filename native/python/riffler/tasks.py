@@ -14,10 +14,12 @@ from ._core import Collider, Journal, Mesh, Task, Verification, Volume, verify
 __all__ = [
     "collider",
     "cutter_locations",
+    "cylinder",
     "decimate",
     "deviation",
     "free_orientations",
     "from_mesh",
+    "grown",
     "least_tilt",
     "parts",
     "pencil",
@@ -26,6 +28,7 @@ __all__ = [
     "run",
     "save",
     "smooth",
+    "sphere",
     "to_bytes",
     "to_mesh",
     "verify",
@@ -51,8 +54,11 @@ least_tilt = _task_of(plan.least_tilt, "plan.least_tilt")
 collider = _task_of(Collider.made, "Collider")
 verify = _task_of(verify, "verify")
 run = _task_of(Verification.run, "Verification.run")
+sphere = _task_of(Volume.sphere, "Volume.sphere")
+cylinder = _task_of(Volume.cylinder, "Volume.cylinder")
 from_mesh = _task_of(Volume.from_mesh, "Volume.from_mesh")
 parts = _task_of(Volume.parts, "Volume.parts")
+grown = _task_of(Volume.grown, "Volume.grown")
 resampled = _task_of(Volume.resampled, "Volume.resampled")
 to_mesh = _task_of(Volume.to_mesh, "Volume.to_mesh")
 to_bytes = _task_of(Volume.to_bytes, "Volume.to_bytes")

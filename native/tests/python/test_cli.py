@@ -108,6 +108,18 @@ def test_carve_starts_from_files(folder):
 
 
 @pytest.mark.parametrize(
+    ("stock", "volume", "upper"),
+    [("sphere:20", 4 / 3 * np.pi * 1000, (20, 20, 20)), ("cylinder:20:15", np.pi * 1500, (20, 20, 15))],
+)
+def test_stock_may_be_round(folder, stock, volume, upper):
+    data = result("carve", "--stock", stock, "--pitch", 0.2, "--origin", "5.1,1,2", "--tool", "ball:1", "--program",
+                  "slot.ngc", "--out", "a.rvol", cwd=folder)  # fmt: skip
+    assert data["volume_before"] == pytest.approx(volume, rel=3e-3)
+    left = riffler.Volume.load(folder / "a.rvol")
+    assert left.lower.tolist() == [5.1, 1, 2] and np.allclose(left.upper - left.lower, upper, atol=1e-12)
+
+
+@pytest.mark.parametrize(
     ("origin", "lower"),
     [
         ("-5,-1,0", (-5, -1, 0)),
@@ -312,6 +324,9 @@ BAD_CARVES = {
     "stock: negative": ({"--stock": "10x20x-5"}, "--stock 10x20x-5: size must be positive, not -5"),
     "stock: far too large": ({"--stock": "2e9x20x10", "--pitch": "1e6"}, "give its size in millimetres"),
     "stock: words": ({"--stock": "axbxc"}, "--stock axbxc"),
+    "stock: sphere": ({"--stock": "sphere:10:20"}, "--stock sphere:10:20"),
+    "stock: cylinder of no height": ({"--stock": "cylinder:10:0"}, "--stock cylinder:10:0"),
+    "stock: unknown kind": ({"--stock": "cone:10"}, "--stock cone:10"),
     "stock: NaN file": ({"--stock": "nan.stl"}, "nan.stl, byte "),
     "stock: missing file": ({"--stock": "nowhere.stl"}, "nowhere.stl"),
     "origin": ({"--origin": "1,2"}, "--origin 1,2"),

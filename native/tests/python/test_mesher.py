@@ -52,6 +52,60 @@ def sorted_corners(vertices, triangles):
     return corners[np.lexsort(corners.T)]
 
 
+def whole_normals(vertices, triangles, sharp):
+    """Of all corners (3 k, 3), from the whole mesh: pairs of corners at one vertex, all at once."""
+    p = vertices[triangles].astype(float)
+    normals = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    to_next, to_last = np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p
+    cosines = (to_next * to_last).sum(axis=2) / np.linalg.norm(to_next, axis=2) / np.linalg.norm(to_last, axis=2)
+    weighted = np.arccos(cosines)[:, :, None] * normals[:, None]
+    corner = np.argsort(triangles.ravel(), kind="stable")
+    sizes = np.bincount(triangles.ravel(), minlength=len(vertices))
+    first = np.concatenate([[0], np.cumsum(sizes)])[:-1]
+    around = sizes[triangles.ravel()]
+    own = np.repeat(np.arange(3 * len(triangles)), around)
+    other = corner[np.repeat(first[triangles.ravel()] - np.cumsum(around) + around, around) + np.arange(len(own))]
+    near = (normals[own // 3] * normals[other // 3]).sum(axis=1) >= np.cos(sharp)
+    out = np.zeros((3 * len(triangles), 3))
+    np.add.at(out, own[near], weighted.reshape(-1, 3)[other[near]])
+    return out / np.linalg.norm(out, axis=1)[:, None]
+
+
+@pytest.mark.parametrize("degrees", [20, 180])
+def test_a_patch_has_the_normals_of_the_whole_mesh(degrees):
+    volume = carved()
+    for x in (5, 7.3, 9, 20):
+        stroke(volume, x, 8)  # across the border between bricks at 8 mm
+    mesher = riffler.Mesher(volume)
+    whole = volume.to_mesh()
+    sharp = np.radians(degrees)
+    vertices = np.asarray(whole.vertices).astype(np.float32)
+    expected = whole_normals(vertices, np.asarray(whole.triangles), sharp)
+    place = {
+        v.tobytes() + n.tobytes(): k for k, (v, n) in enumerate(zip(*keys(vertices, whole.triangles), strict=True))
+    }
+    bricks = mesher.patches()
+    seen = 0
+    for some in (bricks[:1], bricks[3:5], bricks):
+        v, t, normals = mesher.patch(some, normals=sharp)
+        k = [place[a.tobytes() + b.tobytes()] for a, b in zip(*keys(v, t), strict=True)]
+        cosines = (normals * expected[k]).sum(axis=1)
+        off = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+        # a triangle at the very angle may count in one and not in the other
+        assert np.percentile(off, 99.9) < 0.05 and (off > 0.05).sum() <= 6, off.max()
+        seen += len(normals)
+    assert seen > 3 * len(whole.triangles)
+    with pytest.raises(ValueError, match="normals"):
+        mesher.patch(0, normals=-1.0)
+
+
+def keys(vertices, triangles):
+    """Of all corners: the vertex's place, and the places of the triangle's others."""
+    corners = vertices[triangles]
+    return corners.reshape(-1, 3), np.repeat(corners.reshape(-1, 1, 9), 3, axis=1).reshape(-1, 9)
+
+
 def test_bricks_in_one_patch_have_no_seams():
     volume = carved()
     stroke(volume, 8, 7)

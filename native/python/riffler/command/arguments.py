@@ -13,6 +13,7 @@ MESHES = (".stl", ".obj", ".ply", ".3mf")
 VOLUMES = (".rvol",)
 PAIRS = re.compile(r"\d+:[-+.\deE]+(,\d+:[-+.\deE]+)*")
 ORIGINS = ("corner", "top-centre", "bottom-centre")
+SOLIDS = {"block": 3, "sphere": 1, "cylinder": 2}  # sizes of each
 
 
 def finite(text: str, what: str) -> float:
@@ -53,12 +54,14 @@ def add_directions(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def box(text: str, origin: str) -> tuple[list[float], list[float]]:
-    """Lower and upper corner of a block ``WxDxH`` at ``origin``: ``x,y,z`` of its lower corner, or one of ORIGINS."""
-    sizes = [length(part, f"--stock {text}: size") for part in text.lower().split("x")]
-    if len(sizes) != 3:
-        raise ValueError(f"--stock {text}: three sizes expected, as in 100x60x30")
-    w, d, h = sizes
+def solid(text: str, origin: str) -> tuple[str, list[float], list[float]]:
+    """Kind, lower and upper corner of a block ``WxDxH``, ``sphere:D`` or ``cylinder:D:H``, which stands along z, at
+    ``origin``: ``x,y,z`` of its box's lower corner, or one of ORIGINS."""
+    kind, *numbers = text.lower().split(":") if ":" in text else ("block", *text.lower().split("x"))
+    sizes = [length(number, f"--stock {text}: size") for number in numbers]
+    if len(sizes) != SOLIDS.get(kind):
+        raise ValueError(f"--stock {text}: 100x60x30, sphere:40, cylinder:40:60 or a file expected")
+    w, d, h = {"block": sizes, "sphere": 3 * sizes, "cylinder": [*sizes[:1], *sizes]}[kind]
     if origin in ORIGINS:
         lower = {"corner": [0.0, 0.0, 0.0], "top-centre": [-w / 2, -d / 2, -h], "bottom-centre": [-w / 2, -d / 2, 0.0]}[
             origin
@@ -67,10 +70,10 @@ def box(text: str, origin: str) -> tuple[list[float], list[float]]:
         lower = [finite(part, f"--origin {origin}: coordinate") for part in origin.split(",")]
         if len(lower) != 3:
             raise ValueError(f"--origin {origin}: x,y,z of the lower corner expected, or one of {', '.join(ORIGINS)}")
-    return lower, [a + b for a, b in zip(lower, sizes, strict=True)]
+    return kind, lower, [a + b for a, b in zip(lower, (w, d, h), strict=True)]
 
 
-def is_box(text: str) -> bool:
+def is_solid(text: str) -> bool:
     return not text.lower().endswith(MESHES + VOLUMES) and not os.path.exists(text)
 
 

@@ -20,12 +20,12 @@ from .arguments import (
     add_directions,
     add_machine_option,
     add_pitch,
-    box,
     input_file,
-    is_box,
+    is_solid,
     length,
     machine_options,
     output_file,
+    solid,
 )
 from .console import Console, number, times
 from .shapes import from_mesh, rays, write_left
@@ -111,28 +111,31 @@ def add_stock(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--stock",
         required=True,
-        metavar="WxDxH|FILE",
-        help="a block's sizes, or a .stl, .obj, .ply, .3mf or .rvol file",
+        metavar="WxDxH|sphere:D|cylinder:D:H|FILE",
+        help="a block's sizes, a sphere's diameter, a cylinder's diameter and height along z, or a .stl, .obj, .ply, "
+        ".3mf or .rvol file",
     )
     add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
     add_directions(parser)
     parser.add_argument(
-        "--origin", metavar="X,Y,Z", help=f"a block's lower corner (default 0,0,0), or one of {', '.join(ORIGINS)}"
+        "--origin",
+        metavar="X,Y,Z",
+        help=f"lower corner of the box of what has sizes (default 0,0,0), or one of {', '.join(ORIGINS)}",
     )
 
 
 def stock(arguments: argparse.Namespace, console: Console) -> Volume:
-    """The volume to carve: a block, a mesh or a .rvol file."""
+    """The volume to carve: a block, sphere or cylinder, a mesh or a .rvol file."""
     pitch = None if arguments.pitch is None else length(arguments.pitch, "--pitch")
-    if is_box(arguments.stock):
-        lower, upper = box(arguments.stock, arguments.origin or "corner")
+    if is_solid(arguments.stock):
+        kind, lower, upper = solid(arguments.stock, arguments.origin or "corner")
         if pitch is None:
-            raise ValueError("--pitch is needed for a block")
+            raise ValueError(f"--pitch is needed for a {kind}")
         with console.step("stock"):
-            return Volume.block(lower, upper, pitch, arguments.directions or "xyz")
+            return _solid(kind, np.array(lower), np.array(upper), pitch, arguments.directions or "xyz")
     path = input_file(arguments.stock, MESHES + VOLUMES)
     if arguments.origin is not None:
-        raise ValueError(f"--origin is for blocks; {path.name} has its own place")
+        raise ValueError(f"--origin is for stock of given sizes; {path.name} has its own place")
     if path.suffix.lower() in VOLUMES:
         with console.step("stock") as progress:
             volume = Volume.load(path, progress=progress)
@@ -144,6 +147,17 @@ def stock(arguments: argparse.Namespace, console: Console) -> Volume:
     if pitch is None:
         raise ValueError(f"--pitch is needed for {path.name}")
     return from_mesh(path, pitch, arguments.directions or "xyz", console, "stock")
+
+
+def _solid(kind: str, lower: np.ndarray, upper: np.ndarray, pitch: float, directions: str) -> Volume:
+    """What fills the box, and has its corners as they are."""
+    if kind == "block":
+        return Volume.block(lower, upper, pitch, directions)
+    centre, (w, _, h) = 0.5 * (lower + upper), upper - lower
+    box = {"lower": lower, "upper": upper}
+    if kind == "sphere":
+        return Volume.sphere(centre, 0.5 * w, pitch, directions, **box)
+    return Volume.cylinder(centre, 0.5 * w, h, pitch, directions, **box)
 
 
 def carve(

@@ -1,0 +1,89 @@
+"""Which tests the Blenders in the middle leave out, and that it is said."""
+
+import ast
+import json
+import subprocess
+import sys
+from argparse import Namespace
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(HERE))
+import run  # noqa: E402
+
+import environments  # noqa: E402 (the path first)
+
+# What differs between Blender's versions: whatever uses it runs in all of them.
+DIFFERS = ("bpy.ops.ed.", "open_mainfile", "frame_set", "attributes", "insert(")
+
+
+def marked():
+    """(file, name, source) of each test that is marked."""
+    for path in sorted((HERE / "headless").glob("test_*.py")):
+        text = path.read_text()
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.FunctionDef) and "support.core_bound" in map(ast.unparse, node.decorator_list):
+                yield path.name, node.name, ast.get_source_segment(text, node)
+
+
+def test_no_test_is_marked_that_uses_what_differs_between_versions():
+    found = list(marked())
+    assert len(found) > 20
+    assert all(name.startswith("test_") for _, name, _ in found)
+    wrong = [(file, name, word) for file, name, text in found for word in DIFFERS if word in text]
+    assert not wrong
+
+
+def jobs(monkeypatch, capsys, versions, **more):
+    """(Blender, way of installing, whether marked tests are left out) of each process, and what the runs print of three
+    tests that each has left out."""
+    found = [environments.Environment(f"bpy {v}", tuple(map(int, v.split("."))), ["bpy"]) for v in versions]
+    found.append(environments.Environment("bpy 9.9", (9, 9), [], "not there"))
+    monkeypatch.setattr(environments, "find", lambda: found)
+    seen = []
+
+    def execute(command, variables, timeout):
+        job = json.loads(Path(variables["RIFFLER_TEST_JOB"]).read_text())
+        seen.append(bool(job.get("leave_out")))
+        lines = [{"name": "test", "outcome": "passed", "seconds": 0.1, "message": ""}]
+        lines += [{"left": 3}] if job.get("leave_out") else []
+        return subprocess.CompletedProcess(command, 0, "\n".join(run.MARK + json.dumps(line) for line in lines), "")
+
+    monkeypatch.setattr(environments, "execute", execute)
+    bench = run.Bench([], {"extension": "e.zip", "legacy": "l.zip"}, Path("out"), "", 10, run.Tally())
+    arguments = Namespace(**{"blender": "", "mode": None, "figures": False} | more)
+    out = []
+    for process in run.headless(bench, arguments):
+        if process.func != bench.run or process.args[1] == "none":
+            continue
+        process()
+        out.append((process.args[0].name, process.args[1], seen[-1]))
+    run.close(bench.tally)
+    return out, capsys.readouterr().out
+
+
+def test_the_middle_ones_leave_them_out_and_say_how_many_and_where_they_run(monkeypatch, capsys):
+    found, said = jobs(monkeypatch, capsys, ["3.4", "4.2", "4.5", "5.0"])
+    assert found == [
+        ("bpy 3.4", "legacy", False),
+        ("bpy 4.2", "extension", True),
+        ("bpy 4.5", "source", True),
+        ("bpy 4.5", "extension", True),
+        ("bpy 5.0", "extension", False),
+    ]
+    line = "bpy 4.2, extension: tests that run in bpy 3.4 and bpy 5.0 only, because their time goes into the core: 3"
+    assert said.count(line) == 2, "as it ends, and in the summary"
+
+
+@pytest.mark.parametrize("more", [{"blender": "4.5"}, {"mode": "extension"}])
+def test_a_blender_that_is_named_runs_everything(monkeypatch, capsys, more):
+    found, said = jobs(monkeypatch, capsys, ["3.4", "4.2", "4.5", "5.0"], **more)
+    assert found and not any(left for *_, left in found) and "left out" not in said
+
+
+def test_where_there_are_one_or_two_they_run_everything(monkeypatch, capsys):
+    for versions in (["4.5"], ["4.2", "4.5"]):
+        found, _ = jobs(monkeypatch, capsys, versions)
+        assert found and not any(left for *_, left in found)

@@ -1,0 +1,160 @@
+#include "marching/corner_normals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "geom/each_once.hpp"
+#include "marching/mesh_state.hpp"
+
+namespace riffler::marching {
+
+namespace {
+
+/// A triangle at one of the patch's vertices.
+struct Wedge {
+  Vec3 normal;
+  double angle;
+};
+
+/// Bricks beside some, without them, that have triangles.
+std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> bricks) {
+  std::vector<std::size_t> out, own(bricks.begin(), bricks.end());
+  std::sort(own.begin(), own.end());
+  for (const std::size_t n : bricks) {
+    const Vec3i at = all.place(n);
+    for (int i = at.x - 1; i <= at.x + 1; ++i)
+      for (int j = at.y - 1; j <= at.y + 1; ++j)
+        for (int k = at.z - 1; k <= at.z + 1; ++k)
+          if (const ActiveBrick* const active = all.active(i, j, k); active && active->edges() > 0)
+            if (const std::size_t m = all.index(i, j, k); !std::binary_search(own.begin(), own.end(), m))
+              out.push_back(m);
+  }
+  each_once(out);
+  return out;
+}
+
+/// The patch's number of a vertex of the mesh; −1 for one that it does not have.
+class Numbers {
+ public:
+  Numbers(const MeshState& state, const MeshPatch& patch) : own_(patch.own), foreign_(patch.foreign) {
+    for (const std::size_t n : patch.bricks) {
+      const ActiveBrick& brick = *state.bricks.active(n);
+      ranges_.push_back({brick.first_vertex, brick.vertices(), count_});
+      count_ += brick.vertices();
+    }
+    std::sort(ranges_.begin(), ranges_.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
+  }
+  std::int64_t of(std::int32_t v) const {
+    const auto vertex = static_cast<std::size_t>(v);
+    const auto after = std::upper_bound(ranges_.begin(), ranges_.end(), vertex,
+                                        [](std::size_t x, const Range& r) { return x < r.first; });
+    if (after != ranges_.begin() && vertex < (after - 1)->first + (after - 1)->size)
+      return static_cast<std::int64_t>((after - 1)->number + vertex - (after - 1)->first);
+    const auto at = std::lower_bound(foreign_.begin(), foreign_.end(), v);
+    return at != foreign_.end() && *at == v ? static_cast<std::int64_t>(own_) + (at - foreign_.begin()) : -1;
+  }
+
+ private:
+  struct Range {
+    std::size_t first, size, number;
+  };
+  std::vector<Range> ranges_;
+  std::size_t own_, count_ = 0;
+  const std::vector<std::int32_t>& foreign_;
+};
+
+/// Lists of wedges by vertex: counted first, then filled.
+class Fans {
+ public:
+  explicit Fans(std::size_t vertices) : begin_(vertices + 1, 0) {}
+  void count(std::size_t v) { ++begin_[v + 1]; }
+  void reserve() {
+    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    wedges_.resize(begin_.back());
+    next_.assign(begin_.begin(), begin_.end() - 1);
+  }
+  void add(std::size_t v, const Wedge& wedge) { wedges_[next_[v]++] = wedge; }
+  std::span<const Wedge> at(std::size_t v) const {
+    return {wedges_.data() + begin_[v], wedges_.data() + begin_[v + 1]};
+  }
+
+ private:
+  std::vector<std::size_t> begin_, next_;
+  std::vector<Wedge> wedges_;
+};
+
+struct Corners {
+  Vec3 normal{0.0};  // unit, or 0 where the triangle has no area
+  std::array<double, 3> angle{};
+};
+
+Corners corners_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  Corners out;
+  const Vec3 cross = glm::cross(b - a, c - a);
+  const double twice = glm::length(cross);
+  if (!(twice > 0)) return out;
+  out.normal = cross / twice;
+  out.angle = {std::atan2(twice, glm::dot(b - a, c - a)), std::atan2(twice, glm::dot(c - b, a - b)),
+               std::atan2(twice, glm::dot(a - c, b - c))};
+  return out;
+}
+
+}  // namespace
+
+BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const std::size_t> bricks, const MeshPatch& patch,
+                                 double sharp) {
+  struct Outside {
+    Vec3i triangle;
+    std::array<std::int64_t, 3> vertex;
+  };
+  const Mesh& mesh = state.surface.mesh;
+  const Numbers numbers(state, patch);
+  std::vector<Outside> outside;
+  Fans fans(patch.vertices.size());
+  for (const Vec3i& t : patch.triangles)
+    for (int c = 0; c < 3; ++c) fans.count(static_cast<std::size_t>(t[c]));
+  for (const std::size_t n : beside(state.bricks, bricks)) {
+    const ActiveBrick& brick = *state.bricks.active(n);
+    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t) {
+      const Vec3i& triangle = mesh.triangles[t];
+      const Outside found{triangle, {numbers.of(triangle.x), numbers.of(triangle.y), numbers.of(triangle.z)}};
+      if (std::max({found.vertex[0], found.vertex[1], found.vertex[2]}) < 0) continue;
+      outside.push_back(found);
+      for (const std::int64_t v : found.vertex)
+        if (v >= 0) fans.count(static_cast<std::size_t>(v));
+    }
+  }
+  fans.reserve();
+  // From the coordinates that patches have: the world's frame, float32.
+  std::vector<Vec3> normals;
+  normals.reserve(patch.triangles.size());
+  const auto place = [&](std::int32_t v) { return Vec3(Vec3f(to_world(state.lattice.axis(), mesh.vertices[v]))); };
+  for (const Vec3i& t : patch.triangles) {
+    const Corners corners = corners_of(Vec3(patch.vertices[t.x]), Vec3(patch.vertices[t.y]), Vec3(patch.vertices[t.z]));
+    normals.push_back(corners.normal);
+    for (int c = 0; c < 3; ++c) fans.add(static_cast<std::size_t>(t[c]), {corners.normal, corners.angle[c]});
+  }
+  for (const Outside& o : outside) {
+    const Corners corners = corners_of(place(o.triangle.x), place(o.triangle.y), place(o.triangle.z));
+    for (int c = 0; c < 3; ++c)
+      if (o.vertex[c] >= 0) fans.add(static_cast<std::size_t>(o.vertex[c]), {corners.normal, corners.angle[c]});
+  }
+  BulkVector<Vec3f> out;
+  out.resize(3 * patch.triangles.size());
+  const double least = std::cos(sharp);
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t)
+    for (int c = 0; c < 3; ++c) {
+      const Vec3& own = normals[t];
+      const bool flat = own == Vec3(0.0);
+      Vec3 sum(0.0);
+      for (const Wedge& w : fans.at(static_cast<std::size_t>(patch.triangles[t][c])))
+        if (flat || glm::dot(w.normal, own) >= least) sum += w.angle * w.normal;
+      const double size = glm::length(sum);
+      out[3 * t + c] = Vec3f(size > 0 ? sum / size : own);
+    }
+  return out;
+}
+
+}  // namespace riffler::marching
