@@ -57,8 +57,7 @@ def sculpt_poll(cls, context):
 
 def no_sculpt(context):
     """Why the active object is none, with the step that helps."""
-    ob = context.object
-    return (refusals.instance(ob) if ob is not None else "") or "Select a sculpt first, or make a new stock"
+    return refusals.instance(context.object) or "Select a sculpt first, or make a new stock"
 
 
 def object_mode(cls, context):
