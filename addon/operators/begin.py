@@ -13,10 +13,9 @@ from .. import properties
 from ..bl import chunks, live, meshes, refusals, sculpts
 from ..core import fitting
 from ..core import units as names
-from ..core.stroke import Sample
 from ..translations import local
 from . import fit, shared, stock
-from .stroke import MODES, MOVES
+from .stroke import MODES, MOVES, sample
 
 WIDE = 70  # characters in a line of a popup
 NOTHING = "Nothing to sculpt here: drag on a mesh, or add a block, sphere or cylinder by Add > Mesh > Riffler"
@@ -93,7 +92,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
             bpy.ops.riffler.make_sculpt("INVOKE_DEFAULT", object=self._target, **given)
 
     def _keep(self, event):
-        self._rows.append(list(sample(event, self._corner, self._begin)))
+        self._rows.append(list(sample(event, self._corner)._replace(time=time.perf_counter() - self._begin)))
 
     def _end(self, context):
         if context.workspace is not None:
@@ -109,14 +108,6 @@ def say(context, text):
             menu.layout.label(text=line, translate=False)
 
     context.window_manager.popup_menu(draw, title="Riffler", icon="INFO")
-
-
-def sample(event, corner, begin):
-    """Of an event in a region with this lower left corner (pixels of the window); `begin`: time of the press."""
-    pressure, lean = (event.pressure, event.tilt) if event.is_tablet else (1.0, (0.0, 0.0))
-    # A tablet's second tilt grows towards whoever holds the pen: down the view (GHOST_TabletData).
-    x, y = event.mouse_x - corner[0], event.mouse_y - corner[1]
-    return Sample(x, y, pressure, lean[0], -lean[1], time.perf_counter() - begin)
 
 
 def refusal(context):

@@ -97,7 +97,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         settings = context.scene.riffler.sculpt
         self._region = context.region.x, context.region.y
         self._begin = self._looked = self._taken = time.perf_counter()
-        self._queue = [self._sample(event)]
+        self._queue = [sample(event, self._region)]
         self._oldest = self._drawn = (
             None  # since when what is carved, and what the last look has shown, may have waited
         )
@@ -122,7 +122,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             return self._end(context)
         if event.type in MOVES:
-            self._queue.append(self._sample(event))
+            self._queue.append(sample(event, self._region))
         elif event.type == "TIMER":
             return self._step(context)
         return {"RUNNING_MODAL"}
@@ -180,12 +180,6 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             passed = before + (now - before) * k / len(queue) - self._begin
             carved |= self._brush.add(sample._replace(time=passed))
         return carved
-
-    def _sample(self, event):
-        x, y = event.mouse_x - self._region[0], event.mouse_y - self._region[1]
-        pressure, lean = (event.pressure, event.tilt) if event.is_tablet else (1.0, (0.0, 0.0))
-        # A tablet's second tilt grows towards whoever holds the pen: down the view (GHOST_TabletData).
-        return Sample(x, y, pressure, lean[0], -lean[1])
 
     def _tell(self, context):
         made = self._brush
@@ -248,6 +242,13 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
             context.workspace.status_text_set(None)
         if context.area is not None:
             context.area.tag_redraw()  # the arrows go
+
+
+def sample(event, corner):
+    """Of an event in a region with this lower left corner, in pixels of the window. Its time is not known yet."""
+    pressure, lean = (event.pressure, event.tilt) if event.is_tablet else (1.0, (0.0, 0.0))
+    # A tablet's second tilt grows towards whoever holds the pen: down the view (GHOST_TabletData).
+    return Sample(event.mouse_x - corner[0], event.mouse_y - corner[1], pressure, lean[0], -lean[1])
 
 
 def summary(made, mode):

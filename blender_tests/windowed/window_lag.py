@@ -89,7 +89,7 @@ class Watch:
         return np.array(out)
 
 
-def stroke(screen, name, seconds):
+def lagging(screen, name, seconds):
     places = circles(screen, seconds)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "hand.json"
@@ -138,7 +138,7 @@ def steps(screen):
     with screen.override():
         bpy.ops.ed.undo_push(message="Stock")
     yield 1.0
-    yield from stroke(screen, "the first stroke, which makes the chunks", 1)
+    yield from lagging(screen, "the first stroke, which makes the chunks", 1)
     chunks = [o for o in bpy.data.objects if o.name.startswith("Riffler Chunk")]
     support.figure("triangles", sum(len(o.data.polygons) for o in chunks))
     yield 1.0
@@ -149,6 +149,6 @@ def steps(screen):
                 ob.display_type = drawn
             strokes.settings().mirror = mirror
             yield 1.0
-            lags, over = yield from stroke(screen, f"{name}, {drawn}", seconds)
+            lags, over = yield from lagging(screen, f"{name}, {drawn}", seconds)
             keeps_up(lags, over, seconds)
             yield 2.0
