@@ -171,8 +171,7 @@ def stock_object(context):
 
 def no_stock(context):
     """Why there is none, with the step that helps."""
-    instance = refusals.instance(context.object) if context.object is not None else ""
-    return instance or "There is no stock: select a sculpt, or make one that the part lies in"
+    return refusals.instance(context.object) or "There is no stock: select a sculpt, or make one that the part lies in"
 
 
 def take(context, wanted):

@@ -28,8 +28,8 @@ def _local(data):
 
 
 def instance(ob):
-    """Why an object that stands for a collection, as one that was linked does, has no surface; or nothing."""
-    if ob.instance_type != "COLLECTION" or ob.instance_collection is None:
+    """Why an object that stands for a collection, as a linked one does, has no surface; or nothing, as of None."""
+    if ob is None or ob.instance_type != "COLLECTION" or ob.instance_collection is None:
         return ""
     return f"{ob.name} is an instance of {ob.instance_collection.name}: use Object > Apply > Make Instances Real"
 

@@ -5,8 +5,16 @@ from __future__ import annotations
 import os
 import platform
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+
+# What installs numpy for the Python of a distribution, by the names in its /etc/os-release.
+NUMPY = {
+    "debian": "sudo apt install python3-numpy",
+    "fedora": "sudo dnf install python3-numpy",
+    "arch": "sudo pacman -S python-numpy",
+    "suse": "sudo zypper install python3-numpy",
+}
 
 
 @dataclass
@@ -18,10 +26,21 @@ class Machine:
     processor: str
     python: str
     blender: str
+    system_python: bool = False  # Blender has none of its own, as those of distributions
+    distribution: list[str] = field(default_factory=list)  # its name, and those of what it is made from
 
     @classmethod
     def current(cls, blender: str) -> Machine:
-        return cls(platform.system(), platform.release(), platform.machine(), platform.python_version(), blender)
+        system = platform.system(), platform.release(), platform.machine(), platform.python_version()
+        return cls(*system, blender, sys.prefix in ("/usr", "/usr/local"), distribution())
+
+
+def distribution() -> list[str]:
+    try:
+        found = platform.freedesktop_os_release()
+    except OSError:
+        return []
+    return [found.get("ID", ""), *found.get("ID_LIKE", "").split()]
 
 
 def built_for(folder: Path) -> list[str]:
@@ -40,7 +59,7 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
     elif "GLIBC" in text or "CXXABI" in text or "GLIBCXX" in text:
         steps.append("The system's C library is older than the package needs: update the system, or build from source.")
     elif "numpy" in text:
-        steps.append("numpy is missing or too old in this Python: install Blender from blender.org, which carries it.")
+        return _with_numpy(machine)
     elif found and not any(tag in name or f"{machine.python[:4].replace('.', '')}-" in name for name in found):
         steps.append(
             f"The package was built for another Python ({', '.join(found)}); this Blender has {machine.python}."
@@ -58,6 +77,17 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
         steps.append(f"Packages are made for x86-64; this machine is {machine.processor}: build from source.")
     steps.append("Remove Riffler in Preferences, restart Blender, and install the zip again.")
     return steps
+
+
+def _with_numpy(machine: Machine) -> list[str]:
+    """Steps where numpy is what is missing: whatever else is installed stays as it is."""
+    if not machine.system_python:
+        return ["numpy is missing or too old in this Python: install Blender from blender.org, which carries it."]
+    install = next((NUMPY[name] for name in machine.distribution if name in NUMPY), "install its package of numpy")
+    return [
+        f"numpy is missing or too old in the system's Python, which this Blender uses: {install}",
+        "Then restart Blender.",
+    ]
 
 
 def report(error: BaseException, machine: Machine, folders: list[str] | None = None) -> dict:

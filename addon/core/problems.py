@@ -26,8 +26,18 @@ def said(error: BaseException) -> str:
     return str(error) or type(error).__name__
 
 
-def check_target(path) -> None:
-    """Before a file is written: ValueError where it cannot be."""
+def capitalised(text: str, names=()) -> str:
+    """A message as a sentence begins, whoever wrote it. `names` and names of files stay as they are."""
+    word = text.partition(" ")[0].rstrip(":")
+    if not (word.isalpha() and word.islower()) or any(name and text.startswith(name) for name in names):
+        return text
+    return text[0].upper() + text[1:]
+
+
+def check_target(path, suffix: str = "") -> None:
+    """Before a file is written: ValueError where it cannot be. `suffix`: what its name is to end with."""
+    if not str(path):
+        raise ValueError("no file was chosen: give one a name")
     path = Path(path)
     if path.is_dir():
         raise ValueError(f"{path} is a folder: give the file a name")
@@ -35,10 +45,14 @@ def check_target(path) -> None:
         raise ValueError(f"there is no folder {path.parent} for {path.name}: choose another")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise ValueError(f"{path} may not be written: choose another folder")
+    if suffix and path.suffix.lower() != suffix:
+        raise ValueError(f"choose a name that ends with {suffix}, not {path.name}")
 
 
 def check_source(path) -> None:
     """Before a file is read: ValueError where it cannot be."""
+    if not str(path):
+        raise ValueError("no file was chosen: choose one")
     path = Path(path)
     if not path.is_file():
         raise ValueError(f"there is no file {path}: choose another")

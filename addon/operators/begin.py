@@ -155,7 +155,7 @@ def under(context, event):
 def unfit(context, ob):
     """Why that object cannot become a sculpt, with the remedy; otherwise nothing."""
     if ob is None:
-        return NOTHING
+        return refusals.instance(context.object) or NOTHING
     if why := refusals.instance(ob):
         return why
     if ob.type not in properties.WITH_SURFACE:
@@ -164,9 +164,7 @@ def unfit(context, ob):
         stands = (o for o in context.view_layer.objects if o.instance_collection is not None)
         of = next((o for o in stands if ob.name in o.instance_collection.all_objects), None)
         return refusals.instance(of) if of is not None else refusals.disabled(ob, context.view_layer) or NOTHING
-    if sculpts.is_sculpt(ob):
-        return refusals.linked(ob, ob.data)
-    return ""
+    return refusals.linked(ob, ob.data) if sculpts.is_sculpt(ob) else refusals.flat(ob)
 
 
 def _fit(chosen, context):

@@ -66,7 +66,7 @@ class ExportSurface(FileWork):
 
     def begin(self, context):
         ob, path = sculpts.active(context), bpy.path.abspath(self.filepath)
-        problems.check_target(path)
+        problems.check_target(path, self.filename_ext)
         shared.check_state(self, context, ob)
         if live.of(ob) is None:
             shared.tell_edits(self, ob.data)

@@ -15,7 +15,7 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
     """One cut per spline of the curve object. ValueError where nothing can be cut."""
     depsgraph = context.evaluated_depsgraph_get()
     size = riffler.Tool.from_dict(tool).diameter
-    cuts = []
+    cuts, far = [], False
     for spline in bl_curves.splines(curve, depsgraph, sculpts.from_object(ob, curve)):
         points, tilt = curves.evaluate(spline, tolerance)
         if len(points) < 2:
@@ -29,6 +29,7 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
             distinct = curves.distinct(places)
             points, tilt, normals = places[distinct], tilt[distinct], normals[distinct]
             if len(points) < 2:
+                far = True
                 continue
         if axis == "UP":
             axes = poses.fixed_axes(len(points))
@@ -37,8 +38,13 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
         else:  # facets and edges would jerk the tool: turn over about its own width
             axes = poses.smooth_axes(points, normals, size)
         cuts.append(Cut(tool, poses.make_poses(points, axes, depth), tolerance))
+    if not cuts and far:
+        raise ValueError(
+            f"{curve.name} is too far from {ob.name}, of which one point is the nearest to all of it: move it nearer, "
+            "or turn Follow surface off"
+        )
     if not cuts:
-        raise ValueError(f"{curve.name} has no spline with two points")
+        raise ValueError(f"{curve.name} has no spline with two points: add points, or choose another curve")
     return cuts
 
 

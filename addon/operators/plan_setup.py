@@ -102,7 +102,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
         try:
             held = parts.fixtures(settings, settings.part)
         except ValueError as error:  # something that was put into the collection otherwise
-            self.report({"WARNING"}, str(error))
+            self.report({"WARNING"}, shared.as_sentence(str(error)))
             return {"FINISHED"}
         self.report({"INFO"}, f"{settings.fixtures.name}: {names.counted(len(held), 'object')}")
         return {"FINISHED"}

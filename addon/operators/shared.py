@@ -6,7 +6,7 @@ from riffler.mesh_notes import notes_on
 
 from ..bl import refusals, sculpts
 from ..core import json_object, units
-from ..core.problems import said
+from ..core.problems import capitalised, said
 from ..translations import local
 
 NAVIGATION = {
@@ -57,8 +57,7 @@ def sculpt_poll(cls, context):
 
 def no_sculpt(context):
     """Why the active object is none, with the step that helps."""
-    ob = context.object
-    return (refusals.instance(ob) if ob is not None else "") or "Select a sculpt first, or make a new stock"
+    return refusals.instance(context.object) or "Select a sculpt first, or make a new stock"
 
 
 def object_mode(cls, context):
@@ -126,8 +125,14 @@ def deny(cls, message):
 
 def fail(operator, error):
     """One clear message instead of a traceback; the operator is cancelled."""
-    operator.report({"ERROR"}, local(said(error)))
+    operator.report({"ERROR"}, as_sentence(said(error)))
     return {"CANCELLED"}
+
+
+def as_sentence(text):
+    """A message in the interface's language; it begins large, but names of what is in the file stay as they are."""
+    data = bpy.data.objects, bpy.data.collections, bpy.data.images, bpy.data.texts, bpy.data.meshes
+    return capitalised(local(text), (x.name for kind in data for x in kind))
 
 
 def draw_fields(operator, keys):

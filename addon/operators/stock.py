@@ -18,6 +18,8 @@ from ..core.job import DoneJob, TaskJob
 from . import paths, shared
 from .long import LongWork
 
+NO_SOURCE = "select the object that is to be the material: a mesh, curve, text, surface or metaball"
+
 
 def source_object(context):
     """The object that would become material, or None."""
@@ -117,18 +119,13 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
     def _from_object(self, context):
         source = source_object(context)
         if source is None:
-            raise ValueError(self._no_source(context))
+            raise ValueError(refusals.instance(context.object) or NO_SOURCE)
         if unfit := refusals.disabled(source, context.view_layer) or refusals.flat(source):
             raise ValueError(unfit)
         # Scale and shear become part of the shape, so that a millimetre of the sculpt is one along every axis.
         place, turn, _ = source.matrix_world.decompose()
         frame = Matrix.Translation(place) @ turn.to_matrix().to_4x4()
         return (self._from_sculpt if _is_its_volume(context, source) else self._from_mesh)(context, source, frame)
-
-    @staticmethod
-    def _no_source(context):
-        instance = refusals.instance(context.object) if context.object else ""
-        return instance or "select the object that is to be the material: a mesh, curve, text, surface or metaball"
 
     def _from_mesh(self, context, source, frame):
         to_stock = meshes.matrix(frame.inverted() @ source.matrix_world)

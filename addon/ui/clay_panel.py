@@ -43,11 +43,11 @@ class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
                 )
                 op.pitch = factor * now
         row = layout.row(align=True)
-        row.prop(settings, "room", text="")
+        row.prop(settings, "room")
         row.operator(clay.RIFFLER_OT_room.bl_idname).room = settings.room
-        row = layout.row(align=True)
-        row.prop(settings, "plane", text="")
-        op = row.operator(clay.RIFFLER_OT_crop.bl_idname, text="Crop")
+        column = layout.column(align=True)
+        column.prop(settings, "plane")
+        op = column.operator(clay.RIFFLER_OT_crop.bl_idname, text="Crop")
         op.plane = settings.plane.name if settings.plane else ""
         column = layout.column(align=True)
         column.operator(clay.RIFFLER_OT_split.bl_idname, icon="MOD_EXPLODE")
@@ -63,7 +63,7 @@ class RIFFLER_PT_mask(Clay, bpy.types.Panel):
         settings = context.scene.riffler.clay
         if at_work(layout, context, mask.RIFFLER_OT_mask_form):
             return
-        layout.prop(settings, "form", text="")
+        layout.prop(settings, "form")
         row = layout.row(align=True)
         for how, text in (("REPLACE", "Mask"), ("ADD", "Add"), ("SUBTRACT", "Subtract")):
             op = row.operator(mask.RIFFLER_OT_mask_form.bl_idname, text=text)

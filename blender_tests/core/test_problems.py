@@ -24,6 +24,15 @@ def test_other_errors_are_said_as_they_are_and_never_empty():
     assert problems.said(FileNotFoundError("there is no folder /x")) == "there is no folder /x"
 
 
+def test_a_message_begins_large_and_names_stay_as_they_are():
+    large = problems.capitalised
+    assert large("the mesh has no volume") == "The mesh has no volume"
+    assert large("stroke: there are no rows") == "Stroke: there are no rows"
+    for kept in ("Cube has no faces", "part.stl, byte 3: short", "3 paths", "/a/b is a folder", ""):
+        assert large(kept) == kept
+    assert large("cube is flat", ["torus", "cube"]) == "cube is flat"
+
+
 def test_a_file_that_can_be_written_is_let_through(tmp_path):
     problems.check_target(tmp_path / "new.stl")
     (tmp_path / "old.stl").write_text("old")
@@ -35,6 +44,12 @@ def test_a_file_that_cannot_be_written_is_named(tmp_path, monkeypatch):
     for path, words in ((tmp_path, "is a folder"), (tmp_path / "no" / "x.stl", "there is no folder")):
         with pytest.raises(ValueError, match=words):
             problems.check_target(path)
+    with pytest.raises(ValueError, match="no file was chosen: give one a name"):
+        problems.check_target("")
+    for name in ("x.obj", "x", "x.stl.gz"):
+        with pytest.raises(ValueError, match=f"choose a name that ends with .stl, not {name}"):
+            problems.check_target(tmp_path / name, ".stl")
+    problems.check_target(tmp_path / "x.STL", ".stl")
     monkeypatch.setattr(os, "access", lambda path, mode: False)
     with pytest.raises(ValueError, match="may not be written: choose another folder"):
         problems.check_target(tmp_path / "x.stl")
@@ -44,6 +59,8 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path, monkeypatch):
     for path in (tmp_path, tmp_path / "x.rjournal"):
         with pytest.raises(ValueError, match=r"there is no file .*: choose another"):
             problems.check_source(path)
+    with pytest.raises(ValueError, match="no file was chosen: choose one"):
+        problems.check_source("")
     (tmp_path / "x.rjournal").write_text("")
     problems.check_source(tmp_path / "x.rjournal")
     monkeypatch.setattr(os, "access", lambda path, mode: False)

@@ -129,6 +129,36 @@ def test_the_first_step_fits_the_error(error, found, words):
     assert words in diagnosis.mend(error, MACHINE, found)[0]
 
 
+@pytest.mark.parametrize(
+    ("distribution", "words"),
+    [
+        (["debian"], "sudo apt install python3-numpy"),
+        (["linuxmint", "ubuntu", "debian"], "sudo apt install python3-numpy"),
+        (["fedora"], "sudo dnf install python3-numpy"),
+        (["arch"], "sudo pacman -S python-numpy"),
+        (["none"], "its package of numpy"),
+    ],
+)
+def test_a_blender_on_the_systems_python_names_the_one_package(distribution, words):
+    machine = diagnosis.Machine("Linux", "6.1", "x86_64", "3.11.2", "3.4.1", True, distribution)
+    steps = diagnosis.mend(ModuleNotFoundError("No module named 'numpy'"), machine, [])
+    assert words in steps[0] and "blender.org" not in " ".join(steps) and "zip" not in " ".join(steps)
+    own = diagnosis.Machine("Linux", "6.1", "x86_64", "3.11.2", "4.5.0", False, distribution)
+    assert "blender.org" in diagnosis.mend(ModuleNotFoundError("No module named 'numpy'"), own, [])[0]
+
+
+def test_the_distribution_is_read_where_it_is_said(monkeypatch):
+    read = {"ID": "ubuntu", "ID_LIKE": "debian x"}
+    monkeypatch.setattr(diagnosis.platform, "freedesktop_os_release", lambda: read)
+    assert diagnosis.distribution() == ["ubuntu", "debian", "x"]
+
+    def nothing():
+        raise OSError
+
+    monkeypatch.setattr(diagnosis.platform, "freedesktop_os_release", nothing)
+    assert diagnosis.distribution() == []
+
+
 def test_other_processors_are_named():
     arm = diagnosis.Machine("Linux", "6.1", "aarch64", "3.11.2", "4.5.0")
     assert any("aarch64" in step for step in diagnosis.mend(OSError("x"), arm, []))

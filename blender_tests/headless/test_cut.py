@@ -161,6 +161,12 @@ def test_what_is_refused_changes_nothing():
     c = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
     support.refused(lambda: bpy.ops.riffler.cut_curve(curve="nobody"), "nobody")
     support.refused(lambda: bpy.ops.riffler.cut_curve(curve=""), "curve")
+    far = support.curve("Far", [(900, 900, 900), (950, 940, 930)], mm_per_unit=1)
+    one = support.curve("One", [(10, 10, 20)], mm_per_unit=1)
+    support.select(ob)
+    words = "Far is too far from Stock", "move it nearer, or turn Follow surface off"
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve=far.name, follow=True), *words)
+    support.refused(lambda: bpy.ops.riffler.cut_curve(curve=one.name, follow=True), "One has no spline with two points")
     for tool, word in (("{", "xpecting"), ("[]", "JSON"), ('{"kind": "spoon"}', "spoon")):
         support.refused(lambda t=tool: bpy.ops.riffler.cut_curve(curve=c.name, tool=t), word)
     bad = json.dumps({"kind": "ball", "diameter": -1, "length": 3})

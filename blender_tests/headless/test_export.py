@@ -18,6 +18,24 @@ def cut_stock(unit, directions="z"):
     return ob
 
 
+def test_a_surface_is_written_as_what_its_operator_says_and_nothing_without_a_name():
+    support.scale(1)
+    support.stock()
+    for name, suffix in (("export_stl", ".stl"), ("export_3mf", ".3mf")):
+        for wrong in ("x.obj", "x", "x.ply"):
+            path = support.out(wrong)
+            call = lambda name=name, path=path: getattr(bpy.ops.riffler, name)(filepath=path, check_existing=False)  # noqa: E731
+            text = support.refused(call, f"choose a name that ends with {suffix}, not {wrong}")
+            assert not Path(path).exists() and (".obj" in text) == (".obj" in wrong)
+        support.refused(
+            lambda name=name: getattr(bpy.ops.riffler, name)(filepath="", check_existing=False), "no file was"
+        )
+    for name in ("export_nc", "export_recording"):
+        support.refused(
+            lambda name=name: getattr(bpy.ops.riffler, name)(filepath="", check_existing=False), "no file was"
+        )
+
+
 def test_stl_is_in_mm_whatever_the_scene_units_are():
     for unit, system in ((1000.0, "METRIC"), (1.0, "METRIC"), (10.0, "METRIC"), (304.8, "IMPERIAL"), (1.0, "NONE")):
         bpy.ops.wm.read_homefile()
