@@ -14,6 +14,7 @@ import uuid
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 from mathutils import Matrix, Vector
 
 from ..core.blocks import Blocks
@@ -81,15 +82,13 @@ class Chunks:
         ob = bpy.data.objects.get(self._names.get(block, ""))
         if ob is None:  # somebody has removed it: it is not wanted
             return
-        angle = meshes.SHARP_ANGLE if versions.OWN_NORMALS else None
-        vertices, triangles, ends, corners, *normals = mesher.patch(bricks, edges=True, normals=angle)
-        edges = ends, corners
-        meshes.fill(ob.data, vertices / self._mm, triangles, edges, *normals)
+        vertices, triangles, edges, shading = _patch(mesher, bricks)
+        meshes.fill(ob.data, vertices / self._mm, triangles, edges, **shading)
         masks.show(ob.data, mask, vertices, triangles)
         self.fillings[block] = next(_fillings)
         ob.data[FILLING] = self.fillings[block]
         if stages:
-            size = sum(a.nbytes for a in (vertices, triangles, *edges, *normals))
+            size = sum(a.nbytes for a in (vertices, triangles, *edges, *shading.values()))
             stages.count(bricks=len(bricks), chunks=1, triangles=len(triangles), bytes=size)
 
     def place(self, matrix):
@@ -184,6 +183,24 @@ class Chunks:
         for space in _local_views():
             ob.local_view_set(space, True)
         return ob
+
+
+def _patch(mesher, bricks):
+    """Vertices, triangles, edges and shading of a chunk, as meshes.fill takes them."""
+    if versions.OWN_NORMALS:
+        vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=meshes.SHARP_ANGLE)
+        return vertices, triangles, edges, {"normals": normals}
+    if not versions.SMOOTH_BY_POLYGON:
+        vertices, triangles, *edges = mesher.patch(bricks, edges=True)
+        return vertices, triangles, edges, {}
+    # Flat is what touches an edge: its corners' mean normals lean away from its own by half of what the edge has.
+    vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=np.pi)
+    corners = vertices[triangles]
+    (a, b, c), (d, e, f) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    own = np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=1)  # np.cross takes three times as long
+    least = np.cos(0.5 * meshes.SHARP_ANGLE) * np.sqrt(np.einsum("fc,fc->f", own, own))
+    leaning = np.einsum("fkc,fc->fk", normals.reshape(-1, 3, 3), own).min(axis=1)
+    return vertices, triangles, edges, {"smooth": leaning >= least}
 
 
 def _new_collection(context, ob):

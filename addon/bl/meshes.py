@@ -17,12 +17,12 @@ from . import versions
 SHARP_ANGLE = math.radians(20)
 
 
-def fill(mesh, co, tri, edges=None, normals=None):
+def fill(mesh, co, tri, edges=None, **shading):
     """Replaces the mesh's geometry: `co` (V, 3) Blender units, `tri` (F, 3) vertex indices. Keeps material slots.
 
     `edges`, where they are known: (E, 2) vertex indices, each edge once, and (F, 3), of each triangle's corners the
-    edge to the next one. Blender needs three times as long to find them. Such a mesh is one of the chunks: `normals`
-    are of versions.shade_chunk."""
+    edge to the next one. Blender needs three times as long to find them. Such a mesh is one of the chunks: `shading` is
+    of versions.shade_chunk."""
     co = np.ascontiguousarray(co, np.float32)
     tri = np.ascontiguousarray(tri, np.int32)
     _forget_shape_keys(mesh)
@@ -42,7 +42,7 @@ def fill(mesh, co, tri, edges=None, normals=None):
     if edges is None:
         versions.shade_by_angle(mesh, SHARP_ANGLE)
     elif len(tri):
-        versions.shade_chunk(mesh, SHARP_ANGLE, normals)
+        versions.shade_chunk(mesh, SHARP_ANGLE, **shading)
 
 
 def _forget_shape_keys(mesh):

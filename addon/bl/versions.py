@@ -16,6 +16,8 @@ _SINCE_4_1 = bpy.app.version >= (4, 1, 0)
 _SINCE_4_4 = bpy.app.version >= (4, 4, 0)
 # From 4.5 on a mesh takes the normals of its corners as they are given.
 OWN_NORMALS = bpy.app.version >= (4, 5, 0)
+# Before 4.1 a polygon is smooth or flat as a whole, unless auto smooth, which is slow, makes its normals.
+SMOOTH_BY_POLYGON = not _SINCE_4_1
 
 
 def user_folder(name):
@@ -117,19 +119,17 @@ def write_material_indices(mesh, indices):
         mesh.polygons.foreach_set("material_index", indices)
 
 
-def shade_chunk(mesh, angle, normals=None):
-    """As `shade_by_angle`, of a mesh that changes all the time and is part of another. `normals`: (corners, 3) float32
-    of the whole's, where OWN_NORMALS. In 4.1 to 4.4 Blender makes them from the part's own faces, and before 4.1 all
-    edges are smooth: auto smooth, which makes normals anew at each undo, would take longer than everything else (27 ms
-    of 60 for four chunks of 12 000 triangles)."""
-    if normals is not None:
+def shade_chunk(mesh, angle, smooth=None, normals=None):
+    """As `shade_by_angle`, of a mesh that changes all the time and is part of another. `normals`, where OWN_NORMALS:
+    (corners, 3) float32 of the whole's. `smooth`, where SMOOTH_BY_POLYGON: which triangles are; auto smooth, which
+    makes normals anew at each undo, would take longer than all else (27 ms of 60 for four chunks of 12 000 triangles).
+    """
+    if OWN_NORMALS:
         mesh.attributes.new("custom_normal", "FLOAT_VECTOR", "CORNER").data.foreach_set("vector", normals.ravel())
-    elif _SINCE_4_1:
-        mesh.set_sharp_from_angle(angle=angle)
+    elif SMOOTH_BY_POLYGON:
+        mesh.polygons.foreach_set("use_smooth", smooth)
     else:
-        import numpy as np
-
-        mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+        mesh.set_sharp_from_angle(angle=angle)
 
 
 def lighten(mesh):

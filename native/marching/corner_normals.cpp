@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "geom/each_once.hpp"
@@ -45,6 +46,14 @@ class Numbers {
       count_ += brick.vertices();
     }
     std::sort(ranges_.begin(), ranges_.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
+  }
+  /// Of each of a brick's own vertices, in their order: most are far from the patch, and are not looked for one by one.
+  void of_brick(const ActiveBrick& brick, std::vector<std::int64_t>& out) const {
+    out.assign(brick.vertices(), -1);
+    const auto first = static_cast<std::int32_t>(brick.first_vertex);
+    for (auto at = std::lower_bound(foreign_.begin(), foreign_.end(), first);
+         at != foreign_.end() && static_cast<std::size_t>(*at - first) < out.size(); ++at)
+      out[static_cast<std::size_t>(*at - first)] = static_cast<std::int64_t>(own_) + (at - foreign_.begin());
   }
   std::int64_t of(std::int32_t v) const {
     const auto vertex = static_cast<std::size_t>(v);
@@ -96,8 +105,8 @@ Corners corners_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double twice = glm::length(cross);
   if (!(twice > 0)) return out;
   out.normal = cross / twice;
-  out.angle = {std::atan2(twice, glm::dot(b - a, c - a)), std::atan2(twice, glm::dot(c - b, a - b)),
-               std::atan2(twice, glm::dot(a - c, b - c))};
+  out.angle = {std::atan2(twice, glm::dot(b - a, c - a)), std::atan2(twice, glm::dot(c - b, a - b)), 0};
+  out.angle[2] = std::numbers::pi - out.angle[0] - out.angle[1];
   return out;
 }
 
@@ -115,11 +124,17 @@ BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const std::si
   Fans fans(patch.vertices.size());
   for (const Vec3i& t : patch.triangles)
     for (int c = 0; c < 3; ++c) fans.count(static_cast<std::size_t>(t[c]));
+  std::vector<std::int64_t> of_brick;
   for (const std::size_t n : beside(state.bricks, bricks)) {
     const ActiveBrick& brick = *state.bricks.active(n);
+    numbers.of_brick(brick, of_brick);
+    const auto number = [&](std::int32_t v) {
+      const std::size_t k = static_cast<std::size_t>(v) - brick.first_vertex;  // large for those before it
+      return k < of_brick.size() ? of_brick[k] : numbers.of(v);
+    };
     for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t) {
       const Vec3i& triangle = mesh.triangles[t];
-      const Outside found{triangle, {numbers.of(triangle.x), numbers.of(triangle.y), numbers.of(triangle.z)}};
+      const Outside found{triangle, {number(triangle.x), number(triangle.y), number(triangle.z)}};
       if (std::max({found.vertex[0], found.vertex[1], found.vertex[2]}) < 0) continue;
       outside.push_back(found);
       for (const std::int64_t v : found.vertex)

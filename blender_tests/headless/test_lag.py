@@ -1,0 +1,57 @@
+"""What a hand of 125 events a second waits for on 1.3 million triangles, in this process's own processor time: what
+other work a machine has does not count, nor does drawing, which a graphics card does."""
+
+import time
+
+import bpy
+import numpy as np
+
+import support
+
+SIDE, RATE, SECONDS = 130.0, 125, 4
+
+
+def spiral():
+    """Pixels of 0.25 mm: a turn in two seconds, 300 to 600 pixels a second."""
+    n = RATE * SECONDS
+    turn = np.linspace(0, 2 * np.pi * SECONDS / 2, n)
+    radius = np.linspace(100, 200, n)
+    return np.c_[500 + radius * np.cos(turn), 500 + radius * np.sin(turn)].round()
+
+
+def waits(live, mirror):
+    """Seconds from each place of the hand to the end of the look that shows it; a clock that only this work moves."""
+    brush, symmetry = support.part("core.brush"), support.part("core.symmetry")
+    sample, look = support.part("core.stroke").Sample, support.part("operators.stroke").LOOK
+    sight = support.part("core.sight").Sight(np.diag([2 / (1000 * 0.25)] * 2 + [-0.001, 1.0]), (1000, 1000))
+    live.maps = symmetry.maps(mirror)
+    made = brush.Brush(live, {"kind": "ball", "diameter": 6.0, "length": 30.0}, sight, brush.Choice(depth=0.5))
+    places, now, done, out = spiral(), 0.0, 0, []
+    while done < len(places):
+        now = max(now, done / RATE)  # a hand that the loop has to wait for
+        waiting = places[done : int(now * RATE) + 1]
+        begin = time.process_time()
+        for k, (x, y) in enumerate(waiting, done):
+            made.add(sample(x, y, time=k / RATE))
+        made.look()
+        bpy.context.view_layer.update()
+        cost = time.process_time() - begin
+        out += [now + cost - k / RATE for k in range(done, done + len(waiting))]
+        done += len(waiting)
+        now += max(cost, look)
+    made.end()
+    live.finish_stroke(bpy.context, "Stroke")
+    return np.array(out)
+
+
+def test_a_million_triangles_keep_up_with_the_hand():
+    bpy.ops.riffler.new_stock(source="BLOCK", origin="CENTRE", size=(SIDE, SIDE, 10), pitch=0.25, directions="xyz")
+    live = support.part("bl.live").begin(bpy.context, bpy.context.object)
+    assert live.mesher.triangles > 1.2e6
+    for mirror in ("", "X"):
+        out = waits(live, mirror)
+        figures = [*(round(1000 * x) for x in np.percentile(out, (50, 95, 100))), live.stages.milliseconds()]
+        support.figure(f"hand on {live.mesher.triangles} triangles, mirror {mirror!r}: ms p50, p95, longest", figures)
+        early, late = np.split(out, 2)
+        assert np.median(out) < 0.3, figures  # on a busy machine processor time doubles
+        assert np.median(late) < 1.5 * np.median(early) + 0.02, "it grows"
