@@ -1,6 +1,6 @@
 """The scene's millimetres."""
 
-from ..core import units
+from ..core import size_guess, units
 
 clean = units.clean
 
@@ -10,12 +10,18 @@ def mm_per_unit(scene):
     return units.mm_per_unit(scene.unit_settings.scale_length)
 
 
-def set_millimetres(scene, screens):
-    """One Blender unit is one millimetre, shown as such, and a part of some metres stays within the view's clipping."""
+SHOWN = {"MM": "MILLIMETERS", "CM": "CENTIMETERS", "M": "METERS", "INCH": "INCHES"}
+
+
+def set_unit(scene, screens, unit):
+    """One Blender unit is one of core.size_guess.UNITS, shown as such, and a part of some metres stays within the
+    view's clipping."""
     settings = scene.unit_settings
-    settings.system = "METRIC"
-    settings.scale_length = 0.001
-    settings.length_unit = "MILLIMETERS"
+    settings.system = "IMPERIAL" if unit == "INCH" else "METRIC"
+    settings.scale_length = size_guess.UNITS[unit] / 1000
+    settings.length_unit = SHOWN[unit]
+    if unit != "MM":
+        return
     for screen in screens:
         for area in screen.areas:
             if area.type == "VIEW_3D":
