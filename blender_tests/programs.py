@@ -20,6 +20,12 @@ def valley(*axes):
     return path.oriented(dict(zip(map(int, places), units, strict=True)), "slerp")
 
 
+def bare():
+    """The step's path without keys."""
+    path = valley(LEANING)
+    return riffler.plan.PencilPath(path.radius, path.centres, path.contacts, path.normals, path.closed)
+
+
 def plan(*paths, mm_per_unit=1.0, timeline=True):
     """The plan's object, its part being the step."""
     support.scale(mm_per_unit)

@@ -23,7 +23,8 @@ ADDON = "riffler_addon"
 
 # Topic → its operators. Every registered one stands in exactly one, which `page` checks.
 TOPICS = {
-    "Stock and tools": ["new_stock", "add_solid", "fit_pitch", "rebuild", "millimetres", "tool_preset"],
+    "Stock and tools": ["new_stock", "add_solid", "fit_pitch", "rebuild", "millimetres", "scene_unit",
+                        "tool_preset"],
     "Sculpting": ["stroke", "stroke_elsewhere", "make_sculpt", "edits_first", "resize", "size_step", "frame", "leave",
                   "cut_curve", "cut_recording"],
     "Clay": ["resample", "room", "crop", "split", "take_edits", "mask_form", "mask_invert", "mask_clear", "relief"],
@@ -33,16 +34,18 @@ TOPICS = {
     "Recovery and reports": ["recover", "discard_journal", "dismiss", "doctor"],
     "Plans": ["plan_part", "plan_fixtures_add", "plan_fixtures_remove", "plan_tool", "plan_tool_open", "plan_tool_save",
               "plan_use_tool",
-              "plan_assembly", "plan_find", "plan_show"],
+              "plan_assembly", "plan_find", "plan_show", "plan_switch", "plan_delete_paths"],
     "Orientations": ["plan_to_timeline", "plan_key", "plan_key_delete", "plan_key_jump", "plan_least_tilt",
                      "plan_check", "plan_point", "plan_point_key", "plan_turn"],
-    "Programs and verification": ["plan_resolve", "plan_nc", "simulate", "simulate_stop", "verify", "verify_clear",
+    "Programs and verification": ["plan_resolve", "plan_nc", "machine_option", "machine_option_add", "simulate",
+                                  "simulate_stop", "verify", "verify_clear",
                                   "finding_go"],
 }  # fmt: skip
 # Groups of bpy.context.scene.riffler that operators go by beside what they are given, and the operator whose settings a
 # group has, too: those only fill in its button. The other groups have nothing else.
 GROUPS = {
     "tool": ("", "The cutter, of whoever is not given one."),
+    "cutter": ("", "The cutter of the plan's tool: what is set here changes `plan.tool`."),
     "sculpt": ("", "How strokes are made, and what keeps tools out."),
     "plan": ("plan_find", "What the tab *Riffler Plan* plans on, and with what."),
     "verify": ("verify", "The stock that is simulated and verified, and what was found."),

@@ -22,7 +22,7 @@ def write(collection, entries):
 
 def read(collection):
     """The same back."""
-    keys = ("name", "kind", "path", "point", "row", "line", "frame")
+    keys = ("name", "title", "kind", "path", "point", "row", "line", "frame")
     return [{**{key: getattr(item, key) for key in keys}, "place": tuple(item.place)} for item in collection]
 
 

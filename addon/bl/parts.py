@@ -38,6 +38,13 @@ def in_world(context, ob):
     return surface(ob, depsgraph, matrix)
 
 
+def size(ob, scene):
+    """Sides in mm of the box that an object fills in the scene, from what Blender knows of it: cheap enough for a
+    panel."""
+    matrix, box = meshes.matrix(ob.matrix_world), np.array(ob.bound_box, float)
+    return np.ptp(poses.transform_points(matrix, box), axis=0) * units.mm_per_unit(scene)
+
+
 def unfit(ob, scene):
     """Why the object can be neither part nor fixture, or nothing; cheap enough for a poll."""
     if ob is None:

@@ -31,8 +31,14 @@ def look(scene, plan_ob):
 def clearance_job(plan_ob, near, known):
     """Of all poses of the animation; `known`: clearances with these surroundings."""
     now = state(plan_ob)
-    poses = np.vstack([e.played.poses for e in now.motions] or [np.empty((0, 6))])
+    poses = np.vstack([e.poses for e in _played(plan_ob)] or [np.empty((0, 6))])
     return collisions.ClearanceJob(near, now.tool, poses, known)
+
+
+def _played(plan_ob):
+    """Of the paths that are on."""
+    off = plan_store.plan(plan_ob).off
+    return [e.played for k, e in enumerate(state(plan_ob).motions) if k not in off]
 
 
 def show(scene, plan_ob, job=None):
@@ -41,7 +47,7 @@ def show(scene, plan_ob, job=None):
     job, now.job = job or now.job, None
     if not asked(plan_ob):
         plan_ob[ASKED] = True
-    frames, _, _, ends = motion.joined([e.played for e in now.motions])
+    frames, _, _, ends = motion.joined(_played(plan_ob))
     tolerance = plan_store.plan(plan_ob).tolerance or 0.01
     now.looks += job.computed
     now.colliding = collisions.runs(frames, job.clearances, -tolerance, ends)

@@ -3,7 +3,9 @@ were found. What is looked at and written is always the plan's tool."""
 
 import riffler
 
-from . import tool_pictures
+from ..core import size_guess
+from ..core import units as names
+from . import parts, tool_pictures, units
 
 
 def tool_of_scene(settings):
@@ -14,6 +16,35 @@ def tool_of_scene(settings):
 def _shape(tool):
     """What two tools are the same by; a name is none of it."""
     return {key: value for key, value in tool.to_dict().items() if key != "name"}
+
+
+def _sized(scene):
+    """What somebody who has said that a part's size is right has said it of."""
+    return f"{scene.riffler.plan.part.name} {units.mm_per_unit(scene):g}"
+
+
+def accept_size(scene):
+    """The part has the size that it should have: it is not asked about again."""
+    if scene.riffler.plan.part is not None:
+        scene.riffler.plan.sized = _sized(scene)
+
+
+def size_question(scene):
+    """What is to be asked of the part's size, as a text; nothing where it is as parts are, or was said to be right."""
+    settings = scene.riffler.plan
+    if parts.unfit(settings.part, scene) or settings.sized == _sized(scene):
+        return ""
+    try:
+        diameter = tool_of_scene(settings).diameter
+    except ValueError:
+        return ""
+    largest = float(max(parts.size(settings.part, scene)))
+    if not size_guess.odd(largest, diameter):
+        return ""
+    return (
+        f"{settings.part.name} is {names.trim(largest, 3)} mm long, {size_guess.ratio(largest, diameter)} the tool's "
+        f"diameter: what is one unit of the scene?"
+    )
 
 
 def same_cutter(a, b):

@@ -38,6 +38,7 @@ class State:
     layout: keys.Layout | None = None
     seen: str = ""  # fingerprint of the keyframes
     motions: list = field(default_factory=list)  # Baked, one for each path
+    program: tuple = ((), None)  # the last that was made of it: bl/programs.py
     near: object = None  # core.surroundings.Surroundings, once collisions were asked for
     clearances: dict = field(default_factory=dict)  # of poses that were looked at, with those and that tool
     resolved: Resolved = field(default_factory=Resolved)  # what paths had, for keys that come back

@@ -11,7 +11,7 @@ import riffler
 
 from ..core import record
 from ..core.cache import ContentCache
-from . import packed, refusals, sculpts
+from . import packed, plan_rows, refusals, sculpts
 
 RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
 
@@ -115,14 +115,25 @@ def plan(ob):
 
 
 def wanted(plan):
-    """Numbers, from 0, of the paths that are to be cut: those with an orientation."""
-    return [k for k, path in enumerate(plan.paths) if len(path.axes)]
+    """Numbers, from 0, of the paths that are to be cut: those that are on and have an orientation."""
+    return [k for k, path in enumerate(plan.paths) if len(path.axes) and k not in plan.off]
+
+
+def free(plan):
+    """Numbers, from 0, of the paths with cutter locations that are free all the way."""
+    return {k for k, rows in enumerate(plan.cl) if rows is not None and len(rows)}
 
 
 def unresolved(plan):
     """Numbers, from 0, of the paths that are to be cut without cutter locations that are free all the way."""
-    cl = list(plan.cl) or [None] * len(plan.paths)
-    return [k for k in wanted(plan) if cl[k] is None or not len(cl[k])]
+    done = free(plan)
+    return [k for k in wanted(plan) if k not in done]
+
+
+def refresh_rows(ob):
+    """After what was found on the paths has changed."""
+    now = plan(ob)
+    plan_rows.update(ob.riffler.plan, now, free(now))
 
 
 def write(ob, plan):
@@ -138,10 +149,11 @@ def _write(ob, plan, block):
     if p.store is None or p.store.library or _shared(ob):
         p.store = packed.new(ob.name)
     packed.write(p.store, block, key)
+    _cache.put(key, _Kept(plan, len(block)))
     p.keyed = len(wanted(plan))
     p.resolved = p.keyed - len(unresolved(plan))
+    plan_rows.update(p, plan, free(plan))
     p.paths, p.length, p.tool = len(plan.paths), sum(path.length for path in plan.paths), plan.tool.name
-    _cache.put(key, _Kept(plan, len(block)))
 
 
 def _shared(ob):

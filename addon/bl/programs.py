@@ -3,14 +3,14 @@ and on the timeline."""
 
 import re
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import bpy
 import numpy as np
 import riffler
 
-from ..core import course, json_object, problems
+from ..core import course, json_object, machine_fields, problems
 from ..core import units as names
 from . import live, plan_fit, plan_states, plan_store, refusals, replan, sculpts, surroundings, timeline, units
 
@@ -18,9 +18,18 @@ from . import live, plan_fit, plan_states, plan_store, refusals, replan, sculpts
 # ------------------------------------------------------------------ of a plan
 def left_out(plan):
     """Which paths are not to be cut, as a sentence, or nothing."""
-    others = sorted({*range(len(plan.paths))} - {*plan_store.wanted(plan)})
-    have = "has no keys and is" if len(others) == 1 else "have no keys and are"
-    return f"{numbered(others).capitalize()} {have} not cut" if others else ""
+    bare, off = sorted({*range(len(plan.paths))} - {*plan_store.wanted(plan)} - plan.off), sorted(plan.off)
+    have, are = ("has" if len(bare) == 1 else "have"), ("is" if len(bare) == 1 else "are")
+    said = [f"{numbered(bare).capitalize()} {have} no keys and {are} not cut"] if bare else []
+    said += [f"{numbered(off).capitalize()} {'is' if len(off) == 1 else 'are'} off and not cut"] if off else []
+    return ". ".join(said)
+
+
+def nothing_wanted(plan):
+    """Why nothing is to be cut."""
+    if any(len(path.axes) for path in plan.paths):
+        return "Every path with an orientation is off: switch one on in the list of paths"
+    return "No path has an orientation: set a key first"
 
 
 def ready(context, ob, plan):
@@ -28,15 +37,15 @@ def ready(context, ob, plan):
     if not plan.paths:
         raise ValueError(f"{ob.name} has no paths: find some first")
     if not plan_store.wanted(plan):
-        raise ValueError("No path has an orientation: set a key first")
+        raise ValueError(nothing_wanted(plan))
     taken = surroundings.take(context, ob)
     if moved := plan_fit.part_note(plan, taken):
         raise ValueError(moved)
     missing = plan_store.unresolved(plan)
     if missing:
         raise ValueError(
-            f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no way, or delete the keys of "
-            "a path that is to be left out"
+            f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no way, or switch off a "
+            "path that is to be left out"
         )
     clearance = units.clean(context.scene.riffler.plan.clearance)
     if plan.provenance.get(plan_store.RESOLVED) != taken.fingerprint(plan.tool, clearance):
@@ -48,6 +57,18 @@ def numbered(paths):
     """“path 3”, “paths 1, 2”: numbers from 0 as people count."""
     shown = ", ".join(str(k + 1) for k in paths[:6]) + (" …" if len(paths) > 6 else "")
     return f"{'path' if len(paths) == 1 else 'paths'} {shown}"
+
+
+def made_of(context, ob):
+    """The riffler.Program that was made last of a plan, as long as it is that plan's and led as the panel says; or
+    None."""
+    mark, program = plan_states.state(ob).program
+    return program if mark == _mark(context, ob) else None
+
+
+def _mark(context, ob):
+    links = _links(context.scene.riffler.plan)
+    return plan_store.identity(ob), units.clean(context.scene.riffler.plan.clearance), *map(str, links.values())
 
 
 def of_plan(context, ob, plan, feed, spindle):
@@ -65,11 +86,13 @@ def of_plan(context, ob, plan, feed, spindle):
     how = {"feed": feed, "spindle": spindle, "occupied": taken.bounds, "provenance": provenance}
     how |= {"collider": collider, "contact_tolerance": touch(plan), **_links(settings)}
     try:
-        return riffler.Program.from_cl([plan.cl[k] for k in chosen], tools=[plan.tool] * len(chosen), **how)
+        program = riffler.Program.from_cl([plan.cl[k] for k in chosen], tools=[plan.tool] * len(chosen), **how)
     except ValueError as error:
         # The numbers of the panel, and the names of its fields.
         text = re.sub(r"^path (\d+)\b", lambda found: f"Path {chosen[int(found[1])] + 1}", str(error))
         raise ValueError(text.replace("safe_height", "Clearance Plane")) from None
+    plan_states.state(ob).program = _mark(context, ob), program
+    return program
 
 
 def touch(plan):
@@ -95,11 +118,14 @@ def write(program, plan, path, post, chosen, collider=None):
     return program.write(path, post=post, collider=collider, contact_tolerance=touch(plan), **how)
 
 
-def options(text):
-    """A machine's options from JSON. ValueError where it is none."""
-    if not text.strip():
-        return {}
-    return json_object.loads(text, 'options, as {"max_rotary": 3600}')
+def options(scene, machine, text=""):
+    """A machine's options: from JSON, or those that the scene has for it. ValueError where the text is none, and where
+    one that must be given is not."""
+    if text.strip():
+        return json_object.loads(text, 'options, as {"max_rotary": 3600}')
+    given = scene.riffler.machines.given(machine)
+    machine_fields.check(machine, given)
+    return given
 
 
 def removing(name, content):
@@ -150,10 +176,16 @@ class Setup:
     to_world: np.ndarray
     course: course.Course
     text: str = ""
-    machine: str = ""  # that it is for, where its axes are those of the stock's frame
-    options: dict | None = None
+    machine: str = ""  # that it is for
+    options: dict = field(default_factory=dict)
+    in_machine: bool = False  # the machine has the program in the stock's frame, not in the scene's
     plan: str = ""
     notes: tuple = ()  # what is not in it, as sentences
+
+    @property
+    def to_machine(self):
+        """(4, 4) from the stock's frame to that in which the machine has the program."""
+        return np.eye(4) if self.in_machine else self.to_world
 
     @property
     def runs(self):
@@ -188,8 +220,7 @@ def take(context, wanted):
     to_world = _rigid(context, ob)
     if not in_stock:
         found.program = found.program.transformed(np.linalg.inv(to_world))
-    if not (in_stock or np.allclose(to_world, np.eye(4), rtol=0, atol=1e-6)):
-        found.machine = ""  # the axes of the machine are not those of the stock
+    found.in_machine = in_stock
     found.stock, found.sculpt, found.to_world = content.volume.copy(), ob.name, to_world
     return _noted(found, ob)
 
@@ -220,7 +251,7 @@ def _cuts(context, ob):
     settings, content = context.scene.riffler.nc, live.content(ob)
     v, cuts = content.volume, removing(ob.name, content)
     program = of_cuts(ob.name, cuts, v, units.clean(settings.feed), units.clean(settings.spindle))
-    out = _new(f"{ob.name}'s cuts", program, _timed(context.scene, program))
+    out = _new(f"{ob.name}'s cuts", program, _timed(context.scene, program), machine=settings.post, in_machine=True)
     out.stock = riffler.Volume.block(v.lower, v.upper, v.pitch, v.directions)
     out.sculpt, out.to_world, out.notes = ob.name, _rigid(context, ob), tuple(not_in_cuts(content))
     return out
@@ -235,7 +266,7 @@ def _plan(context):
     where = _timed(context.scene, program)
     if timeline.pair(ob) is not None and replan.fits(ob, plan):
         where = course.of_paths(program.poses, _played_paths(context, ob, plan))
-    chosen = options(settings.options)
+    chosen = options(context.scene, settings.post)
     program, text = _with_lines(program, plan, settings.post, chosen)
     more = {"machine": settings.post, "options": chosen, "plan": ob.name}
     return _new(ob.name, program, where, text=text, notes=tuple(filter(None, [left_out(plan)])), **more)
@@ -278,15 +309,14 @@ def _file(context, wanted):
     path = Path(bpy.path.abspath(wanted.filepath))
     problems.check_source(path)
     saved = path.suffix.lower() == ".rprog"
-    chosen = options(wanted.options)
+    chosen = options(context.scene, wanted.machine, getattr(wanted, "options", ""))
     program = riffler.Program.load(path) if saved else riffler.Program.read(path, wanted.machine, chosen)
     if len(program.poses) < 2:
         raise ValueError(f"{path.name} has no moves")
     program = _with_tools(context, program, path.name)
     text = "" if saved else path.read_text(encoding="utf-8", errors="replace")
-    machine = "" if saved else wanted.machine
     where = _played(context, program, wanted) or _timed(context.scene, program)
-    return _new(path.name, program, where, text=text, machine=machine, options=chosen)
+    return _new(path.name, program, where, text=text, machine=wanted.machine, options=chosen)
 
 
 def _played(context, program, wanted):

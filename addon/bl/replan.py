@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 import riffler
 
-from ..core import keys, motion, playback
+from ..core import keys, motion, path_names, playback
 from ..core.surroundings import nothing
 from . import events, plan_collisions, plan_states, plan_store, simulating, timeline, units
 from .plan_states import Baked, on_timeline, rendering, scene_of, state
@@ -94,8 +94,8 @@ def _take_keys(plan_ob, plan, tool, now):
             now.problems.append(f"Path {k + 1}, {error}; it stays as it was")
     if now.changes:
         plan = replace(plan, paths=paths, cl=cl)
-        plan_store.write(plan_ob, plan)
         plan_ob.riffler.plan.forget(now.changes)
+        plan_store.write(plan_ob, plan)
     return plan
 
 
@@ -103,6 +103,7 @@ def _nothing_plays(scene, plan_ob):
     """What is seen on the timeline is of paths that are no more: nothing is said of it, and no frame of it marked."""
     now = state(plan_ob)
     now.motions, now.difference = [], playback.Difference()
+    name_paths(scene)
     if now.near is not None:
         plan_collisions.look(scene, plan_ob)
 
@@ -139,9 +140,30 @@ def bake(scene, plan_ob, plan):
             entry.difference = playback.compare(entry.motion, play)
         now.difference = now.difference.worse(entry.difference or playback.Difference())
     now.motions = entries
+    name_paths(scene)
     timeline.settle(scene, tool, ghost, afresh=True)
     if now.near is not None and plan_collisions.asked(plan_ob):
         plan_collisions.look(scene, plan_ob)
+
+
+def name_paths(scene):
+    """Markers of the paths of all plans that the scene plays."""
+    wanted, plans = [], [p for p in on_timeline() if scene.objects.get(p.name) == p]
+    for plan_ob in plans if scene.riffler.plan.frame_names else ():
+        plan = plan_store.plan(plan_ob)
+        if not fits(plan_ob, plan):
+            continue
+        tracks, whose = layout_of(plan_ob, plan).tracks, plan_ob.name if len(plans) > 1 else ""
+        for k, (path, track) in enumerate(zip(plan.paths, tracks, strict=True)):
+            wanted.append((path_names.name(k, path.length, k in plan.off, whose), round(track.first)))
+    timeline.name_paths(scene, wanted)
+
+
+def _unname():
+    """Of scenes whose plans are gone."""
+    for scene in bpy.data.scenes:
+        if not any(scene.objects.get(p.name) == p for p in on_timeline()):
+            timeline.name_paths(scene, [])
 
 
 def _motion(path, rows, track, tool):
@@ -159,6 +181,7 @@ def flush():
     events.stop(_due)
     for plan_ob in on_timeline():
         sync(scene_of(plan_ob), plan_ob)
+    _unname()
 
 
 def _due():
@@ -167,6 +190,7 @@ def _due():
         return WAIT
     for plan_ob in on_timeline():
         sync(scene_of(plan_ob), plan_ob)
+    _unname()
     _look_later(on_timeline())
     return None
 
@@ -187,7 +211,11 @@ def _later(function):
 @bpy.app.handlers.persistent
 def _on_update(scene, depsgraph):
     plans = on_timeline()
-    if not plans or depsgraph.mode == "RENDER":
+    if depsgraph.mode == "RENDER":
+        return
+    if not plans:
+        if any(path_names.is_name(m.name) for m in scene.timeline_markers):
+            _soon()
         return
     if not all(state(p).synced for p in plans):  # of another name now, or appended
         _soon()

@@ -14,7 +14,7 @@ import math
 import bpy
 import numpy as np
 
-from ..core import collisions, pen, quaternions
+from ..core import collisions, path_names, pen, quaternions
 from . import meshes, units, versions
 
 TOOL, MOTION, PLAN = "riffler_tool", "riffler_motion", "riffler_plan"
@@ -284,6 +284,18 @@ def _near(a, b):
 
 
 # ------------------------------------------------------------------ marks
+def name_paths(scene, names):
+    """Timeline markers at the frames at which paths begin: (name, frame); none where `names` is empty. Those of before
+    go; markers of others stay."""
+    ours = [m for m in scene.timeline_markers if path_names.is_name(m.name)]
+    if sorted(names) == sorted((m.name, m.frame) for m in ours):
+        return
+    for marker in ours:
+        scene.timeline_markers.remove(marker)
+    for name, frame in names:
+        scene.timeline_markers.new(name, frame=frame)
+
+
 def mark(scene, found):
     """Timeline markers of what collides: runs of frames. Those of before go; markers of others stay."""
     wanted = [(collisions.label(run), run[0]) for run in collisions.merged(found)]

@@ -63,12 +63,9 @@ def of_paths(poses: np.ndarray, paths: list) -> Course:
     """Of a program (n, 6) that is made of `paths`: (rows (k, 6), their frames (k,)), in order, with ways of its own
     before, between and after them. ValueError where it does not have them."""
     frames, at = np.full(len(poses), np.nan), 0
-    for number, (rows, when) in enumerate(paths):
-        begin = _find(poses, rows, at)
-        if begin is None:
-            raise ValueError(f"the program does not have path {number + 1} as it is")
-        frames[begin : begin + len(rows)] = when
-        at = begin + len(rows)
+    for begin, (_, when) in zip(begins(poses, [rows for rows, _ in paths]), paths, strict=True):
+        at = begin + len(when)
+        frames[begin:at] = when
     if at == 0:
         raise ValueError("there are no paths")
     cut = np.flatnonzero(~np.isnan(frames))
@@ -77,6 +74,19 @@ def of_paths(poses: np.ndarray, paths: list) -> Course:
     frames[-1] = end + LEAD * (at < len(poses))
     known = np.flatnonzero(~np.isnan(frames))
     return Course(np.interp(np.arange(len(frames)), known, frames[known]))
+
+
+def begins(poses: np.ndarray, paths: list) -> list[int]:
+    """The rows at which `paths`, each (k, 6), begin in a program (n, 6) that has them in order. ValueError where it
+    does not."""
+    out, at = [], 0
+    for number, rows in enumerate(paths):
+        begin = _find(poses, rows, at)
+        if begin is None:
+            raise ValueError(f"the program does not have path {number + 1} as it is")
+        out.append(begin)
+        at = begin + len(rows)
+    return out
 
 
 def _find(poses, rows, begin):

@@ -48,6 +48,12 @@ def without_key(path: int, point: int, place: np.ndarray, reason: str) -> dict:
     return _entry(path, "blocked", point, place, f"no key, point {point}: {reason}")
 
 
+def renumbered(entry: dict, path: int) -> dict:
+    """Of the path that has this number, from 0, now."""
+    _, what = entry["name"].split(", ", 1)
+    return {**entry, "path": path, "name": f"Path {path + 1}, {what}"}
+
+
 def ordered(found: list[dict]) -> list[dict]:
     return sorted(found, key=lambda e: (ORDER.index(e["kind"]), e["path"], e["point"]))
 

@@ -46,11 +46,8 @@ def along(track: Track, start: np.ndarray, points: np.ndarray, cl: np.ndarray | 
 def _frames_of_rows(cl: np.ndarray, start: np.ndarray, frames: np.ndarray, ends: tuple[float, float]) -> np.ndarray:
     """A location that was lifted along its axis is at its point's frame; what was inserted lies between by the tip's
     way."""
-    known, at = np.full(len(cl), np.nan), 0
-    for row, pose in enumerate(cl):
-        hit = _first_like(pose, start, at)
-        if hit is not None:
-            known[row], at = frames[hit], hit + 1
+    number = points_of_rows(cl, start)
+    known = np.where(number >= 0, frames[number], np.nan)
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(cl[:, :3], axis=0), axis=1))])
     if not way[-1] > 0:
         way = np.arange(len(cl), dtype=float)
@@ -65,6 +62,17 @@ def _frames_of_rows(cl: np.ndarray, start: np.ndarray, frames: np.ndarray, ends:
         if j > i + 1 and np.diff(frames[i : j + 1]).min() <= GAP < known[j] - known[i]:
             frames[i : j + 1] = _spread(frames[i : j + 1])
     return frames
+
+
+def points_of_rows(cl: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """(n,) of each cutter location the number of the location in `start` (m, 6) that it is, lifted or not; -1 for what
+    was inserted. They are in order."""
+    found, at = np.full(len(cl), -1), 0
+    for row, pose in enumerate(cl):
+        hit = _first_like(pose, start, at)
+        if hit is not None:
+            found[row], at = hit, hit + 1
+    return found
 
 
 def _spread(frames: np.ndarray) -> np.ndarray:

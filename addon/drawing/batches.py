@@ -69,15 +69,40 @@ def draw(batch, colour=None):
     triangles.draw(program)
 
 
+def draw_lines(batch, colour, width, size):
+    """Of the shader POLYLINE_UNIFORM_COLOR. `width`, and `size` of the region: pixels."""
+    if batch is None:
+        return
+    program, lines = batch
+    program.bind()
+    program.uniform_float("viewportSize", size)
+    program.uniform_float("lineWidth", width)
+    program.uniform_float("color", colour)
+    lines.draw(program)
+
+
 @contextmanager
-def state(blend="ALPHA", depth="NONE"):
-    """The graphics card as it is needed within, and as it was afterwards."""
+def nearer(share=2e-4):
+    """What is drawn within is before what stands at the same place, by a share of the depth."""
+    import gpu
+
+    with gpu.matrix.push_pop_projection():
+        matrix = gpu.matrix.get_projection_matrix()
+        matrix[2] = matrix[2] - share * matrix[3]
+        gpu.matrix.load_projection_matrix(matrix)
+        yield
+
+
+@contextmanager
+def state(blend="ALPHA", depth="NONE", write=True):
+    """The graphics card as it is needed within, and as it was afterwards. `write`: what is drawn hides what comes after
+    it behind it."""
     import gpu
 
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
     gpu.state.blend_set(blend)
     gpu.state.depth_test_set(depth)
-    gpu.state.depth_mask_set(depth != "NONE")
+    gpu.state.depth_mask_set(write and depth != "NONE")
     try:
         yield
     finally:

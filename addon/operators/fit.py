@@ -23,7 +23,7 @@ def side(context, longest):
 def take_unit(context, unit):
     """One Blender unit is so many millimetres. The view stays as it is, and so do objects."""
     if not np.isclose(unit, units.mm_per_unit(context.scene), rtol=1e-6):
-        units.set_millimetres(context.scene, bpy.data.screens, names.clean(unit))
+        units.set_unit(context.scene, bpy.data.screens, names.clean(unit))
 
 
 def cutter(context, longest):

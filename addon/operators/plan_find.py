@@ -4,7 +4,19 @@ import bpy
 import riffler
 
 from .. import properties
-from ..bl import live, parts, plan_curves, plan_states, plan_store, replan, surroundings, timeline, units
+from ..bl import (
+    live,
+    parts,
+    plan_curves,
+    plan_fit,
+    plan_paths,
+    plan_states,
+    plan_store,
+    replan,
+    surroundings,
+    timeline,
+    units,
+)
 from ..core import units as names
 from ..core.job import TaskJob
 from . import shared
@@ -44,6 +56,14 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         if why and parts.unfit(own, context.scene):  # a plan's own part is enough to find its paths again
             return shared.deny(cls, why)
         return not shared.busy(cls, context)
+
+    def invoke(self, context, event):
+        """A person is asked first; a script has said what it wants."""
+        if asked := plan_fit.size_question(context.scene):
+            return shared.fail(
+                self, ValueError(f"{asked} Choose it in the panel Part and Fixtures, also if it is right")
+            )
+        return super().invoke(context, event)
 
     def begin(self, context):
         settings = context.scene.riffler.plan
@@ -85,8 +105,8 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         plan = riffler.plan.Plan(paths, self._tool, part=self._made_on, tolerance=self._tolerance)
         if self.replace:
             ob = context.scene.objects[self.replace]
-            plan_store.write(ob, plan)
             ob.riffler.plan.findings.clear()  # on the paths of before
+            plan_store.write(ob, plan)
         else:
             ob = plan_store.new(context, plan)
         ob.riffler.plan.part = context.scene.objects[self._part]
@@ -126,6 +146,7 @@ class RIFFLER_OT_plan_show(bpy.types.Operator):
             return shared.fail(self, error)
         context.view_layer.objects.active = ob  # the curve that may be active goes
         left = plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
+        plan_paths.show(ob)
         if left:
             self.report({"INFO"}, plan_curves.kept_note(left))
         return {"FINISHED"}

@@ -6,7 +6,18 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntProperty
 
-from ..bl import plan_collisions, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
+from ..bl import (
+    plan_collisions,
+    plan_curves,
+    plan_fit,
+    plan_paths,
+    plan_states,
+    plan_store,
+    replan,
+    surroundings,
+    timeline,
+    units,
+)
 from ..bl.turning import plan_object
 from ..core import keys, quaternions
 from ..core import units as names
@@ -46,18 +57,7 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
                 raise ValueError("The plan has no paths: find some first")
             rate = self.frames_per_mm or _rate(context.scene)
             plan, known, quats = self._divided(ob, plan, rate)
-            layout = keys.Layout(plan.paths, rate, self.first)
-            if layout.last > 1_000_000:
-                raise ValueError(f"The way is {layout.last} frames long: take fewer frames per mm")
-            tool, _ = timeline.make(context, ob, plan.tool)
-            tool[timeline.RATE], tool[timeline.FIRST] = rate, self.first
-            tool[timeline.PATHS] = replan.geometry(plan)
-            timeline.write_keys(tool, *keys.written(layout, [p.keys for p in plan.paths], known, quats))
-            plan_store.write(ob, plan)
-            if plan_curves.of(ob):  # as many points as the paths have now
-                plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
-            timeline.show_range(context.scene, self.first, layout.last)
-            replan.sync(context.scene, ob)
+            lay_out(context, ob, plan, (rate, self.first), known, quats)
         except shared.ERRORS as error:
             return shared.fail(self, error)
         return tell(self, ob)
@@ -79,6 +79,25 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
         frames, quats = timeline.read_keys(tool)
         known = keys.read(keys.Layout(paths, rate, self.first), frames, quats)
         return plan, known, dict(zip(map(float, frames), quats, strict=True))
+
+
+def lay_out(context, ob, plan, times, known=None, quats=None):
+    """Makes `plan` the object's, and puts it on the timeline; `times`: frames per mm, and the first frame. ValueError,
+    with nothing changed, where it is too long."""
+    rate, first = times
+    layout = keys.Layout(plan.paths, rate, first)
+    if layout.last > 1_000_000:
+        raise ValueError(f"The way is {layout.last} frames long: take fewer frames per mm")
+    tool, _ = timeline.make(context, ob, plan.tool)
+    tool[timeline.RATE], tool[timeline.FIRST] = rate, first
+    tool[timeline.PATHS] = replan.geometry(plan)
+    timeline.write_keys(tool, *keys.written(layout, [p.keys for p in plan.paths], known, quats))
+    plan_store.write(ob, plan)
+    if plan_curves.of(ob):  # as many points as the paths have now
+        plan_curves.show(ob, plan, units.mm_per_unit(context.scene))
+        plan_paths.show(ob)
+    timeline.show_range(context.scene, first, layout.last)
+    replan.sync(context.scene, ob)
 
 
 def _rate(scene):
@@ -169,8 +188,8 @@ def set_key(scene, ob, frame, quat=None, axis=None):
     timeline.write_keys(tool, frames[order], quaternions.aligned(quats[order]))
     paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
     paths[path], cl[path] = turned, None
-    plan_store.write(ob, replace(plan, paths=paths, cl=cl))
     ob.riffler.plan.forget({path})
+    plan_store.write(ob, replace(plan, paths=paths, cl=cl))
     replan.sync(scene, ob)
 
 

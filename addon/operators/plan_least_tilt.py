@@ -106,7 +106,10 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             if not found:
                 raise ValueError("No path is selected: select their curves")
             return sorted(k for k in found if k < len(plan.paths))
-        found = [k for k, path in enumerate(plan.paths) if self.paths == "ALL" or not path.keys]
+        on = [k for k in range(len(plan.paths)) if k not in plan.off]
+        if not on:
+            raise ValueError("Every path is off: switch one on in the list of paths")
+        found = [k for k in on if self.paths == "ALL" or not plan.paths[k].keys]
         if not found:
             raise ValueError("Every path has keys: choose All to replace them")
         return found
@@ -129,6 +132,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             plan_store.write(ob, replace(plan, paths=paths, cl=cl))
             replan.sync(context.scene, ob)
         findings.write(ob.riffler.plan.findings, locating.ordered(marks))
+        plan_store.refresh_rows(ob)
         self._say(ob, without)
         return {"FINISHED"}
 

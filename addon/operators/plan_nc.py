@@ -14,7 +14,8 @@ from ..core import locating, problems
 from ..core import units as names
 from ..core.job import AfterJob, ChainJob
 from ..core.surroundings import guarded
-from ..properties.plan import MACHINES
+from ..properties import GivenOptions
+from ..properties.machines import MACHINES
 from . import shared
 from .plan_work import PlanWork, part_poll, plan_poll
 
@@ -47,7 +48,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         same = plan.provenance.get(plan_store.RESOLVED) == self._mark
         turned = plan_store.wanted(plan)
         if not turned:
-            raise ValueError("No path has an orientation: set a key first")
+            raise ValueError(programs.nothing_wanted(plan))
         open_ones = set(plan_store.unresolved(plan)) if same else set(turned)
         self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
         self._found = []
@@ -79,6 +80,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         plan = replace(plan, cl=cl, provenance={**plan.provenance, plan_store.RESOLVED: self._mark})
         plan_store.write(ob, plan)
         findings.write(ob.riffler.plan.findings, locating.ordered(kept))
+        plan_store.refresh_rows(ob)
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
         free = [report for _, report in found if report.ok]
@@ -100,7 +102,8 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         notes = [*self._notes, *(plan_states.state(ob).problems if played else [])]
         if blocked:
             collide, their = ("collides", "its") if blocked == 1 else ("collide", "their")
-            done = f"{blocked} of {count} still {collide}: turn {their} keys, or delete them to leave a path out"
+            switch = "switch it off" if blocked == 1 else "switch them off"
+            done = f"{blocked} of {count} still {collide}: turn {their} keys, or {switch}"
         else:
             done = f"{count} {'are' if len(self._paths) > 1 else 'is'} free"
             done += f", but {left}" if left else ""
@@ -108,7 +111,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         shared.tell_all(self, done, notes, blocked > 0 or left != "")
 
 
-class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
+class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
     """Write the plan's resolved paths as NC code in the scene's millimetres"""
 
     bl_idname = "riffler.plan_nc"
@@ -124,7 +127,6 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
     spindle: FloatProperty(
         name="Spindle", default=-1.0, min=-1.0, max=1e6, options={"SKIP_SAVE"}, description="rev/min; -1: the plan's"
     )
-    options: StringProperty(name="Options", options={"SKIP_SAVE"}, description="Of the machine, as JSON")
 
     @property
     def filename_ext(self):
@@ -138,6 +140,10 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
 
     def invoke(self, context, event):
         self._take_settings(context)
+        try:
+            programs.options(context.scene, self.post, self.options)
+        except ValueError as error:  # before a file is chosen for nothing
+            return shared.fail(self, error)
         if not self.filepath:
             self.filepath = plan_object(context).name + self.filename_ext
         return ExportHelper.invoke(self, context, event)
@@ -145,9 +151,8 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
     def _take_settings(self, context):
         """What was not asked for is as the scene has it."""
         settings = context.scene.riffler.plan
-        for key in ("post", "options"):
-            if not self.properties.is_property_set(key):
-                setattr(self, key, getattr(settings, key))
+        if not self.properties.is_property_set("post"):
+            self.post = settings.post
         self.feed = self.feed or settings.feed
         self.spindle = settings.spindle if self.spindle < 0 else self.spindle
 
@@ -156,7 +161,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
         try:
             replan.flush()
             ob = plan_object(context)
-            plan, chosen = plan_store.plan(ob), programs.options(self.options)
+            plan, chosen = plan_store.plan(ob), programs.options(context.scene, self.post, self.options)
             program = programs.of_plan(context, ob, plan, units.clean(self.feed), units.clean(self.spindle))
             path = bpy.path.abspath(self.filepath)
             problems.check_target(path)
@@ -185,7 +190,7 @@ class RIFFLER_OT_plan_nc(bpy.types.Operator, ExportHelper):
         shared.tell_all(self, done, notes)
 
     def draw(self, context):
-        shared.draw_fields(self, ("post", "feed", "spindle", "options"))
+        shared.draw_fields(self, ("post", "feed", "spindle"))
 
 
 CLASSES = (RIFFLER_OT_plan_resolve, RIFFLER_OT_plan_nc)

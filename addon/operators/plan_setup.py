@@ -6,7 +6,7 @@ import riffler
 from bpy_extras.io_utils import ImportHelper
 
 from .. import properties
-from ..bl import libraries, live, parts, refusals
+from ..bl import libraries, live, parts, plan_fit, refusals
 from ..core import library
 from ..core import units as names
 from ..core.surroundings import check_fixture
@@ -63,6 +63,8 @@ class RIFFLER_OT_plan_part(bpy.types.Operator):
             return shared.fail(self, error)
         settings.part = ob
         level, text = described(mesh)
+        if asked := plan_fit.size_question(context.scene):
+            level, text = "WARNING", f"{text}; {asked} Choose it in the panel Part and Fixtures"
         self.report({level}, f"{ob.name}: {text}")
         return {"FINISHED"}
 

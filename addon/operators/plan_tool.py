@@ -32,8 +32,8 @@ class RIFFLER_OT_plan_use_tool(bpy.types.Operator):
                     "use Find Again, or another tool with that cutter"
                 )
             known = {key: text for key, text in plan.provenance.items() if key != plan_store.RESOLVED}
-            plan_store.write(ob, replace(plan, tool=tool, cl=[], provenance=known))
             ob.riffler.plan.findings.clear()  # of the tool before
+            plan_store.write(ob, replace(plan, tool=tool, cl=[], provenance=known))
             if timeline.pair(ob) is None:
                 self.report({"INFO"}, f"{ob.name}: {tool.name}")
                 return {"FINISHED"}

@@ -17,7 +17,7 @@ def program_poll(cls, context):
     return True
 
 
-class RIFFLER_OT_simulate(properties.ProgramSettings, bpy.types.Operator):
+class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, bpy.types.Operator):
     """Show the stock as the program leaves it at the current frame: play, or drag the frame. Esc in the view ends it"""
 
     bl_idname = "riffler.simulate"

@@ -11,7 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty
 
 from .. import properties
 from ..bl import attributes, events, findings, meshes, parts, plan_store, programs, sculpts, surroundings, units
-from ..core import poses
+from ..core import poses, titles
 from ..core import units as names
 from ..core.job import ChainJob, ThreadTask
 from ..core.surroundings import check_fixture
@@ -29,7 +29,7 @@ class _Kept:
     verification: riffler.Verification
 
 
-class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator):
+class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOptions, bpy.types.Operator):
     """Run the program on its stock and list what goes wrong: gouges, rapids in material, holder and fixtures hit"""
 
     bl_idname = "riffler.verify"
@@ -55,7 +55,7 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, bpy.types.Operator)
         if part is None:
             limits["rest_tolerance"] = None
         if setup.machine:
-            limits.update(machine=setup.machine, machine_options=setup.options or {})
+            limits.update(machine=setup.machine, machine_options=setup.options, machine_frame=setup.to_machine.tolist())
         return ChainJob(
             lambda _: ThreadTask(lambda progress: _verification(setup, part, fixtures, limits, progress)),
             lambda verification: riffler.tasks.run(verification, setup.program),
@@ -194,6 +194,9 @@ def _entry(found, setup):
     row = int(found.row)
     return {
         "name": str(found.message),
+        "title": titles.verified(
+            local(titles.KINDS[str(found.kind)]), float(found.value) if found.unit else 0.0, place
+        ),
         "kind": str(found.kind),
         "row": row,
         "line": int(found.line),

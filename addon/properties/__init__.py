@@ -8,14 +8,23 @@ from bpy.props import PointerProperty
 
 from .clay import ReliefSettings, RifflerClay
 from .cut import CutSettings, NcSettings, RifflerCut, RifflerNc
+from .machines import GROUPS, RifflerMachines
 from .pen import DEVICES, PREFERRED, RECORDING, PenProgress, PenSettings, RifflerPen
-from .plan import WITH_SURFACE, FindSettings, RifflerFinding, RifflerPathCurve, RifflerPlan, RifflerPlanObject
+from .plan import (
+    WITH_SURFACE,
+    FindSettings,
+    RifflerFinding,
+    RifflerPathCurve,
+    RifflerPathRow,
+    RifflerPlan,
+    RifflerPlanObject,
+)
 from .progress import WorkProgress
 from .result import ResultSettings, RifflerResult
 from .sculpt import RifflerSculpt
 from .stock import RifflerMesh, RifflerObject, RifflerStock, StockSettings
-from .tool import RifflerTool
-from .verify import ProgramSettings, RifflerVerify, VerifySettings
+from .tool import RifflerCutter, RifflerTool
+from .verify import GivenOptions, ProgramSettings, RifflerVerify, VerifySettings
 from .without_undo import RifflerStrokeFields, RifflerToolFields
 
 __all__ = [
@@ -25,6 +34,7 @@ __all__ = [
     "WITH_SURFACE",
     "CutSettings",
     "FindSettings",
+    "GivenOptions",
     "NcSettings",
     "PenSettings",
     "ProgramSettings",
@@ -38,6 +48,7 @@ __all__ = [
 class RifflerScene(bpy.types.PropertyGroup):
     stock: PointerProperty(type=RifflerStock)
     tool: PointerProperty(type=RifflerTool)
+    cutter: PointerProperty(type=RifflerCutter)
     cut: PointerProperty(type=RifflerCut)
     nc: PointerProperty(type=RifflerNc)
     pen: PointerProperty(type=RifflerPen)
@@ -46,6 +57,7 @@ class RifflerScene(bpy.types.PropertyGroup):
     plan: PointerProperty(type=RifflerPlan)
     sculpt: PointerProperty(type=RifflerSculpt)
     verify: PointerProperty(type=RifflerVerify)
+    machines: PointerProperty(type=RifflerMachines)
 
 
 class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
@@ -56,8 +68,11 @@ class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
 
 
 CLASSES = (
+    *GROUPS.values(),
+    RifflerMachines,
     RifflerStock,
     RifflerTool,
+    RifflerCutter,
     RifflerCut,
     RifflerNc,
     RifflerPen,
@@ -65,6 +80,7 @@ CLASSES = (
     RifflerResult,
     RifflerFinding,
     RifflerPathCurve,
+    RifflerPathRow,
     RifflerPlan,
     RifflerSculpt,
     RifflerVerify,

@@ -1,11 +1,10 @@
 """What a plan is made for, with what, and how; and what a plan's objects keep."""
 
 import json
-import zlib
 
 import bpy
-import riffler
 from bpy.props import (
+    BoolProperty,
     CollectionProperty,
     EnumProperty,
     FloatProperty,
@@ -17,9 +16,8 @@ from bpy.props import (
 
 from ..core import json_object, presets
 from .fields import length
+from .machines import MACHINES
 
-# The numbers are what a .blend keeps: those of a machine stay when another machine is added.
-MACHINES = tuple((m, m, what, "NONE", zlib.crc32(m.encode()) >> 1) for m, what in riffler.machines().items())
 # Objects that have a surface, or may have one.
 WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
@@ -58,6 +56,12 @@ class FindSettings:
     stepover: length("Stepover", 0.0, "Between two passes, in mm; 0: what leaves ridges of the tolerance")
 
 
+def _named(settings, context):
+    from ..bl import replan
+
+    replan.name_paths(settings.id_data)
+
+
 class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
     """On a scene. The tool is kept whole, so that a plan can be made anew where its file is gone."""
 
@@ -67,6 +71,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         poll=lambda _, ob: ob.type in WITH_SURFACE,
         description="The finished part, as it lies in the scene",
     )
+    sized: StringProperty(description="Which part, in which unit, was said to have the right size")
     fixtures: PointerProperty(
         name="Fixtures",
         type=bpy.types.Collection,
@@ -101,12 +106,16 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         default={"CONTACTS", "AXES"},
         description="What is drawn of the active plan while the Orient tool is chosen",
     )
-    post: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="That the NC code is written for")
-
-    options: StringProperty(
-        name="Options",
-        description='Of the machine, as JSON: {"max_rotary": 3600, "coolant": "flood"}; docs/machines.md has them all',
+    draw_paths: BoolProperty(
+        name="Draw Paths", default=True, description="Thick lines, coloured by what the tool does along them"
     )
+    frame_names: BoolProperty(
+        name="Path Names",
+        default=True,
+        update=_named,
+        description="Markers on the timeline where each path begins",
+    )
+    post: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="That the NC code is written for")
 
     def tool_dict(self):
         """The form of riffler.Tool.to_dict. ValueError where the text is none."""
@@ -124,6 +133,7 @@ class RifflerFinding(bpy.types.PropertyGroup):
     scene."""
 
     name: StringProperty()
+    title: StringProperty(description="What a list shows: kind, size and place first; empty: the name")
     kind: StringProperty()
     path: IntProperty(default=-1)
     point: IntProperty(default=-1)
@@ -131,6 +141,39 @@ class RifflerFinding(bpy.types.PropertyGroup):
     line: IntProperty()
     frame: FloatProperty()
     place: FloatVectorProperty(size=3)
+
+
+STATES = (
+    ("free", "Free", "Resolved: the tool is clear of part and fixtures all along it"),
+    ("blocked", "Blocked", "The tool collides somewhere: turn its keys, or switch it off"),
+    ("keyed", "To Resolve", "It has keys, and was not resolved since they changed"),
+    ("unplanned", "No Keys", "It has no key orientation"),
+    ("off", "Off", "It is left out: neither resolved nor written"),
+)
+
+
+def _switched(row, context):
+    """A box in the list: what is written to it here, by the add-on, is what the plan has already."""
+    from ..bl import plan_paths
+
+    plan_paths.follow(row)
+
+
+def _chosen(p, context):
+    from ..bl import plan_paths
+
+    plan_paths.go(context, p.id_data, p.row)
+
+
+class RifflerPathRow(bpy.types.PropertyGroup):
+    """What a list shows of a path."""
+
+    name: StringProperty()
+    length: FloatProperty(description="mm")
+    state: EnumProperty(items=STATES, default="unplanned")
+    on: BoolProperty(
+        name="On", default=True, update=_switched, description="A path that is off is neither resolved nor written"
+    )
 
 
 class RifflerPathCurve(bpy.types.PropertyGroup):
@@ -152,6 +195,8 @@ class RifflerPlanObject(bpy.types.PropertyGroup):
     resolved: IntProperty(default=-1)  # of those with keys; -1: in a file from before it was counted
     tool: StringProperty()
     curves: CollectionProperty(type=RifflerPathCurve)
+    rows: CollectionProperty(type=RifflerPathRow, description="Its paths, in their order")
+    row: IntProperty(name="Path", default=-1, update=_chosen, description="The one that is chosen in the list, from 0")
     findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
     index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")
 

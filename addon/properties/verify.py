@@ -4,7 +4,8 @@ import bpy
 from bpy.props import CollectionProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
 from .fields import length
-from .plan import MACHINES, RifflerFinding
+from .machines import MACHINES
+from .plan import RifflerFinding
 
 SOURCES = (
     ("PLAN", "Plan", "The resolved paths of the active plan"),
@@ -23,8 +24,17 @@ class ProgramSettings:
     source: EnumProperty(name="Program", items=SOURCES, default="PLAN", description="What moves the tool")
     filepath: StringProperty(name="File", subtype="FILE_PATH", description="NC code, or .rprog")
     machine: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="That the NC code is read for")
-    options: StringProperty(name="Options", description="Of the machine, as JSON: those that the file was written with")
     frame: EnumProperty(name="Zero", items=FRAMES, default="WORLD", description="Where a file's coordinates begin")
+
+
+class GivenOptions:
+    """Of operators, for scripts; people set the fields of the machine."""
+
+    options: StringProperty(
+        name="Options",
+        options={"HIDDEN", "SKIP_SAVE"},
+        description='Of the machine, as JSON: {"rot_point": [0, 0, -40]}; empty: the fields of the panel Machine',
+    )
 
 
 COLOURED = (

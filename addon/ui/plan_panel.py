@@ -1,15 +1,18 @@
 """The plan's tab: part, fixtures, tool, settings, what is missing, and what has been found. Drawing reads properties,
 and what operators/plan_watch.py knows already."""
 
+import math
+
 import bpy
 import riffler
 
 from .. import properties
-from ..bl import libraries, parts, plan_fit, plan_store, tool_pictures, versions
+from ..bl import libraries, parts, plan_fit, plan_store, tool_pictures, units, versions
 from ..bl.turning import plan_object
-from ..core import library
+from ..core import library, presets, size_guess
 from ..core import units as names
-from ..operators import plan_find, plan_setup, plan_tool, plan_watch, shared
+from ..operators import plan_find, plan_setup, plan_tool, plan_watch, scene, shared
+from ..translations import local
 from .panels import Sidebar, give, lines
 from .pen_panel import wrapped
 
@@ -120,6 +123,7 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
         row = layout.row(align=True)
         row.prop(settings, "part", text="")
         row.operator(plan_setup.RIFFLER_OT_plan_part.bl_idname, text="", icon="IMPORT")
+        self._size(layout, context, settings)
         layout.label(text="Fixtures")
         row = layout.row(align=True)
         row.prop(settings, "fixtures", text="")
@@ -132,6 +136,26 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
             return
         if held:
             lines(layout, *wrapped(context, f"Stays clear of {', '.join(held)}"))
+
+    def _size(self, layout, context, settings):
+        """How large the part is; where that is odd, which unit the scene's may be."""
+        if parts.unfit(settings.part, context.scene):
+            return
+        size = parts.size(settings.part, context.scene)
+        lines(layout, names.format_size(size))
+        if why := plan_fit.size_question(context.scene):
+            box = layout.box()
+            lines(box, *wrapped(context, why), icon="QUESTION")
+            column, one = box.column(align=True), max(size) / units.mm_per_unit(context.scene)
+            for unit, _, _ in scene.UNITS:
+                long = one * size_guess.UNITS[unit]
+                text = f"{local(scene.LABELS[unit])}: {names.trim(long, 1)} mm"
+                if unit == size_guess.likely(one):
+                    text = f"{text}, {local('likely')}"
+                elif math.isclose(long, max(size), rel_tol=1e-6):
+                    text = f"{text}, {local('as it is')}"
+                op = column.operator(scene.RIFFLER_OT_scene_unit.bl_idname, text=text, translate=False)
+                op.unit = unit
 
 
 class RIFFLER_PT_plan_tool(Tab, bpy.types.Panel):
@@ -153,14 +177,25 @@ class RIFFLER_PT_plan_tool(Tab, bpy.types.Panel):
         row.template_icon(icon_value=tool_pictures.icon(tool_pictures.cutter(given)), scale=PICTURE)
         if tool.shank or tool.holder:
             row.template_icon(icon_value=tool_pictures.icon(given), scale=PICTURE)
+        self._sizes(layout, context, tool)
         lines(layout, *_facts(tool))
         row = layout.row(align=True)
         row.operator(plan_setup.RIFFLER_OT_plan_assembly.bl_idname, text="Holder…")
         row.operator(plan_setup.RIFFLER_OT_plan_tool_save.bl_idname, text="Save…")
 
+    def _sizes(self, layout, context, tool):
+        """A free profile has none."""
+        if tool.kind not in presets.SIZES:
+            lines(layout, f"Cutter: Ø {names.trim(tool.diameter)}, {names.trim(tool.length)} mm long")
+            return
+        column = layout.column(align=True)
+        column.use_property_split = True
+        column.use_property_decorate = False
+        for key in ("kind", *presets.SIZES[tool.kind]):
+            column.prop(context.scene.riffler.cutter, key)
+
 
 def _facts(tool):
-    yield f"Cutter: Ø {names.trim(tool.diameter)}, {names.trim(tool.length)} mm long"
     for what, pieces in (("Shank", tool.shank), ("Holder", tool.holder)):
         if pieces:
             widest = 2 * max(max(r0, r1) for _, r0, _, r1 in pieces)
@@ -169,33 +204,9 @@ def _facts(tool):
         yield "No holder: it is not looked at."
 
 
-class RIFFLER_PT_plan_machine(Tab, bpy.types.Panel):
-    bl_idname = "RIFFLER_PT_plan_machine"
-    bl_label = "Machine (mm)"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        settings = context.scene.riffler.plan
-        layout.prop(settings, "post")
-        layout.prop(settings, "options")
-        layout.prop(settings, "clearance")
-        column = layout.column(align=True)
-        column.prop(settings, "plane")
-        column.prop(settings, "leave")
-        column.prop(settings, "retract")
-        column.prop(settings, "lead_in")
-        column = layout.column(align=True)
-        column.prop(settings, "feed")
-        column.prop(settings, "spindle")
-
-
 CLASSES = (
     RIFFLER_MT_plan_tools,
     RIFFLER_PT_plan_part,
     RIFFLER_PT_plan_tool,
     RIFFLER_PT_plan,
-    RIFFLER_PT_plan_machine,
 )

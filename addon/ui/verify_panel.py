@@ -5,6 +5,8 @@ import bpy
 from .. import properties
 from ..bl import programs, simulating, timeline, turning, versions
 from ..operators import plan_nc, simulate, verify
+from ..translations import local
+from . import machine_panel
 from .panels import lines
 from .pen_panel import wrapped
 from .plan_panel import OfPlan, Tab
@@ -26,11 +28,7 @@ class RIFFLER_UL_findings(bpy.types.UIList):
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0):
         row = layout.row(align=True)
-        row.label(text=item.name, icon=ICONS.get(item.kind, "ERROR"))
-        if item.line > 0:
-            sub = row.row()
-            sub.alignment = "RIGHT"
-            sub.label(text=f"line {item.line}")
+        row.label(text=item.title or item.name, icon=ICONS.get(item.kind, "ERROR"))
         op = row.operator(verify.RIFFLER_OT_finding_go.bl_idname, text="", icon="VIEWZOOM", emboss=False)
         op.of, op.index = ("PLAN" if item.path >= 0 else "VERIFY"), index
 
@@ -39,15 +37,19 @@ def resolved(p):
     """How far a plan (properties.RifflerPlanObject) is from NC code; nothing where that was not counted yet."""
     if p.resolved < 0:
         return ""
+    off = sum(not row.on for row in p.rows)
     said = f"{p.resolved} of {p.paths} paths resolved"
-    return f"{said}, {p.paths - p.keyed} without keys" if p.keyed < p.paths else said
+    said += f", {p.paths - p.keyed - off} without keys" if p.keyed + off < p.paths else ""
+    return f"{said}, {off} off" if off else said
 
 
 def found(layout, context, name, of, rows):
     """The list of findings of a plan or a verification, which cuts them off, and the chosen one whole below it."""
     layout.template_list(RIFFLER_UL_findings.bl_idname, name, of, "findings", of, "index", rows=rows)
     if 0 <= of.index < len(of.findings):
-        lines(layout, *wrapped(context, of.findings[of.index].name))
+        item = of.findings[of.index]
+        line = f", {local('line {}').format(item.line)}" if item.line > 0 else ""
+        lines(layout, *wrapped(context, f"{item.title}{line}: {item.name}" if item.title else item.name))
 
 
 class RIFFLER_PT_nc(OfPlan, bpy.types.Panel):
@@ -103,8 +105,12 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
         column.use_property_decorate = False
         column.prop(settings, "source")
         if settings.source == "FILE":
-            for key in ("filepath", "machine", "options", "frame"):
+            for key in ("filepath", "frame", "machine"):
                 column.prop(settings, key)
+            machine_panel.draw_options(layout, context, settings.machine)
+            column = layout.column(align=True)
+            column.use_property_split = True
+            column.use_property_decorate = False
         column.prop(settings, "stock")
         if settings.stock is None:
             ob = programs.stock_object(context)

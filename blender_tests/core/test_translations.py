@@ -9,6 +9,7 @@ from pathlib import Path
 import riffler
 
 import addon
+from addon.core import machine_fields
 
 ADDON = Path(addon.__file__).parent
 TABLE = json.loads((ADDON / "translations" / "de.json").read_text(encoding="utf-8"))
@@ -21,6 +22,7 @@ NOT_SHOWN = {
     "ui/fallback.py",  # what is said where the core does not load, and no table either
 }
 FIELDS = {"name", "description"}
+TABLES = {"STATES", "KINDS", "LOOK"}  # of words, by the name of what has them
 DRAWN = {"text", "heading"}
 SAID_BY = {"description", "unfit", "missing"}  # functions that return what is shown
 ENTRY = re.compile(r"[A-Z][A-Z0-9_]*")  # what Blender knows an entry of a list by
@@ -104,10 +106,28 @@ def of_entry(row):
         yield from ((row.lineno, text) for text in said)
 
 
+def of_table(node):
+    """What a table of words has: those that begin with a capital."""
+    if any(getattr(target, "id", "") in TABLES for target in node.targets):
+        for inner in ast.walk(node.value):
+            if is_text(inner) and re.match("[A-Z][a-z]", inner.value):
+                yield inner.lineno, inner.value
+
+
+def of_machines():
+    """(where, text) of the fields that are made from what the core says of each machine."""
+    for machine in riffler.machines():
+        for fact in riffler.machine_options(machine):
+            where = f"riffler.machine_options({machine!r}), {fact['name']}"
+            yield from ((where, text) for text in (machine_fields.label(fact), machine_fields.about(fact)))
+
+
 def shown(tree):
     """(line, text) of all that a source shows."""
     names = variables(tree)
     for node in ast.walk(tree):
+        if isinstance(node, ast.Assign):
+            yield from of_table(node)
         if isinstance(node, ast.ClassDef):
             yield from of_class(node)
         elif isinstance(node, ast.Call):
@@ -123,6 +143,8 @@ def shown(tree):
 def found():
     """{text: where it is}"""
     said = {text: f"riffler.machines()[{name!r}]" for name, text in riffler.machines().items()}
+    for where, text in of_machines():
+        said.setdefault(text, where)
     for path, tree in sources():
         for line, text in shown(tree):
             if re.search(r"[A-Za-z]{2}", text):

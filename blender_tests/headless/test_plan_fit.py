@@ -129,7 +129,8 @@ def test_what_is_verified_is_the_code_that_is_written():
     bpy.ops.riffler.plan_resolve()
     programs.stock()
     bpy.context.view_layer.objects.active = ob
-    settings().post, settings().options = "linuxcnc-xyzac", '{"rot_point": [0, 0, -40]}'
+    settings().post = "linuxcnc-xyzac"
+    bpy.context.scene.riffler.machines.of("linuxcnc-xyzac").rot_point = (0, 0, -40)
     write()
     setup = support.part("bl.programs").take(bpy.context, SimpleNamespace(source="PLAN", frame="WORLD"))
     assert setup.text == Path(support.out("fit.ngc")).read_text()

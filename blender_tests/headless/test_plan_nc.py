@@ -279,7 +279,7 @@ def test_paths_without_keys_are_not_cut_and_that_is_said():
     ob = programs.plan(programs.valley(programs.LEANING), plans.ring(), programs.valley(programs.INTO))
     bpy.ops.riffler.plan_resolve(max_lift=0.01)
     call = lambda: bpy.ops.riffler.plan_nc(filepath=support.out("some.ngc"))  # noqa: E731
-    support.refused(call, "path 3 may collide", "delete the keys")
+    support.refused(call, "path 3 may collide", "switch off a path")
     tool = pair(ob)[0]
     frames, quats = support.part("bl.timeline").read_keys(tool)
     first = tracks(ob)[2].first
@@ -348,7 +348,8 @@ def test_rows_that_were_inserted_beside_a_lift_play_too():
 def test_options_reach_the_machine():
     programs.resolved()
     chosen = {"rot_point": [0, 0, -40], "offset": [0, 0, 25]}
-    bpy.context.scene.riffler.plan.options = json.dumps(chosen)
+    own = bpy.context.scene.riffler.machines.of("linuxcnc-xyzac")
+    own.rot_point, own.offset = chosen["rot_point"], chosen["offset"]
     path = write("options.ngc", post="linuxcnc-xyzac")
     read = riffler.Program.read(path, machine="linuxcnc-xyzac", options=chosen)
     rows = support.part("bl.plan_store").plan(bpy.data.objects["Riffler Plan"]).cl[0]

@@ -243,8 +243,13 @@ def shown():
 
 def groups():
     """Of the scene's settings: what objects, meshes and the window manager have is shown nowhere."""
-    scene = support.part("properties").RifflerScene.bl_rna
-    return {p.fixed_type.identifier for p in scene.properties if p.type == "POINTER" and p.identifier != "rna_type"}
+    own = support.part("properties")
+    return {
+        p.fixed_type.identifier
+        for group in (own.RifflerScene, own.RifflerMachines)
+        for p in group.bl_rna.properties
+        if p.type == "POINTER" and p.identifier != "rna_type"
+    }
 
 
 def test_whatever_a_person_can_press_or_set_has_a_tooltip_in_one_line():

@@ -8,6 +8,7 @@ import numpy as np
 import plans
 import programs
 import riffler
+from mathutils import Matrix
 
 import support
 
@@ -209,9 +210,89 @@ def test_every_machine_s_program_is_verified():
             continue  # the tool leans
         settings = bpy.context.scene.riffler.plan
         settings.post = machine
-        settings.options = '{"rot_point": [0, 0, -40]}' if machine.startswith("linuxcnc") else ""
+        if machine.startswith("linuxcnc"):
+            bpy.context.scene.riffler.machines.of(machine).rot_point = (0, 0, -40)
         assert bpy.ops.riffler.verify(source="PLAN") == {"FINISHED"}
         assert kinds() == [] and programs.settings().text is not None, machine
+
+
+def reports(**how):
+    said = support.printed(lambda: bpy.ops.riffler.verify(**how))
+    return " ".join(said.split())
+
+
+def test_the_chosen_machine_is_verified_wherever_the_stock_stands():
+    """“No machine was given” was said of a stock that is turned, and of a .rprog file; no limits were looked at."""
+    ob = programs.resolved()
+    bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
+    tilt = float(np.degrees(np.arccos(programs.content(ob).cl[0][:, 5].min())))
+    own, path = bpy.context.scene.riffler.machines.of("linuxcnc-xyzac"), saved(ob)
+    bpy.context.scene.riffler.plan.post = "linuxcnc-xyzac"
+    own.rot_point = (0, 0, -40)
+    for where in ({}, {"location": (30, -12, 7), "turn": 0.4}):
+        programs.stock(**where)
+        for limit, found in ((90, []), (tilt / 2, ["machine"])):
+            own.limits_a = (-limit, limit)
+            said = reports(source="FILE", filepath=path, machine="linuxcnc-xyzac")
+            assert kinds() == found and "no machine" not in said, said
+        assert findings()[0]["title"].startswith("Out of reach at ")
+        own.property_unset("limits_a")
+        said = reports(source="PLAN")
+        assert kinds() == [] and "no machine" not in said, said
+        bpy.data.objects.remove(bpy.data.objects["Stock"])
+
+
+def saved(ob):
+    """The plan's program as a .rprog file."""
+    plan = programs.content(ob)
+    program = riffler.Program.from_cl(plan.cl, tools=[plan.tool], feed=600, spindle=9000, safe_height=60)
+    path = support.out("plan.rprog")
+    program.save(path)
+    return path
+
+
+def test_a_sculpt_s_cuts_are_verified_for_the_machine_of_their_nc_code():
+    programs.stock()
+    ob = bpy.data.objects["Stock"]
+    bpy.context.view_layer.objects.active = ob
+    line = support.curve("Line", [(5, 5, 8), (50, 5, 8)], mm_per_unit=1.0)
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.riffler.cut_curve(curve=line.name, depth=0.2)
+    said = reports(source="CUTS")
+    assert "no machine" not in said, said
+
+
+def test_findings_begin_with_what_differs():
+    prepared()
+    path, _ = nc(slip=60)
+    bpy.ops.riffler.verify(source="FILE", filepath=path)
+    (found,) = [e for e in findings() if e["kind"] == "gouge"]
+    kind, size, at, *place = found["title"].split()
+    assert (kind, at) == ("Gouge", "at") and 0.5 * SLIP < float(size) < SLIP, found
+    assert np.allclose([float(x) for x in place], found["place"], atol=0.51)
+    assert "lift the path" in found["name"], "the whole sentence is under the list"
+
+
+def test_a_holder_that_is_described_is_not_asked_for():
+    """Material stands where the spindle would be: findings told to describe the shank and the holder."""
+    programs.resolved()
+    bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
+    path, _ = nc()
+    vertices, triangles = plans.step()
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    above = np.array([0, -60, 75]) + (vertices - low) / (high - low) * [60, 30, 30]
+    both = riffler.Mesh(np.vstack([vertices, above]), np.vstack([triangles, triangles + len(vertices)]))
+    stock = riffler.Volume.from_mesh(both, 1.0)
+    ob = support.part("bl.sculpts").new_object(
+        bpy.context, "Tall", support.part("core.cache").Content(stock), Matrix.Identity(4)
+    )
+    programs.settings().stock = ob
+    bpy.context.view_layer.update()
+    bpy.ops.riffler.verify(source="FILE", filepath=path)
+    unknown = [e["name"] for e in findings() if e["kind"] == "unknown"]
+    assert unknown, [(e["kind"], e["name"]) for e in findings()]
+    assert unknown and not any("describe the shank" in name for name in unknown)
+    assert all(name.startswith("the holder of tool 1 ends 70.0 mm above the tip") for name in unknown), unknown[0]
 
 
 def test_one_step_of_undo():

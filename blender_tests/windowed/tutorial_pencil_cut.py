@@ -238,10 +238,10 @@ def to_code(screen, ob):
     yield 0.5
     yield from lessons.picture(screen, "pencil-cut-6", (0, 0, *lessons.view_box(screen)[2:]))
     path = support.out("pencil.ngc")
+    bpy.context.scene.riffler.plan.post = "linuxcnc-xyzac"
+    bpy.context.scene.riffler.machines.of("linuxcnc-xyzac").rot_point = (0, 0, -40)
     with screen.override():
-        assert bpy.ops.riffler.plan_nc(filepath=path, post="linuxcnc-xyzac", options='{"rot_point": [0, 0, -40]}') == {
-            "FINISHED"
-        }
+        assert bpy.ops.riffler.plan_nc(filepath=path) == {"FINISHED"}
     lessons.interpreted(path, len(lessons.module("bl.plan_store").plan(ob).cl[0]))
 
 

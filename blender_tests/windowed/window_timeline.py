@@ -81,6 +81,11 @@ def settled():
     return not any(map(bpy.app.timers.is_registered, ours))
 
 
+def marks():
+    """The timeline's markers but for those that name the paths."""
+    return [m.name for m in bpy.context.scene.timeline_markers if "▸ " not in m.name]
+
+
 def select_column(screen, frame):
     """The keys at a frame, as a click on the column does."""
     bpy.context.scene.frame_set(frame)
@@ -123,6 +128,7 @@ def steps(screen):
         bpy.ops.action.view_all()
     bpy.ops.ed.undo_push(message="Timeline")
     assert indices() == [0, 144] and ob == plan_object()
+    assert [(m.frame, m.name) for m in bpy.context.scene.timeline_markers] == [(1, "▸ Path 1, 60 mm")]
     yield 1.0
     yield from scrub(screen)
     yield from turn_and_key(screen)
@@ -225,10 +231,10 @@ def collide(screen):
     bpy.context.scene.frame_set(20)
     with screen.override():
         assert bpy.ops.riffler.plan_key("EXEC_DEFAULT", True, axis=(0, 1, 0.4)) == {"FINISHED"}
-    yield lambda: settled() and bpy.context.scene.timeline_markers
+    yield lambda: settled() and marks()
     ((first, last),) = support.part("bl.plan_states").state(plan_object()).colliding
     assert 1 < first < 20 < last < 43
-    assert [m.name for m in bpy.context.scene.timeline_markers] == [f"collides {first}–{last}"]
+    assert marks() == [f"collides {first}–{last}"]
     ui = screen.region("UI")
     x, y = ui.x + ui.width // 2, ui.y + ui.height // 2
     screen.move(x, y)
@@ -239,11 +245,11 @@ def collide(screen):
     part = bpy.context.scene.riffler.plan.part
     for way, markers in ((-100, 0), (100, 1)):  # mm: away from the tool and back, looked at without being asked
         part.location.z += way * bpy.context.scene.unit_settings.scale_length * 1000
-        yield lambda count=markers: settled() and len(bpy.context.scene.timeline_markers) == count
+        yield lambda count=markers: settled() and len(marks()) == count
     assert not support.part("bl.plan_collisions").outdated(plan_object())
     select_column(screen, 20)
     yield from press(screen, "DOPESHEET_EDITOR", "DEL")
-    yield lambda: settled() and not bpy.context.scene.timeline_markers
+    yield lambda: settled() and not marks()
     yield from least(screen)
 
 
@@ -254,6 +260,6 @@ def least(screen):
         assert bpy.ops.riffler.plan_least_tilt("INVOKE_DEFAULT", True, paths="ALL", count=2) == {"RUNNING_MODAL"}
     assert state.running
     yield lambda: not state.running and settled()
-    assert indices() == [0, 144] and not bpy.context.scene.timeline_markers
+    assert indices() == [0, 144] and not marks()
     yield from press(screen, "DOPESHEET_EDITOR", "Z", ctrl=True)
     yield lambda: settled() and indices() == before

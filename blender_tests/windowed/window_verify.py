@@ -48,8 +48,12 @@ def steps(screen):
 
 def make_room():
     """The panels above ours are taken away: a person scrolls."""
-    for name in ("RIFFLER_PT_plan_part", "RIFFLER_PT_plan_tool", "RIFFLER_PT_plan", "RIFFLER_PT_plan_machine"):
-        bpy.utils.unregister_class(getattr(bpy.types, name))
+    take_away("plan_part", "plan_tool", "plan", "plan_paths", "plan_machine")
+
+
+def take_away(*names):
+    for name in names:
+        bpy.utils.unregister_class(getattr(bpy.types, f"RIFFLER_PT_{name}"))
 
 
 def simulated(screen, stock):
@@ -88,6 +92,7 @@ def programs_volume(row):
 
 def verified(screen, stock):
     path, _ = verify.nc(slip=40)
+    take_away("timeline", "nc")
     other = max((a for a in screen.window.screen.areas if a.type == "PROPERTIES"), key=lambda a: a.height)
     other.type = "TEXT_EDITOR"
     settings = programs.settings()

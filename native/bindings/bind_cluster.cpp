@@ -80,16 +80,18 @@ void bind_cluster(py::module_& m) {
                        const py::object& tools, double tolerance, double gouge_tolerance,
                        const std::optional<double>& rest_tolerance, double rapid_feed,
                        const std::optional<std::string>& machine, const py::object& machine_options,
-                       const py::object& progress) {
-             const VerifyArguments arguments = to_verify_arguments(
-                 stock, part_mesh, fixtures, tools,
-                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options));
+                       const py::object& machine_frame, const py::object& progress) {
+             const VerifyArguments arguments =
+                 to_verify_arguments(stock, part_mesh, fixtures, tools,
+                                     to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine,
+                                                       machine_options, machine_frame));
              return std::make_unique<SharedPlan>(make_verification_here(arguments, to_progress(progress)));
            }),
            py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
            py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("machine") = py::none(),
-           py::arg("machine_options") = py::none(), py::arg("progress") = py::none())
+           py::arg("machine_options") = py::none(), py::arg("machine_frame") = py::none(),
+           py::arg("progress") = py::none())
       .def("add", &add, py::arg("program"), py::arg("progress") = py::none(),
            "List of (slab, number of moves, bytes) of the chunk: what can touch each slab.")
       .def(

@@ -12,6 +12,7 @@
 #include "nc/follow.hpp"
 #include "nc/limits.hpp"
 #include "nc/machines.hpp"
+#include "nc/option_texts.hpp"
 #include "nc/program.hpp"
 #include "nc/reader.hpp"
 #include "nc/writer.hpp"
@@ -233,6 +234,28 @@ py::dict machine_list() {
   return out;
 }
 
+py::object value_of(const OptionValue& value) {
+  return std::visit([](const auto& v) -> py::object { return py::cast(v); }, value);
+}
+
+const char* name_of(OptionFact::Kind kind) {
+  static constexpr const char* kNames[] = {"number", "positive", "numbers", "range", "flag", "word", "path"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+py::list option_list(const std::string& machine, const py::object& options) {
+  using namespace py::literals;
+  py::list out;
+  for (const MachineOption& option : machine_options(machine, to_options(options))) {
+    const OptionFact& fact = option.fact;
+    out.append(py::dict("name"_a = fact.name, "kind"_a = name_of(fact.kind), "count"_a = fact.most,
+                        "unit"_a = option.unit, "words"_a = fact.words,
+                        "value"_a = fact.value ? value_of(*fact.value) : py::object(py::none()),
+                        "needed"_a = fact.needed, "own"_a = option.own, "about"_a = fact.about));
+  }
+  return out;
+}
+
 struct SharedStream : Guarded {
   explicit SharedStream(NcStream&& s) : stream(std::move(s)) {}
   NcStream stream;
@@ -265,18 +288,8 @@ py::dict write(const Program& self, const std::filesystem::path& path, const std
   return to_dict(report);
 }
 
-Program edited_transform(const Program& program, const Doubles& matrix) {
-  if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
-    throw py::value_error("matrix must have the shape (4, 4)");
-  const auto m = matrix.unchecked<2>();
-  if (m(3, 0) != 0 || m(3, 1) != 0 || m(3, 2) != 0 || m(3, 3) != 1)
-    throw py::value_error("matrix: its last row must be 0, 0, 0, 1");
-  Mat3 turn;
-  Vec3 shift;
-  for (int row = 0; row < 3; ++row) {
-    shift[row] = m(row, 3);
-    for (int column = 0; column < 3; ++column) turn[column][row] = m(row, column);
-  }
+Program edited_transform(const Program& program, const py::object& matrix) {
+  const auto [turn, shift] = to_affine(matrix, "matrix");
   return transformed(program, turn, shift);
 }
 
@@ -335,6 +348,16 @@ void bind_program(py::module_& m) {
   m.def("machines", &machine_list,
         "Machines that programs are written for and read from, ours and your own: name to description. A post has its "
         "machine's name; the path of a .toml file that describes one will do as well.");
+
+  m.def(
+      "machine_options", &option_list, py::arg("machine"), py::arg("options") = py::none(),
+      R"(The options that a machine takes, its own first, and those of the code that is written for it: a list of dicts.
+
+``name``; ``kind``: "number", "positive", "numbers", "range" (two that grow), "flag" (a bool) or "word"; ``count`` of
+numbers; ``unit``: "mm", "deg", "mm/min", "deg/min" or ""; ``words``: of which it is one; ``value``: where it is not
+given, None where there is none then; ``needed``: it must be given, with these ``options``; ``own``: of this machine's
+file, the others are of many; ``about``: one sentence.
+ValueError for a machine that is not known, and for options that are wrong.)");
 
   py::class_<Note>(m, "Note", "What a reader of NC code assumed or passed over.")
       .def_readonly(

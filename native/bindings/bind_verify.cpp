@@ -75,10 +75,13 @@ std::vector<Volume> to_volumes(const std::vector<Fixture>& fixtures, double pitc
 
 VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const std::optional<double>& rest_tolerance,
                                 double rapid_feed, const std::optional<std::string>& machine,
-                                const py::object& machine_options) {
+                                const py::object& machine_options, const py::object& machine_frame) {
   VerifyOptions out{tolerance, gouge_tolerance, rest_tolerance, rapid_feed, {}};
   if (machine) out.machine = MachineChoice{*machine, without_reading(to_options(machine_options))};
+  if (machine && !machine_frame.is_none())
+    std::tie(out.machine->turn, out.machine->shift) = to_affine(machine_frame, "machine_frame");
   if (!machine && !machine_options.is_none()) throw py::value_error("machine_options: there is no machine");
+  if (!machine && !machine_frame.is_none()) throw py::value_error("machine_frame: there is no machine");
   return out;
 }
 
@@ -131,10 +134,11 @@ VerifyReport run_whole(Verification& verification, const Program& program, const
 auto verify(const py::object& program, SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
             const py::object& tools, double tolerance, double gouge_tolerance,
             const std::optional<double>& rest_tolerance, double rapid_feed, const std::optional<std::string>& machine,
-            const py::object& machine_options, const py::object& progress) {
-  VerifyArguments arguments = to_verify_arguments(
-      stock, part_mesh, fixtures, tools,
-      to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options));
+            const py::object& machine_options, const py::object& machine_frame, const py::object& progress) {
+  VerifyArguments arguments =
+      to_verify_arguments(stock, part_mesh, fixtures, tools,
+                          to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine,
+                                            machine_options, machine_frame));
   if (py::isinstance<Program>(program)) {
     const auto work = [arguments = std::move(arguments),
                        whole = py::cast<std::shared_ptr<Program>>(program)](const Progress& listener) {
@@ -331,7 +335,8 @@ void bind_verify(py::module_& m) {
   m.def("verify", &verify, py::arg("program"), py::arg("stock_volume"), py::arg("part_mesh") = py::none(),
         py::arg("fixtures") = py::tuple(), py::kw_only(), py::arg("tools") = py::none(), py::arg("tolerance") = 0.01,
         py::arg("gouge_tolerance") = 0.05, py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0,
-        py::arg("machine") = py::none(), py::arg("machine_options") = py::none(), py::arg("progress") = py::none(),
+        py::arg("machine") = py::none(), py::arg("machine_options") = py::none(), py::arg("machine_frame") = py::none(),
+        py::arg("progress") = py::none(),
         R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
 
 ``program``: a Program, or an iterable of Programs, each of which begins with the row at which the one before ended;
@@ -342,7 +347,8 @@ Volume or Mesh (which becomes a Volume at the stock's pitch). ``tools``: dict of
 taken from the part deeper under its surface is a gouge. ``rest_tolerance`` (mm): what stands higher on the part is a
 finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time. ``machine``: a name of
 machines() on which it is to run, with ``machine_options`` (those of reading are passed over): the first row that its axes or their limits cannot hold is a
-finding "machine".
+finding "machine". ``machine_frame``: (4, 4), from the coordinates of stock and program to those in which the machine has the
+program, where they are others.
 
 Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come
 there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
@@ -359,16 +365,18 @@ are. The report is that of a fresh run, bit for bit.)")
                        const py::object& tools, double tolerance, double gouge_tolerance,
                        const std::optional<double>& rest_tolerance, double rapid_feed,
                        const std::optional<std::string>& machine, const py::object& machine_options,
-                       const py::object& progress) {
-             const VerifyArguments arguments = to_verify_arguments(
-                 stock, part_mesh, fixtures, tools,
-                 to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine, machine_options));
+                       const py::object& machine_frame, const py::object& progress) {
+             const VerifyArguments arguments =
+                 to_verify_arguments(stock, part_mesh, fixtures, tools,
+                                     to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine,
+                                                       machine_options, machine_frame));
              return std::make_shared<SharedVerification>(make_verification_here(arguments, to_progress(progress)));
            }),
            py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
            py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
            py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("machine") = py::none(),
-           py::arg("machine_options") = py::none(), py::arg("progress") = py::none())
+           py::arg("machine_options") = py::none(), py::arg("machine_frame") = py::none(),
+           py::arg("progress") = py::none())
       .def("run", &run, py::arg("program").none(false), py::arg("progress") = py::none(),
            "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
 }

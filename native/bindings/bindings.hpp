@@ -57,6 +57,8 @@ std::size_t check_rows(const Doubles& array, std::size_t columns, const char* na
 /// Three numbers from any sequence; ValueError naming `name`.
 Vec3 to_vec3(const py::object& object, const char* name);
 py::array_t<double> from_vec3(const Vec3& v);
+/// A (4, 4) matrix whose last row is 0, 0, 0, 1, as the map p → first p + second. ValueError naming the argument.
+std::pair<Mat3, Vec3> to_affine(const py::object& object, const std::string& name);
 /// (n, 3) copy.
 py::array_t<double> from_vec3s(const std::vector<Vec3>& v);
 

@@ -38,6 +38,27 @@ Vec3 to_vec3(const py::object& object, const char* name) {
   return v;
 }
 
+std::pair<Mat3, Vec3> to_affine(const py::object& object, const std::string& name) {
+  Doubles matrix;
+  try {
+    matrix = py::cast<Doubles>(object);
+  } catch (const py::cast_error&) {
+    throw py::value_error(name + " must have the shape (4, 4)");
+  }
+  if (!matrix || matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
+    throw py::value_error(name + " must have the shape (4, 4)");
+  const auto m = matrix.unchecked<2>();
+  if (m(3, 0) != 0 || m(3, 1) != 0 || m(3, 2) != 0 || m(3, 3) != 1)
+    throw py::value_error(name + ": its last row must be 0, 0, 0, 1");
+  Mat3 turn;
+  Vec3 shift;
+  for (int row = 0; row < 3; ++row) {
+    shift[row] = m(row, 3);
+    for (int column = 0; column < 3; ++column) turn[column][row] = m(row, column);
+  }
+  return {turn, shift};
+}
+
 py::array_t<double> from_vec3(const Vec3& v) {
   py::array_t<double> out(3);
   for (int k = 0; k < 3; ++k) out.mutable_at(k) = v[k];

@@ -22,7 +22,7 @@ std::shared_ptr<SharedReport> share(VerifyReport&& report);
 
 VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const std::optional<double>& rest_tolerance,
                                 double rapid_feed, const std::optional<std::string>& machine,
-                                const py::object& machine_options);
+                                const py::object& machine_options, const py::object& machine_frame);
 
 /// What riffler.verify is given but for the program.
 struct VerifyArguments {

@@ -54,23 +54,30 @@ class Describer : TomlReader {
     if (!node->is_table()) fail(*node, "options must be a table");
     for (const auto& [key, declared] : *node->as_table()) {
       const std::string name(key.str());
-      if (const toml::table* entry = declared.as_table()) {
-        allow(*entry, {"needed", "about", "numbers"});
-        word(*entry, "needed", {"joints"}, "");
-        const toml::node* numbers = entry->get("numbers");
-        const double count = numbers ? number(*numbers, "numbers") : 1;
-        if (count != 1 && count != 3) fail(*numbers, "numbers must be 1 or 3");
-        const auto given = options.given(name);
-        values_[name] = count == 3 ? options.vector(name, Vec3(0)) : Vec3(options.number(name, 0));
-        if (joints && !given)
-          throw std::invalid_argument(options.owner() + ": option " + name +
-                                      " must be given: " + text(*entry, "about"));
-      } else if (declared.is_array()) {
-        values_[name] = options.vector(name, vector(declared, name));
-      } else {
-        values_[name] = Vec3(options.number(name, number(declared, name)));
-      }
+      values_[name] = declared.is_table() ? described(options, name, *declared.as_table(), joints)
+                                          : with_value(options, name, declared, "");
     }
+  }
+
+  /// An option with what it is: one that must be given where the words are joints, or one that has a value.
+  Vec3 described(OptionReader& options, const std::string& name, const toml::table& entry, bool joints) const {
+    allow(entry, {"needed", "about", "numbers", "value"});
+    const std::string about = text(entry, "about");
+    if (const toml::node* value = entry.get("value")) {
+      if (entry.get("needed") || entry.get("numbers")) fail(*value, "an option with a value is not needed");
+      return with_value(options, name, *value, about);
+    }
+    word(entry, "needed", {"joints"}, "");
+    const toml::node* numbers = entry.get("numbers");
+    const double count = numbers ? number(*numbers, "numbers") : 1;
+    if (count != 1 && count != 3) fail(*numbers, "numbers must be 1 or 3");
+    return options.of_machine(name, static_cast<std::size_t>(count), std::nullopt, joints, about);
+  }
+
+  Vec3 with_value(OptionReader& options, const std::string& name, const toml::node& value,
+                  const std::string& about) const {
+    if (value.is_array()) return options.of_machine(name, 3, vector(value, name), false, about);
+    return options.of_machine(name, 1, Vec3(number(value, name)), false, about);
   }
 
   RotaryAxis rotary_axis(const toml::table& table, double tables) const {

@@ -7,11 +7,12 @@
 
 namespace riffler {
 
-std::optional<OptionValue> OptionReader::take(const std::string& name) {
-  if (std::find(known_.begin(), known_.end(), name) != known_.end())
+std::optional<OptionValue> OptionReader::take(OptionFact fact) {
+  const std::string name = fact.name;
+  if (std::ranges::find(facts_, name, &OptionFact::name) != facts_.end())
     throw std::invalid_argument(owner_ + ": option " + name +
                                 " would have two meanings: [options] of the description must use another name");
-  known_.push_back(name);
+  facts_.push_back(std::move(fact));
   auto node = options_.extract(name);
   if (node.empty()) return std::nullopt;
   return std::move(node.mapped());
@@ -22,33 +23,52 @@ void OptionReader::refuse(const std::string& name, const std::string& must) cons
 }
 
 std::optional<double> OptionReader::positive(const std::string& name) {
-  const std::optional<OptionValue> given = take(name);
+  const std::optional<OptionValue> given = take({.name = name, .kind = OptionFact::Kind::Positive});
   if (!given) return std::nullopt;
   const double* value = std::get_if<double>(&*given);
   if (!value || !(std::isfinite(*value) && *value > 0)) refuse(name, "a positive, finite number");
   return *value;
 }
 
+std::optional<double> OptionReader::finite(const std::string& name) {
+  return finite(take({.name = name, .kind = OptionFact::Kind::Number}), name);
+}
+
 double OptionReader::number(const std::string& name, double otherwise) {
-  const std::optional<OptionValue> given = take(name);
-  if (!given) return otherwise;
+  return finite(take({.name = name, .kind = OptionFact::Kind::Number, .value = otherwise}), name).value_or(otherwise);
+}
+
+std::optional<double> OptionReader::finite(const std::optional<OptionValue>& given, const std::string& name) const {
+  if (!given) return std::nullopt;
   const double* value = std::get_if<double>(&*given);
   if (!value || !std::isfinite(*value)) refuse(name, "a finite number");
   return *value;
 }
 
-Vec3 OptionReader::vector(const std::string& name, const Vec3& otherwise) {
-  const std::optional<OptionValue> given = take(name);
-  if (!given) return otherwise;
-  const auto* value = std::get_if<std::vector<double>>(&*given);
-  if (!value || value->size() != 3 ||
-      !std::all_of(value->begin(), value->end(), [](double x) { return std::isfinite(x); }))
+Vec3 OptionReader::of_machine(const std::string& name, std::size_t count, const std::optional<Vec3>& otherwise,
+                              bool must, const std::string& about) {
+  std::optional<OptionValue> value;
+  if (otherwise && count == 1) value = otherwise->x;
+  if (otherwise && count == 3) value = std::vector<double>{otherwise->x, otherwise->y, otherwise->z};
+  const std::optional<OptionValue> given =
+      take({.name = name,
+            .kind = count == 1 ? OptionFact::Kind::Number : OptionFact::Kind::Numbers,
+            .most = count,
+            .value = std::move(value),
+            .needed = must,
+            .about = about});
+  if (!given && must && !listing_)
+    throw std::invalid_argument(owner_ + ": option " + name + " must be given: " + about);
+  if (!given) return otherwise.value_or(Vec3(0));
+  if (count == 1) return Vec3(*finite(given, name));
+  const auto* list = std::get_if<std::vector<double>>(&*given);
+  if (!list || list->size() != 3 || !std::ranges::all_of(*list, [](double x) { return std::isfinite(x); }))
     refuse(name, "three finite numbers");
-  return {(*value)[0], (*value)[1], (*value)[2]};
+  return {(*list)[0], (*list)[1], (*list)[2]};
 }
 
 std::optional<std::pair<double, double>> OptionReader::range(const std::string& name) {
-  const std::optional<OptionValue> given = take(name);
+  const std::optional<OptionValue> given = take({.name = name, .kind = OptionFact::Kind::Range, .most = 2});
   if (!given) return std::nullopt;
   const auto* value = std::get_if<std::vector<double>>(&*given);
   if (!value || value->size() != 2 || !std::isfinite((*value)[0]) || !std::isfinite((*value)[1]) ||
@@ -58,7 +78,7 @@ std::optional<std::pair<double, double>> OptionReader::range(const std::string& 
 }
 
 std::optional<std::vector<double>> OptionReader::numbers(const std::string& name, std::size_t least, std::size_t most) {
-  const std::optional<OptionValue> given = take(name);
+  const std::optional<OptionValue> given = take({.name = name, .kind = OptionFact::Kind::Numbers, .most = most});
   if (!given) return std::nullopt;
   const auto* value = std::get_if<std::vector<double>>(&*given);
   if (!value || value->size() < least || value->size() > most ||
@@ -68,7 +88,7 @@ std::optional<std::vector<double>> OptionReader::numbers(const std::string& name
 }
 
 bool OptionReader::flag(const std::string& name, bool otherwise) {
-  const std::optional<OptionValue> given = take(name);
+  const std::optional<OptionValue> given = take({.name = name, .kind = OptionFact::Kind::Flag, .value = otherwise});
   if (!given) return otherwise;
   const bool* value = std::get_if<bool>(&*given);
   if (!value) refuse(name, "true or false");
@@ -77,7 +97,8 @@ bool OptionReader::flag(const std::string& name, bool otherwise) {
 
 std::string OptionReader::word(const std::string& name, const std::vector<std::string>& known,
                                const std::string& otherwise) {
-  const std::optional<OptionValue> given = take(name);
+  const std::optional<OptionValue> given =
+      take({.name = name, .kind = OptionFact::Kind::Word, .words = known, .value = otherwise});
   if (!given) return otherwise;
   const std::string* value = std::get_if<std::string>(&*given);
   if (!value || std::find(known.begin(), known.end(), *value) == known.end()) {
@@ -89,7 +110,7 @@ std::string OptionReader::word(const std::string& name, const std::vector<std::s
 }
 
 std::string OptionReader::path(const std::string& name) {
-  const std::optional<OptionValue> given = take(name);
+  const std::optional<OptionValue> given = take({.name = name, .kind = OptionFact::Kind::Path});
   if (!given) return "";
   const std::string* value = std::get_if<std::string>(&*given);
   if (!value) throw std::invalid_argument("option " + name + " must be a path");
@@ -99,7 +120,7 @@ std::string OptionReader::path(const std::string& name) {
 void OptionReader::done() const {
   if (options_.empty()) return;
   std::string known;
-  for (const std::string& name : known_) known += (known.empty() ? "" : ", ") + name;
+  for (const OptionFact& fact : facts_) known += (known.empty() ? "" : ", ") + fact.name;
   throw std::invalid_argument(owner_ + ": unknown option '" + options_.begin()->first + "'; " +
                               (known.empty() ? "it takes none" : "known: " + known));
 }

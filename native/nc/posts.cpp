@@ -18,10 +18,8 @@ constexpr PostLanguage kLanguages[] = {
 
 /// A coordinate in mm, where it is given.
 std::optional<double> place(OptionReader& options, const std::string& name) {
-  const bool given = options.given(name);
-  const double value = options.number(name, 0);
-  if (!given) return std::nullopt;
-  if (!(std::abs(value) <= kMaxLength))
+  const std::optional<double> value = options.finite(name);
+  if (value && !(std::abs(*value) <= kMaxLength))
     throw std::invalid_argument(options.owner() + ": option " + name + " is out of range");
   return value;
 }

@@ -102,12 +102,25 @@ std::string message_of(const Finding& f) {
     case Kind::Rest:
       return "rest material stands " + number(f.value) + " mm on the part: cut it with another pass or a smaller tool";
     case Kind::Machine:
-      return f.message;
     case Kind::Unknown:
       break;
   }
-  return "the description" + tool + " ends below " + what +
-         " that stands above or beside it, so what follows it cannot be checked: describe the shank and the holder";
+  return f.message;
+}
+
+std::string message_of_unknown(const Finding& f, const Tool& tool) {
+  const std::string what = f.fixture < 0 ? "material" : "fixture " + std::to_string(f.fixture + 1);
+  const bool holder = !tool.holder().empty(), shank = !tool.shank().empty();
+  const double top = holder ? tool.holder().back().z1 : shank ? tool.shank().back().z1 : tool.length();
+  return std::string("the ") +
+         (holder  ? "holder"
+          : shank ? "shank"
+                  : "cutter") +
+         " of tool " + std::to_string(f.tool) + " ends " + number(top) + " mm above the tip, and " + what +
+         " stands above or beside that, so what follows it cannot be checked: " +
+         (holder  ? "describe what follows the holder as further pieces of it"
+          : shank ? "describe the holder"
+                  : "describe the shank and the holder");
 }
 
 }  // namespace riffler

@@ -31,4 +31,7 @@ class FindingList {
 /// One sentence that says what happened and what to do.
 std::string message_of(const Finding& finding);
 
+/// The message of a finding of Kind::Unknown, which depends on how far its tool is described.
+std::string message_of_unknown(const Finding& finding, const Tool& tool);
+
 }  // namespace riffler

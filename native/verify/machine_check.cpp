@@ -1,5 +1,6 @@
 #include "verify/machine_check.hpp"
 
+#include "nc/edit.hpp"
 #include "nc/writer.hpp"
 
 namespace riffler {
@@ -8,7 +9,8 @@ std::optional<Finding> machine_fault(const Program& program, std::int64_t first_
   WriteOptions how;
   how.post = machine.name, how.options = machine.options;
   try {
-    to_nc(program, how);
+    const bool moved = machine.turn != Mat3(1) || machine.shift != Vec3(0);
+    to_nc(moved ? transformed(program, machine.turn, machine.shift) : program, how);
     return std::nullopt;
   } catch (const RowError& e) {
     Finding found{};

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "geom/vec.hpp"
 #include "nc/options.hpp"
 #include "nc/program.hpp"
 #include "verify/report.hpp"
@@ -14,6 +15,9 @@ namespace riffler {
 struct MachineChoice {
   std::string name;
   Options options;
+  /// From the verified coordinates to those that the machine's program is in: p → turn p + shift.
+  Mat3 turn{1};
+  Vec3 shift{0};
 };
 
 /// The first row that cannot be written for the machine, within the limits of its axes, or nothing. `program` begins

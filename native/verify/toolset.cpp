@@ -77,6 +77,12 @@ std::uint32_t Toolset::place(int number, const Tool& tool) {
   return static_cast<std::uint32_t>(shapes_.size() - 1);
 }
 
+const Tool* Toolset::of_number(int number) const {
+  for (std::size_t k = numbers_.size(); k-- > 0;)
+    if (numbers_[k] == number) return &tools_[k];
+  return nullptr;
+}
+
 std::vector<std::string> Toolset::not_described(const std::set<std::uint32_t>& places) const {
   std::vector<std::string> out;
   for (const std::uint32_t k : places)

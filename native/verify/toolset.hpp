@@ -27,6 +27,8 @@ class Toolset {
   const std::vector<ToolShapes>& shapes() const { return shapes_; }
   /// The tools at those places.
   const std::vector<Tool>& tools() const { return tools_; }
+  /// The tool that was placed under `number`, or null; of several the last.
+  const Tool* of_number(int number) const;
   double reach() const { return reach_; }
   /// Sentences on what the descriptions of some tools leave out.
   std::vector<std::string> not_described(const std::set<std::uint32_t>& places) const;

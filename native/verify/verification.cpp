@@ -190,6 +190,9 @@ VerifyReport Verification::conclude(std::vector<SlabState>& slabs, FindingList& 
     if (jobs_[k].fixture < 0) put_tiles(report.volume.grids()[jobs_[k].slab.grid], jobs_[k].slab, slabs[k].tiles);
   report.volume.touch();
   report.findings = findings.take();
+  for (Finding& f : report.findings)
+    if (f.kind == Kind::Unknown)
+      if (const Tool* tool = tools_.of_number(f.tool)) f.message = message_of_unknown(f, *tool);
   report.findings.insert(report.findings.end(), faults.begin(), faults.end());
   std::ranges::stable_sort(report.findings, {}, &Finding::row);
   if (options_.rest_tolerance) {

@@ -7,7 +7,7 @@ import os
 import pathlib
 import typing
 import types
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -830,7 +830,7 @@ class Program:
         """
         The bytes of the .rprog file.
         """
-    def transformed(self, matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> Program:
+    def transformed(self, matrix: typing.Any) -> Program:
         """
         In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.
         """
@@ -1064,7 +1064,7 @@ class Verification:
     before the first difference come from snapshots, and parts of the stock that no differing move can touch stay as they
     are. The report is that of a fresh run, bit for bit.
     """
-    def __init__(self, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, progress: typing.Any = None) -> None:
+    def __init__(self, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, machine_frame: typing.Any = None, progress: typing.Any = None) -> None:
         ...
     def run(self, program: Program, progress: typing.Any = None) -> VerifyReport:
         """
@@ -1084,7 +1084,7 @@ class VerifyPlan:
     """
     A verification whose slabs run elsewhere; arguments as of riffler.verify.
     """
-    def __init__(self, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, progress: typing.Any = None) -> None:
+    def __init__(self, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, machine_frame: typing.Any = None, progress: typing.Any = None) -> None:
         ...
     def accept(self, slab: typing.SupportsInt, result: bytes, last: bool) -> None:
         """
@@ -1983,6 +1983,16 @@ def least_tilt(path: PencilPath, tool: Tool, collider: Collider, *, inclinations
     ...
 def lift(tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_evaluations: typing.SupportsInt, progress: typing.Any) -> dict:
     ...
+def machine_options(machine: str, options: typing.Any = None) -> list:
+    """
+    The options that a machine takes, its own first, and those of the code that is written for it: a list of dicts.
+
+    ``name``; ``kind``: "number", "positive", "numbers", "range" (two that grow), "flag" (a bool) or "word"; ``count`` of
+    numbers; ``unit``: "mm", "deg", "mm/min", "deg/min" or ""; ``words``: of which it is one; ``value``: where it is not
+    given, None where there is none then; ``needed``: it must be given, with these ``options``; ``own``: of this machine's
+    file, the others are of many; ``about``: one sentence.
+    ValueError for a machine that is not known, and for options that are wrong.
+    """
 def machines() -> dict:
     """
     Machines that programs are written for and read from, ours and your own: name to description. A post has its machine's name; the path of a .toml file that describes one will do as well.
@@ -2030,7 +2040,7 @@ def tip_ball_radius(tool: Tool, name: str) -> float:
     """
     Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.
     """
-def verify(program: typing.Any, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, progress: typing.Any = None) -> VerifyReport:
+def verify(program: typing.Any, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, machine_frame: typing.Any = None, progress: typing.Any = None) -> VerifyReport:
     """
     Runs a program on a stock and reports what goes wrong; the stock is not changed.
 
@@ -2042,7 +2052,8 @@ def verify(program: typing.Any, stock_volume: Volume, part_mesh: typing.Any = No
     taken from the part deeper under its surface is a gouge. ``rest_tolerance`` (mm): what stands higher on the part is a
     finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time. ``machine``: a name of
     machines() on which it is to run, with ``machine_options`` (those of reading are passed over): the first row that its axes or their limits cannot hold is a
-    finding "machine".
+    finding "machine". ``machine_frame``: (4, 4), from the coordinates of stock and program to those in which the machine has the
+    program, where they are others.
 
     Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come
     there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above

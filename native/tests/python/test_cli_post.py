@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -108,6 +109,20 @@ def test_axes_of_a_plan_and_of_the_command_line(folder):
         assert nearest(poses_of(folder / name, "tcp"), wanted) < 2e-5
     result("post", "plain.json", "--feed", 9, "--axis", "-6,0,8", "--post", "tcp", "--out", "c.ngc", cwd=folder)
     assert poses_of(folder / "c.ngc", "tcp")[1, 3] == pytest.approx(-0.6)
+
+
+@pytest.mark.parametrize("more", [(), ("--part", "corner.stl")])
+def test_a_path_that_is_off_is_left_out(folder, more):
+    part = plan.load(folder / "plain.json").part
+    away = CORNER.oriented({0: (0.6, 0, 0.8)})  # told apart by its axis
+    both = plan.Plan([CORNER, away], BALL, part=part, off=frozenset({1}))
+    plan.save(folder / "off.json", both)
+    data = result("post", "off.json", "--feed", 700, *more, "--post", "tcp", "--out", "off.ngc", cwd=folder)
+    assert "path 1: switched off in the plan, left out" in data["notes"]
+    assert np.all(poses_of(folder / "off.ngc", "tcp")[:, 5] == 1)
+    plan.save(folder / "on.json", replace(both, off=frozenset()))
+    result("post", "on.json", "--feed", 700, *more, "--post", "tcp", "--out", "on.ngc", cwd=folder)
+    assert not np.all(poses_of(folder / "on.ngc", "tcp")[:, 5] == 1)
 
 
 def test_a_part_lifts_the_tool_out_of_it(folder):

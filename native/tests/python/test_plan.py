@@ -3,6 +3,7 @@
 import itertools
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -403,6 +404,7 @@ def test_a_plan_comes_back_to_the_bit(tmp_path):
         (("paths", 0), None, r"paths\[0\]: an object expected"),
         (("paths", 1, "radius"), -1, r"paths\[1\]: radius must be positive"),
         (("paths", 1, "closed"), 1, r"paths\[1\].closed: true or false"),
+        (("paths", 1, "off"), "no", r"paths\[1\].off: true or false"),
         (("paths", 0, "centres"), [[1, 2], [3]], r"paths\[0\].centres: an array \(n, 3\) of numbers"),
         (("paths", 0, "centres", 2, 1), None, r"paths\[0\].centres"),
         (("paths", 0, "contacts"), [], r"paths\[0\].contacts: the shape \(9, 2, 3\) expected"),
@@ -467,6 +469,17 @@ def test_of_plans_that_follow_one_another_only_other_paths_are_formatted():
     moved = plan.Plan([turned, before.paths[0]], before.tool, cl=[None, rows])  # another order, other locations
     assert plan.dumps(moved, texts) == plan.dumps(moved) and texts.made == 4
     assert plan.dumps(before, texts) == plan.dumps(before) and texts.made == 6  # only the last is kept
+
+
+def test_paths_that_are_off_come_back_off():
+    texts, before = plan.Texts(), some_plan()
+    plan.dumps(before, texts)
+    after = replace(before, off=frozenset({1}))
+    data = plan.dumps(after, texts)
+    assert texts.made == 3 and plan.loads(data).off == {1} and data == plan.dumps(plan.loads(data))
+    assert plan.loads(plan.dumps(before)).off == frozenset() and b'"off"' not in plan.dumps(before)
+    with pytest.raises(ValueError, match="off: there is no path 2: the plan has 2, from 0"):
+        plan.dumps(replace(before, off=frozenset({0, 2})))
 
 
 def test_a_plan_of_a_newer_version_says_so():

@@ -152,6 +152,11 @@ def test_a_tool_whose_description_ends_below_material_does_not_pass():
     deep = riffler.verify(slot(-6), stock)
     assert kinds(deep) == ["unknown"] and not deep.passed and "describe the shank" in deep.findings[0].message
     assert any("tool 1" in sentence for sentence in deep.not_checked)
+    with_holder = bare.with_shank([(5, 2, 6, 2)]).with_holder([(6, 2, 8, 2)])
+    beyond = riffler.verify(program(path([[-10, 20, -12], [70, 20, -12]]), with_holder), stock)
+    (unknown,) = [f for f in beyond.findings if f.kind == "unknown"]
+    assert "describe the shank" not in unknown.message, "they are described"
+    assert unknown.message.startswith("the holder of tool 1 ends 8.000 mm above the tip, and material stands above")
 
 
 # --- fixtures ------------------------------------------------------------------------------------------------------

@@ -53,6 +53,28 @@ def test_chunks_and_edits_say_the_same():
     assert verification.run(leaning(12, 20)).passed
 
 
+def test_a_machine_holds_the_program_in_its_own_frame():
+    """The stock and the program stand turned by a quarter about z and moved: the machine has them as they were."""
+    program, c = leaning(12, np.linspace(0, 55, 12)), 20.0
+    matrix = np.array([[0, -1, 0, 30], [1, 0, 0, 5], [0, 0, 1, c], [0, 0, 0, 1]], float)
+    block = riffler.Volume.block([0, 5, c], [30, 45, c + 10], 0.5)
+    moved, back = program.transformed(matrix), np.linalg.inv(matrix)
+    how = {"machine": "linuxcnc-xyzac", "machine_options": TABLE}
+    (straight,) = riffler.verify(program, stock(), **how).findings
+    for verify in (riffler.verify, lambda p, s, **k: riffler.Verification(s, **k).run(p)):
+        (found,) = verify(moved, block, machine_frame=back, **how).findings
+        assert (found.row, found.message) == (straight.row, straight.message)
+        assert np.allclose(found.point, moved.poses[7, :3]), "in the frame of the stock"
+    for frame, message in (
+        (np.eye(3), "machine_frame must have the shape"),
+        (2 * np.eye(4), "machine_frame: its last"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            riffler.verify(moved, block, machine_frame=frame, **how)
+    with pytest.raises(ValueError, match="machine_frame: there is no machine"):
+        riffler.verify(moved, block, machine_frame=back)
+
+
 def test_wrong_machines_and_options_are_value_errors():
     with pytest.raises(ValueError, match="unknown post lathe"):
         riffler.verify(leaning(3, 0), stock(), machine="lathe")

@@ -180,15 +180,18 @@ def from_plan(
     tool = with_rods({called: tool}, rods(arguments))[called]
     notes = [f"feed {FEED:g} mm/min: a plan has none of its own, --feed names one"] if arguments.feed is None else []
     paths = [path if len(path.axes) else upright(path, axis) for path in planned.paths]
-    turned = sum(len(path.axes) == 0 for path in planned.paths)
+    turned = sum(len(path.axes) == 0 for k, path in enumerate(planned.paths) if k not in planned.off)
     if turned:
         notes.append(f"{turned} paths without axes: the tool stands along {', '.join(f'{x:g}' for x in axis)}")
     collider = None
+    if planned.off:
+        notes.append(f"{listed(sorted(planned.off), len(paths))}: switched off in the plan, left out")
     if arguments.part is not None:
         cl, collider = lifted(planned, paths, tool, arguments, console, notes)
     else:
-        cl = [tips(path, tool) if rows is None else rows for path, rows in zip(paths, located(planned), strict=True)]
-        if any(rows is None for rows in located(planned)):
+        known = {k: rows for k, rows in enumerate(located(planned)) if k not in planned.off}
+        cl = [tips(paths[k], tool) if rows is None else rows for k, rows in known.items()]
+        if any(rows is None for rows in known.values()):
             notes.append("not checked for gouges: --part does that")
     safe = height(arguments)
     program = Program.from_cl(
@@ -251,7 +254,8 @@ def lifted(
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
         collider, found, raised, blocked = Collider(mesh, fixtures=fixtures), [], {}, {}
-        for k, path in enumerate(paths):
+        for k in sorted({*range(len(paths))} - planned.off):
+            path = paths[k]
             rows, report = plan.cutter_locations(path, guarded, collider, tolerance=LIFTED)
             if not report.ok:
                 blocked[k] = first_blocked(path, rows, report)

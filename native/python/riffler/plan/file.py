@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,8 @@ class Plan:
     """Paths with the tool they are for, and how they came about.
 
     ``cl``: for every path (n, 6) cutter locations, or None. ``part``: a dict with ``name`` and ``sha256``, as by
-    ``part_of``. ``tolerance``: mm. ``provenance``: a dict of strings.
+    ``part_of``. ``tolerance``: mm. ``provenance``: a dict of strings. ``off``: numbers, from 0, of the paths that are
+    not to be cut.
     """
 
     paths: list
@@ -30,6 +32,7 @@ class Plan:
     part: dict = field(default_factory=dict)
     tolerance: float | None = None
     provenance: dict = field(default_factory=dict)
+    off: frozenset = frozenset()
 
 
 def part_of(mesh, name: str) -> dict[str, str]:
@@ -49,19 +52,19 @@ class Texts:
 
     def __init__(self) -> None:
         self.made = 0
-        self._kept: dict[tuple[int, int], tuple[Any, Any, bytes]] = {}  # has the objects, so that numbers stay theirs
+        # Has the objects, so that their ids stay theirs.
+        self._kept: dict[tuple[int, int, bool], tuple[Any, Any, bytes]] = {}
 
-    def of(self, paths: list, cl: list) -> list[bytes]:
-        kept = {}
-        for k, (path, rows) in enumerate(zip(paths, cl, strict=True)):
-            key = id(path), id(rows)
+    def of(self, paths: list, cl: list, off: Collection[int] = ()) -> list[bytes]:
+        kept, keys = {}, [(id(path), id(rows), k in off) for k, (path, rows) in enumerate(zip(paths, cl, strict=True))]
+        for k, key in enumerate(keys):
             if key in self._kept:
                 kept[key] = self._kept[key]
             elif key not in kept:
-                kept[key] = path, rows, f"  {_compact(_from_path(path, rows, k))}".encode()
+                kept[key] = paths[k], cl[k], f"  {_compact(_from_path(paths[k], cl[k], k, off=key[2]))}".encode()
                 self.made += 1
         self._kept = kept
-        return [kept[id(path), id(rows)][2] for path, rows in zip(paths, cl, strict=True)]
+        return [kept[key][2] for key in keys]
 
 
 def dumps(plan: Plan, texts: Texts | None = None) -> bytes:
@@ -70,6 +73,8 @@ def dumps(plan: Plan, texts: Texts | None = None) -> bytes:
     cl = list(plan.cl) or [None] * len(plan.paths)
     if len(cl) != len(plan.paths):
         raise ValueError(f"cl: {len(plan.paths)} expected, one for each path, not {len(cl)}")
+    if strangers := sorted(k for k in plan.off if not 0 <= k < len(plan.paths)):
+        raise ValueError(f"off: there is no path {strangers[0]}: the plan has {len(plan.paths)}, from 0")
     data = {
         "format": FORMAT,
         "version": VERSION,
@@ -79,7 +84,7 @@ def dumps(plan: Plan, texts: Texts | None = None) -> bytes:
         "tool": plan.tool.to_dict(),
         "tolerance": plan.tolerance,
     }
-    entries = (texts or Texts()).of(plan.paths, cl)
+    entries = (texts or Texts()).of(plan.paths, cl, plan.off)
     lines = [f" {_compact(name)}: {_compact(value)}" for name, value in data.items()]
     head = '{{\n{},\n "paths": [\n'.format(",\n".join(lines))
     return b"".join((head.encode(), b",\n".join(entries), b"\n ]\n}\n"))
@@ -95,7 +100,7 @@ def save(path, plan: Plan) -> None:
     files.write(path, dumps(plan))
 
 
-def _from_path(path, cl, number: int) -> dict[str, Any]:
+def _from_path(path, cl, number: int, *, off: bool) -> dict[str, Any]:
     out: dict[str, Any] = {
         "radius": path.radius,
         "closed": path.closed,
@@ -103,6 +108,8 @@ def _from_path(path, cl, number: int) -> dict[str, Any]:
         "contacts": path.contacts.tolist(),
         "normals": path.normals.tolist(),
     }
+    if off:
+        out["off"] = True
     if len(path.axes):
         out["interpolation"] = path.interpolation
         out["keys"] = [{"index": k, "axis": list(map(float, axis))} for k, axis in path.keys.items()]
@@ -196,21 +203,26 @@ def _to_plan(data: Any) -> Plan:
         raise _WrongPlaceError("paths: a list expected")
     read = [_to_path(entry, f"paths[{k}]") for k, entry in enumerate(paths)]
     return Plan(
-        paths=[path for path, _ in read],
+        paths=[path for path, _, _ in read],
         tool=tool,
-        cl=[cl for _, cl in read],
+        cl=[cl for _, cl, _ in read],
         part=data["part"],
         tolerance=None if tolerance is None else _number(tolerance, "tolerance"),
         provenance=data["provenance"],
+        off=frozenset(k for k, (_, _, off) in enumerate(read) if off),
     )
 
 
-def _to_path(entry: Any, place: str) -> tuple[Any, np.ndarray | None]:
+def _to_path(entry: Any, place: str) -> tuple[Any, np.ndarray | None, bool]:
+    """The path, its cutter locations, and whether it is off."""
     centres = _array(_get(entry, "centres", place), (-1, 3), f"{place}.centres")
     n = len(centres)
     closed = _get(entry, "closed", place)
     if not isinstance(closed, bool):
         raise _WrongPlaceError(f"{place}.closed: true or false expected")
+    off = entry.get("off", False)
+    if not isinstance(off, bool):
+        raise _WrongPlaceError(f"{place}.off: true or false expected")
     try:
         path = _core.PencilPath(
             _number(_get(entry, "radius", place), f"{place}.radius"),
@@ -226,7 +238,7 @@ def _to_path(entry: Any, place: str) -> tuple[Any, np.ndarray | None]:
     if "axes" in entry:
         path = _with_axes(path, entry, place)
     cl = _array(entry["cl"], (-1, 6), f"{place}.cl") if "cl" in entry else None
-    return path, cl
+    return path, cl, off
 
 
 def _with_axes(path, entry: dict, place: str):

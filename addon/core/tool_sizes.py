@@ -1,0 +1,68 @@
+"""One size or the kind of a tool changed, as a panel's fields do: the others stay as they are as far as they can."""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import lru_cache
+
+import riffler
+
+from . import presets, units
+
+FIRST = {"half_angle": math.radians(5), "tip_half_angle": math.radians(30), "flat_tip": False}
+
+
+@lru_cache(maxsize=8)
+def parsed(text: str) -> dict:
+    """The tool's dictionary of a JSON text that is known to be one; not to be changed."""
+    return json.loads(text)
+
+
+def changed(tool: dict, key: str, value) -> dict:
+    """The dictionary with another `kind` or size. Shank and holder go with the cutter's length, and a rounded edge is
+    no wider than the cutter. ValueError, from riffler, where there is no such tool."""
+    kind = value if key == "kind" else tool["kind"]
+    sizes = {**_first(tool), **{k: v for k, v in tool.items() if k in _all()}}
+    if key != "kind":
+        sizes[key] = value
+    half = sizes["diameter"] / 2
+    sizes["corner_radius"] = min(sizes["corner_radius"], half)
+    if kind != tool["kind"] or key in ("diameter", "length"):
+        sizes["tip_radius"] = min(sizes["tip_radius"], 0.9 * half)
+        widest = 0.9 * half / math.tan(sizes["tip_half_angle"])  # where the first cone would be as wide as that
+        sizes["tip_height"] = units.clean(min(sizes["tip_height"], widest, sizes["length"] / 2))
+        sizes["half_angle"] = max(sizes["half_angle"], _least_angle(kind, sizes))
+    out = presets.tool_dict(kind, sizes, _name(kind, sizes["diameter"]))
+    further = units.clean(sizes["length"] - tool["length"]) if "length" in tool else 0.0
+    for part in ("shank", "holder"):
+        if part in tool:
+            out[part] = [[units.clean(a + further), r, units.clean(b + further), s] for a, r, b, s in tool[part]]
+    riffler.Tool.from_dict(out)
+    return out
+
+
+def _least_angle(kind: str, sizes: dict) -> float:
+    """Of the flank (rad), with which a cone ends within nine tenths of the cutter's length."""
+    half, height = sizes["diameter"] / 2, 0.9 * sizes["length"]
+    if kind == "taper":
+        return math.atan2(half - 0.9 * sizes["tip_radius"], height)
+    if kind == "cone_end":
+        low = sizes["tip_height"] * math.tan(sizes["tip_half_angle"])
+        return math.atan2(half - low, height - sizes["tip_height"])
+    return 0.0
+
+
+def _all() -> set:
+    return {key for keys in presets.SIZES.values() for key in keys}
+
+
+def _first(tool: dict) -> dict:
+    diameter = tool.get("diameter", 6.0)
+    lengths = {"corner_radius": diameter / 6, "tip_radius": diameter / 12, "tip_height": diameter / 6}
+    lengths = {key: units.clean(value) for key, value in lengths.items()}
+    return {"diameter": diameter, "length": 5 * diameter, **FIRST, **lengths}
+
+
+def _name(kind: str, diameter: float) -> str:
+    return f"{presets.LABELS[kind][0]} {units.trim(diameter, 3)} mm"
