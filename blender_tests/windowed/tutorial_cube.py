@@ -96,7 +96,7 @@ def steps(screen):
     assert bpy.context.scene.unit_settings.scale_length == 1
     yield from off_everything(screen, place)
     yield from over_another_sculpt(screen)
-    yield from figure(screen)
+    yield from bear(screen)
 
 
 def volume():
@@ -166,7 +166,7 @@ def carved(screen, *places, **modifiers):
     yield from lessons.brushed(screen, ob, way, steps=6, together=6, **modifiers)
 
 
-def figure(screen):
+def bear(screen):
     """A bear's head: a flat cutter bevels the edges, a ball carves eyes, snout and mouth, all with Mirror on."""
     view, shown, h = screen.area.spaces.active.region_3d, bpy.context.window_manager.riffler, 50.0
     whole = volume()
