@@ -12,10 +12,10 @@ SIDE, RATE, SECONDS = 130.0, 125, 4
 
 
 def spiral():
-    """Pixels of 0.25 mm: a turn in two seconds, 300 to 600 pixels a second."""
+    """Pixels of 0.25 mm: a turn in two seconds, 400 pixels a second."""
     n = RATE * SECONDS
     turn = np.linspace(0, 2 * np.pi * SECONDS / 2, n)
-    radius = np.linspace(100, 200, n)
+    radius = np.linspace(120, 140, n)  # nearly one speed: a faster hand reaches more chunks
     return np.c_[500 + radius * np.cos(turn), 500 + radius * np.sin(turn)].round()
 
 
