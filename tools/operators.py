@@ -45,7 +45,6 @@ TOPICS = {
 # group has, too: those only fill in its button. The other groups have nothing else.
 GROUPS = {
     "tool": ("", "The cutter, of whoever is not given one."),
-    "cutter": ("", "The cutter of the plan's tool: what is set here changes `plan.tool`."),
     "sculpt": ("", "How strokes are made, and what keeps tools out."),
     "plan": ("plan_find", "What the tab *Riffler Plan* plans on, and with what."),
     "verify": ("verify", "The stock that is simulated and verified, and what was found."),
