@@ -10,7 +10,7 @@ import bpy
 from .sculpt import RifflerSculpt
 from .tool import RifflerTool
 
-KINDS = ("BoolProperty", "EnumProperty", "FloatProperty", "IntProperty")
+KINDS = (bpy.props.BoolProperty, bpy.props.EnumProperty, bpy.props.FloatProperty, bpy.props.IntProperty)
 
 
 def passed_on(name, group, place):
@@ -20,11 +20,11 @@ def passed_on(name, group, place):
 
 
 def _is_plain(field):
-    return field.function.__name__ in KINDS and "HIDDEN" not in field.keywords.get("options", ())
+    return field.function in KINDS and "HIDDEN" not in field.keywords.get("options", ())
 
 
 def _field(place, key, field):
-    choice = field.function.__name__ == "EnumProperty"
+    choice = field.function is bpy.props.EnumProperty
 
     def get(_):
         source = getattr(bpy.context.scene.riffler, place)
