@@ -50,7 +50,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         layout = self.layout
         ob = sculpts.active(context)
         if ob is None:
-            lines(layout, "No sculpt is active.", "Make one, or add one by Add > Mesh.", icon="INFO")
+            lines(layout, "No sculpt is active.", "Make one, or Add > Mesh.", icon="INFO")
             if stock.source_object(context) is not None:
                 layout.operator(begin.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT")
             return

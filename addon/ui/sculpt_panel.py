@@ -107,7 +107,7 @@ def looks(stages):
         return []
     shares = {name: f"{name} {100 * ms / whole:.0f} %" for name, ms in times.items()}
     middle, longest = stages.lag()
-    lag = [f"Behind the hand: {middle:.0f} ms, at most {longest:.0f} ms"] if longest else []
+    lag = [f"Lag: {middle:.0f} ms, {longest:.0f} at most"] if longest else []
     return [
         f"A look: {whole:.1f} ms",
         f"{shares['cut']}, {shares['mesh']}",

@@ -174,7 +174,7 @@ def steps(screen):
     screen.area.spaces.active.region_3d.view_distance *= 0.8
     yield 2.0
     tool(screen, "riffler.carve")
-    settings().depth, settings().limit = 1.5, 2.0
+    settings().depth, settings().limit, settings().show_force = 1.5, 2.0, True
     with screen.override():
         bpy.ops.ed.undo_push(message="Settings")  # which undo brings back, too
     yield 1.0
