@@ -1,6 +1,6 @@
 """Does the tutorials in Blender's window, and puts the pictures that they take into docs/images/tutorials.
 
-tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session": of docs/sessions.md)
+tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session": of docs/sessions.md, "cube")
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from shell import PYTHON, ROOT, StepError, main, run, say
 
 TAKEN = ROOT / "out" / "blender" / "tutorials"
 PLACE = ROOT / "docs" / "images" / "tutorials"
-ALSO = {"session": "window_pen"}  # pictures that a test takes on its way
+ALSO = {"session": "window_pen", "cube": "window_cube"}  # pictures that a test takes on its way
 
 
 def entry() -> None:
