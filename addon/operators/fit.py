@@ -3,14 +3,14 @@
 import bpy
 import numpy as np
 
-from ..bl import sculpts, units
+from ..bl import plan_store, sculpts, units
 from ..core import fitting
 from ..core import units as names
 
 
 def others(context):
-    """True where the scene's unit is that of sculpts that are there."""
-    return any(sculpts.is_sculpt(ob) for ob in context.scene.objects)
+    """True where the scene's unit is that of sculpts or plans that are there."""
+    return any(sculpts.is_sculpt(ob) or plan_store.is_plan(ob) for ob in context.scene.objects)
 
 
 def side(context, longest):

@@ -81,6 +81,20 @@ def test_beside_other_sculpts_the_scenes_units_stay_theirs():
     assert np.isclose(p.pitch, 10) and np.isclose(bpy.context.scene.riffler.tool.diameter, 200)
 
 
+def test_beside_a_plan_the_scenes_unit_stays_the_plans():
+    support.scale(1)
+    fit, plan_store = support.part("operators.fit"), support.part("bl.plan_store")
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    assert not fit.others(bpy.context) and fit.side(bpy.context, 2.0) == 100
+    kept, plan_store.is_plan = plan_store.is_plan, lambda ob: ob.name == "Light"
+    try:
+        assert fit.others(bpy.context) and fit.side(bpy.context, 2.0) == 2
+        assert bpy.ops.riffler.make_sculpt() == {"FINISHED"}
+    finally:
+        plan_store.is_plan = kept
+    assert np.isclose(bpy.context.scene.unit_settings.scale_length, 0.001)
+
+
 def test_undo_takes_back_the_stroke_then_the_sculpt_with_the_units():
     cube = bpy.data.objects["Cube"]
     support.select(cube)

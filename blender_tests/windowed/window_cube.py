@@ -85,11 +85,14 @@ def steps(screen):
     # the next one is a stroke like any other
     yield from drag(screen, (-0.6, 0.2, 1), (0.5, -0.5, 1))
     yield lambda: volume() < carved and support.part("drawing.pointer").held is None
+    yield from sized(screen, 7, 3)
     screen.to_view()
-    for expected in (carved, 1e6):
+    for expected in (carved, 1e6):  # no step of the sizes, which stay
         screen.key("Z", ctrl=True)
         yield 1.5
         assert volume() == expected
+        brush = bpy.context.scene.riffler.sculpt
+        assert np.allclose((brush.radius, brush.depth), (7, 3)), (brush.radius, brush.depth)
     screen.key("Z", ctrl=True)
     yield 1.5
     assert "Cube Stock" not in bpy.data.objects and not cube().hide_get() and cube().matrix_world == place
