@@ -1,6 +1,7 @@
 """Does the tutorials in Blender's window, and puts the pictures that they take into docs/images/tutorials.
 
-tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session": of docs/sessions.md, "cube")
+tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session" is of docs/sessions.md,
+                                   "cube" of docs/first-chip.md)
 """
 
 from __future__ import annotations

@@ -409,8 +409,8 @@ def test_the_add_on_is_measured_in_blender(tmp_path):
     done = bench("blender", "--quick", "--json", "--out", out, "--blender", BPY, cwd=ROOT)  # the add-on is there
     assert done.returncode == 0, done.stderr
     (stroke,) = rows(out, "blender", "stroke")
-    # 1.2 mm of a ball's way touch as many tiles whatever the size of the sculpt.
-    assert stroke["events"] == 30 and 1 <= stroke["bricks"] < 12 and 0 < stroke["moved"] < stroke["triangles"] / 5
+    # 1.2 mm of a ball's way touch as many tiles whatever the size of the sculpt, with those at whose borders it went.
+    assert stroke["events"] == 30 and 1 <= stroke["bricks"] < 12 and 0 < stroke["moved"] < stroke["triangles"] / 3
     assert abs(stroke["removed_over"]) < 0.01 and 0 < stroke["p50_s"] <= stroke["p95_s"]
     (undo,) = rows(out, "blender", "undo")
     assert all(undo[f"{name}_s"] > 0 for name in ("undo", "undo_second", "undo_first", "undo_other"))

@@ -161,7 +161,7 @@ def test_an_empty_one_grows_too():
         (((np.nan, 0, 0), None), "lower"),
         ((None, (0, np.inf, 0)), "upper"),
         (((0, 0, 9), (1, 1, 1)), "lower must not be above upper"),
-        (((-1e9, -1e9, -1e9), (1e9, 1e9, 1e9)), "free"),
+        (((-1e9, -1e9, -1e9), (1e9, 1e9, 1e9)), "at most"),
         (((-1e300, 0, 0), None), "."),
     ],
 )

@@ -223,13 +223,15 @@ def test_rays_that_touch_or_run_in_the_side():
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
 def test_a_ray_on_the_boxs_side_or_alone_beyond_it_stands_for_what_is_within(directions):
-    """Of 10.5 pitches the last ray is on the side; of 0.2 the only one is beyond it. As from_mesh has it."""
+    """Of 10.5 pitches the last ray is on the side; of 0.2, across a plate, the only one is beyond it. As from_mesh has
+    it."""
     lying = riffler.Volume.cylinder((0, 0, 0), 5, 10.5, 1, directions, axis=(1, 0, 0))
     shorter = riffler.Volume.cylinder((0, 0, 0), 5, 10, 1, directions, axis=(1, 0, 0))
     assert lying.volume == pytest.approx(1.05 * shorter.volume, rel=1e-12)
     disc = riffler.Volume.cylinder((0, 0, 0), 5, 0.2, 1, directions)
     assert disc.volume == pytest.approx(0.2 * np.pi * 25, rel=0.02)
-    speck = riffler.Volume.sphere((3, 2, 1), 0.1, 1, directions)
+    box = {"lower": (2.9, 1.9, 0.9), "upper": (3.9, 2.9, 1.1)}  # of one ray along z, and a lone layer of cells
+    speck = riffler.Volume.sphere((3.4, 2.4, 1), 0.1, 1, directions, **box)
     assert all(speck.intervals(d)[0].sum() == 1 for d in directions)
     assert np.allclose(speck.intervals("z")[1], [[0.9, 1.1]], atol=1e-12)
 
@@ -257,7 +259,7 @@ def test_what_the_box_cuts_off_looks_out_of_the_box():
         (lambda: riffler.Volume.sphere((0, 0, 0), 1, 0), "pitch"),
         (lambda: riffler.Volume.sphere((1e5, 0, 0), 1e-13, 0.1), "coordinates"),
         (lambda: riffler.Volume.sphere((0, 0, 0), 1, 0.1, "w"), "directions"),
-        (lambda: riffler.Volume.sphere((0, 0, 0), 1e9, 0.1, "xyz"), "free"),
+        (lambda: riffler.Volume.sphere((0, 0, 0), 1e9, 0.1, "xyz"), "at most"),
         (lambda: riffler.Volume.cylinder((0, 0, 0), 1, 0, 0.1), "height"),
         (lambda: riffler.Volume.cylinder((0, 0, 0), 1, np.nan, 0.1), "height"),
         (lambda: riffler.Volume.cylinder((0, 0, 0), 0, 1, 0.1), "radius"),
