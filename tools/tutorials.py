@@ -1,7 +1,7 @@
 """Does the tutorials in Blender's window, and puts the pictures that they take into docs/images/tutorials.
 
-tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session" is of docs/sessions.md,
-                                   "cube" of docs/first-chip.md)
+tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session": docs/sessions.md,
+                                   "cube": docs/first-chip.md)
 """
 
 from __future__ import annotations
