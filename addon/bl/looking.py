@@ -11,7 +11,6 @@ import bpy
 import riffler
 
 from ..core import turn
-from ..core.surroundings import guarded
 from . import events, plan_store, surroundings, turning, units
 
 CLASSES = ()
@@ -121,7 +120,7 @@ def state(scene, near, spot, axis):
 def free_orientations(scene, near, spot, start=riffler.plan.free_orientations):
     """At a spot, with the plan's tolerance and the room beside shank and holder that the scene wants; `start`: may be
     that of riffler.tasks."""
-    tool = guarded(spot.plan.tool, units.clean(scene.riffler.plan.clearance))
+    tool = riffler.plan.with_room(spot.plan.tool, units.clean(scene.riffler.plan.clearance))
     return start(spot.line, spot.index, tool, near.collider, tolerance=spot.plan.tolerance or 0.01)
 
 

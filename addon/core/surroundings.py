@@ -11,8 +11,6 @@ from riffler import tasks
 
 from . import units
 
-PITCH = 0.5  # mm; fixtures are only to be stayed clear of
-FINEST = 500  # voxels across a fixture at most
 FLAT = 1e-6  # of what is flat: thickness to width
 # A triangle that no machine reaches.
 _FAR = np.array([(1e6, 0, 0), (1e6 + 1, 0, 0), (1e6, 1, 0)])
@@ -89,10 +87,6 @@ class Surroundings:
         return State(max(gap, 0.0), piece, other, max(room - tolerance, 0.0))
 
 
-def _pitch(mesh) -> float:
-    return max(PITCH, float(np.max(mesh.bounds[1] - mesh.bounds[0])) / FINEST)
-
-
 def _first(tool) -> str:
     return "shank" if tool.shank else "holder"
 
@@ -117,12 +111,6 @@ def above(tool):
     return body.with_holder(lifted(tool.holder, sliver)), low
 
 
-def guarded(tool, room: float):
-    """The tool with so much (mm) more of shank and holder, for whatever takes only one tool and no room."""
-    wanted = {name: room for name in ("shank", "holder") if getattr(tool, name)}
-    return tool.with_margins(**wanted) if room > 0 and wanted else tool
-
-
 def check_fixture(mesh, name: str) -> None:
     """ValueError with the remedy where a riffler.Mesh is a flat sheet, however it is turned: no volume comes of it."""
     vertices = np.asarray(mesh.vertices, float)
@@ -142,7 +130,7 @@ class Making:
 
     def __init__(self, part, name: str, fixtures=()):
         self._part, self._name, self._fixtures = part, name, [fixture for fixture, _ in fixtures]
-        self._volumes = [tasks.from_mesh(mesh, _pitch(mesh)) for _, mesh in fixtures]
+        self._volumes = [tasks.from_mesh(mesh, riffler.plan.fixture_pitch(mesh)) for _, mesh in fixtures]
         self._colliders = None  # of everything, then of each fixture
         self._error = None  # of a volume that could not be made
 

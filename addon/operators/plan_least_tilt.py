@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
+import riffler
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty
 
 from ..bl import findings, plan_curves, plan_fit, plan_states, plan_store, replan, surroundings, timeline, units
 from ..core import keys, locating, tilting
 from ..core import units as names
 from ..core.job import AfterJob
-from ..core.surroundings import guarded
 from . import plan_keys, shared
 from .plan_work import TimelineWork
 
@@ -81,7 +81,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
         taken, clearance = surroundings.take(context, ob), units.clean(context.scene.riffler.plan.clearance)
         self._notes = plan_fit.notes(context, plan, taken)
         sizes = {
-            "tool": guarded(plan.tool, clearance),
+            "tool": riffler.plan.with_room(plan.tool, clearance),
             "tolerance": plan.tolerance or 0.01,
             "count": self.count,
             "limit": None if self.limit >= math.pi - 1e-6 else (axis, float(self.limit)),

@@ -13,7 +13,6 @@ from ..bl.turning import plan_object
 from ..core import locating, problems
 from ..core import units as names
 from ..core.job import AfterJob, ChainJob
-from ..core.surroundings import guarded
 from ..properties import GivenOptions
 from ..properties.machines import MACHINES
 from . import shared
@@ -52,7 +51,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         open_ones = set(plan_store.unresolved(plan)) if same else set(turned)
         self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
         self._found = []
-        tool = guarded(plan.tool, clearance)  # the cutter touches what it cuts
+        tool = riffler.plan.with_room(plan.tool, clearance)  # the cutter touches what it cuts
         sizes = {"tolerance": plan.tolerance or 0.01, "max_lift": units.clean(self.max_lift)}
         return AfterJob(taken, lambda near: self._all(plan, tool, near, sizes))
 

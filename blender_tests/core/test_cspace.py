@@ -136,9 +136,9 @@ def test_surroundings_are_made_while_others_work_and_errors_are_raised_by_the_re
 
 def test_a_guarded_tool_has_more_of_what_it_has():
     straight = riffler.Tool.ball(6, 25).with_holder([(40, 14, 70, 14)])
-    wide = surroundings.guarded(straight, 2.0)
+    wide = riffler.plan.with_room(straight, 2.0)
     assert max(r for _, _, _, r in wide.holder) == pytest.approx(16) and wide.diameter == straight.diameter
     assert not wide.shank
-    assert surroundings.guarded(TOOL, 0.0) is TOOL
+    assert riffler.plan.with_room(TOOL, 0.0) is TOOL
     bare = riffler.Tool.ball(6, 25)
-    assert surroundings.guarded(bare, 2.0) is bare
+    assert riffler.plan.with_room(bare, 2.0) is bare

@@ -21,7 +21,7 @@ from .arguments import MESHES, add_machine_option, finite, input_file, length, m
 from .carve import read_program
 from .console import Console, number, times
 from .shapes import read_part
-from .surroundings import RODS, add_fixtures, add_rods, fixture, rods, with_rods
+from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
 
 HELP = "write NC code for a machine"
 __doc__ += f"""
@@ -306,10 +306,9 @@ def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
     room = finite(arguments.clearance, "--clearance")
     if room < 0:
         raise ValueError(f"--clearance {arguments.clearance}: must not be negative")
-    wanted = {what: room for what in RODS if getattr(tool, what)}
-    if not wanted:
+    if not (tool.shank or tool.holder):
         raise ValueError("--clearance: of shank and holder, which --shank and --holder describe")
-    return tool.with_margins(**wanted)
+    return plan.with_room(tool, room)
 
 
 # ---- what is said about it

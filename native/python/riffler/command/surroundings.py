@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-import numpy as np
-
-from .. import Mesh, Tool, Volume
+from .. import Tool, Volume, plan
 from .arguments import MESHES, VOLUMES, finite, input_file
 from .console import Console
 from .shapes import from_mesh
 
 RODS = ("shank", "holder")
-PITCH, FINEST = 0.5, 500  # mm of a fixture's rays where nothing says it, and most of them along its largest side
 
 
 def add_rods(parser: argparse.ArgumentParser) -> None:
@@ -64,10 +61,4 @@ def fixture(name: str, console: Console, pitch: float | None = None) -> Volume:
     path = input_file(name, MESHES + VOLUMES)
     if path.suffix.lower() in VOLUMES:
         return Volume.load(path)
-    return from_mesh(path, by_size if pitch is None else pitch, "z", console, "fixtures")
-
-
-def by_size(mesh: Mesh) -> float:
-    """mm from ray to ray of a fixture that no stock says it of."""
-    lower, upper = mesh.bounds
-    return max(PITCH, float(np.max(upper - lower)) / FINEST)
+    return from_mesh(path, plan.fixture_pitch if pitch is None else pitch, "z", console, "fixtures")

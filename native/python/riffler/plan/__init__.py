@@ -2,6 +2,7 @@
 
 from .._core import PencilPath
 from .analysis import analyse
+from .around import fixture_pitch, with_room
 from .file import Plan, Texts, dumps, load, loads, part_of, save
 from .locations import LocationReport, contact_locations, cutter_locations, drop, lift
 from .orientations import FreeOrientations, draw_map, free_orientations, least_tilt
@@ -24,6 +25,7 @@ __all__ = [
     "drop",
     "dumps",
     "engrave",
+    "fixture_pitch",
     "free_orientations",
     "least_tilt",
     "lift",
@@ -34,4 +36,5 @@ __all__ = [
     "pencil",
     "save",
     "swarf",
+    "with_room",
 ]
