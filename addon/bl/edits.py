@@ -9,16 +9,22 @@ CLASSES = ()
 _found = {}  # name of a mesh → whether it was changed
 
 
+def made(ob):
+    """True where Blender's own tools have changed a sculpt's mesh since it was shown. While chunks show the sculpt, its
+    mesh is not what is seen, and nobody has edited it."""
+    return live.of(ob) is None and sculpts.changed(ob.data)
+
+
 def noticed(ob):
-    """Of a sculpt; nobody edits what is shown in chunks, and in Blender's own modes the vertices are elsewhere."""
+    """The same for panels, which are drawn all the time. In Blender's own modes the vertices are not in the mesh yet: a
+    cheaper look has to do."""
     if live.of(ob) is not None:
         return False
     if ob.mode != "OBJECT":
         return sculpts.edited(ob.data)
-    mesh = ob.data
-    if mesh.name not in _found:
-        _found[mesh.name] = sculpts.changed(mesh)
-    return _found[mesh.name]
+    if ob.data.name not in _found:
+        _found[ob.data.name] = made(ob)
+    return _found[ob.data.name]
 
 
 @bpy.app.handlers.persistent
@@ -28,10 +34,7 @@ def _look_again(*_):
 
 @bpy.app.handlers.persistent
 def _on_update(scene, depsgraph):
-    if depsgraph.id_type_updated("MESH"):
-        _found.clear()
-        return
-    if any(update.is_updated_geometry for update in depsgraph.updates):
+    if _found and (depsgraph.id_type_updated("MESH") or any(u.is_updated_geometry for u in depsgraph.updates)):
         _found.clear()
 
 

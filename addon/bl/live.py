@@ -16,7 +16,8 @@ _told = {}  # mark of a sculpt → what went wrong with it last
 
 def of(ob):
     """The Live of that sculpt where somebody works at it, otherwise None."""
-    live = lives.get(ob.riffler.mark) if ob is not None else None
+    # To ask an object that has none yet for its settings gives it some, and undo takes it for another one.
+    live = lives.get(ob.riffler.mark) if lives and ob is not None else None
     return live if live is not None and live.awake and live.object == ob else None
 
 

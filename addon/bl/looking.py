@@ -11,7 +11,7 @@ import bpy
 import riffler
 
 from ..core import turn
-from . import events, plan_store, surroundings, turning, units
+from . import events, plan_store, surroundings, turning, units, views
 
 CLASSES = ()
 PAUSE = 0.1  # s that the frame stands still, before a map is begun
@@ -108,7 +108,7 @@ def _stand(scene, near, wanted):
     _stood = _standing(wanted)
     found = state(scene, near, wanted.spot, wanted.spot.axis)
     _known.text, _known.free = str(found), found.free
-    redraw()
+    views.redraw()
 
 
 def state(scene, near, spot, axis):
@@ -130,7 +130,7 @@ def _map(scene, near, wanted):
     if _shown == wanted.key:
         if _known.old:  # for a moment nobody knew whether something had changed
             _known.old = False
-            redraw()
+            views.redraw()
         return False
     if _task is None or _begun != wanted.key:
         _cancel()
@@ -141,7 +141,7 @@ def _map(scene, near, wanted):
         return True
     _known.map, _known.old, _shown = _task.result(), False, _begun
     _task, maps = None, maps + 1
-    redraw()
+    views.redraw()
     return False
 
 
@@ -150,14 +150,7 @@ def _missing(text):
     _cancel()
     _shown, _stood = _wanted.key, _standing(_wanted)  # not to be tried again before something is another
     _known.text, _known.free, _known.map = text, False, None
-    redraw()
-
-
-def redraw():
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    views.redraw()
 
 
 def _cancel():

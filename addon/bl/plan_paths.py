@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from . import plan_curves, plan_store, replan, simulating, timeline, units
+from . import plan_curves, plan_store, replan, sculpts, simulating, timeline, units, views
 
 
 def follow(row):
@@ -31,18 +31,10 @@ def switch_to(ob, off):
         return
     plan_store.write(ob, replace(plan, off=frozenset(off)))
     show(ob)
-    redraw()
+    views.redraw()  # their lines have other colours now
     simulating.drop_outdated()
     if timeline.pair(ob) is not None:
         replan.sync(bpy.context.scene, ob)
-
-
-def redraw():
-    """The views, whose lines have other colours now."""
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
 
 
 def show(ob):
@@ -62,10 +54,7 @@ def go(context, ob, k):
     plan = plan_store.plan(ob)
     curve = plan_curves.numbered(ob).get(k)
     if curve is not None and curve.visible_get():
-        for other in context.selected_objects:
-            other.select_set(False)
-        curve.select_set(True)
-        context.view_layer.objects.active = curve
+        sculpts.select_only(context, curve)
     if timeline.pair(ob) is not None and replan.fits(ob, plan):
         timeline.go_to(context.scene, replan.layout_of(ob, plan).tracks[k].first)
     place = Vector(np.mean([plan.paths[k].centres.min(axis=0), plan.paths[k].centres.max(axis=0)], axis=0))

@@ -1,6 +1,8 @@
 """A line for each path of a plan, for lists: its name, its length, how far it is, and whether it is on. The plan itself
 has which paths are off (riffler.plan.Plan.off); the lines follow it whenever it is written."""
 
+from collections import Counter
+
 
 def update(p, plan, free):
     """Brings the lines of `p` (properties.RifflerPlanObject) to its plan; `free`: numbers of the paths that are."""
@@ -26,3 +28,8 @@ def _state(k, path, plan, free, blocked):
     if k in blocked:
         return "blocked"
     return "keyed" if len(path.axes) else "unplanned"
+
+
+def counts(p):
+    """{state: how many paths are in it}."""
+    return Counter(row.state for row in p.rows)

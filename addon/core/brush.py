@@ -14,7 +14,8 @@ import numpy as np
 import riffler
 
 from . import json_object
-from .sight import Sight
+from .reach import outline_of
+from .sight import Sight, cross
 from .stroke import Hit, Sample, StrokeMaker, View, settings_for
 
 MODES = ("remove", "add", "soften", "mask", "unmask")
@@ -107,7 +108,7 @@ class Brush:
             string=choice.string,
             **more,
         )
-        outline = np.vstack([line for part, line in self.tool.outline(1e-3 * diameter) if part == "cutter"])
+        outline = outline_of(self.tool)
         return StrokeMaker(settings, outline, self._pick, view)
 
     def _pick(self, x: float, y: float) -> Hit | None:
@@ -157,7 +158,7 @@ class Brush:
 
 
 def across(normal: np.ndarray) -> np.ndarray:
-    """(2, 3) unit vectors square to a unit vector and to each other. np.cross takes ten times as long."""
+    """(2, 3) unit vectors square to a unit vector and to each other."""
     x, y, z = normal.tolist()
     if abs(z) > 0.7:
         size = math.hypot(y, z)
@@ -165,13 +166,12 @@ def across(normal: np.ndarray) -> np.ndarray:
     else:
         size = math.hypot(x, y)
         first = (y / size, -x / size, 0.0)
-    a, b, c = first
-    return np.array([first, (y * c - z * b, z * a - x * c, x * b - y * a)])
+    return np.array([first, cross((x, y, z), first)])
 
 
 def stub(tool, depth: float):
     """The cutter without what stands on its end: put on, a whole one would be a pillar as long as it is."""
-    line = np.vstack([points for part, points in tool.outline(1e-3 * tool.diameter) if part == "cutter"])
+    line = outline_of(tool)
     widest = line[line[:, 0] >= line[:, 0].max() * (1 - 1e-9), 1].min()
     data = tool.to_dict()
     shorter = {k: v for k, v in data.items() if k not in ("shank", "holder")}

@@ -13,7 +13,7 @@ import numpy as np
 from .stroke import View
 
 
-def _cross(a, b):
+def cross(a, b):
     """Of two sequences of three or more floats: np.cross takes ten times as long."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
@@ -38,9 +38,9 @@ class Sight:
         first = [u - a * w for u, w in zip(across, weight, strict=True)]
         second = [v - b * w for v, w in zip(up, weight, strict=True)]
         near = [d + w for d, w in zip(depth, weight, strict=True)]
-        along = _cross(first, second)
+        along = cross(first, second)
         # Where the three planes meet (Cramer's rule).
-        beside, below = _cross(second, near), _cross(near, first)
+        beside, below = cross(second, near), cross(near, first)
         inverse = -1 / sum(n * c for n, c in zip(near[:3], along, strict=True))
         origin = [
             inverse * (first[3] * p + second[3] * q + near[3] * r) for p, q, r in zip(beside, below, along, strict=True)

@@ -4,7 +4,7 @@ cut to cut, once a program was made of the plan."""
 import bpy
 import numpy as np
 
-from ..bl import plan_store, programs, units
+from ..bl import plan_rows, plan_store, programs, units
 from ..core import course, glyphs, path_lines
 from ..core import units as names
 from ..translations import local
@@ -116,17 +116,9 @@ def _draw():
                 batches.draw_lines(made[kind], (*colour[:3], share * colour[3]), width * zoom, size)
 
 
-def counts(ob):
-    """{state: how many paths}"""
-    found = {}
-    for row in ob.riffler.plan.rows:
-        found[row.state] = found.get(row.state, 0) + 1
-    return found
-
-
 def entries(ob, present):
     """The legend's lines: (colour, text)."""
-    number = counts(ob)
+    number = plan_rows.counts(ob.riffler.plan)
     number["cut"] = number.pop("free", 0)
     return [
         (

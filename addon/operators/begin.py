@@ -10,7 +10,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .. import properties
-from ..bl import chunks, live, meshes, refusals, sculpts
+from ..bl import chunks, edits, meshes, refusals, sculpts
 from ..core import fitting
 from ..core import units as names
 from ..translations import local
@@ -40,7 +40,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         if context.region_data is None:
             return shared.deny(cls, "Use it in a 3D view")
         ob = sculpts.active(context)
-        if refusal(context) or ob is None or edited(ob):
+        if refusal(context) or ob is None or edits.made(ob):
             return True
         return shared.deny(cls, "The active sculpt gets the stroke itself")
 
@@ -50,7 +50,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         target = None if self._refused else under(context, event) or stock.source_object(context)
         if not self._refused:
             self._refused = unfit(context, target)
-        if not self._refused and sculpts.is_sculpt(target) and not edited(target):
+        if not self._refused and sculpts.is_sculpt(target) and not edits.made(target):
             sculpts.select_only(context, target)
             return bpy.ops.riffler.stroke("INVOKE_DEFAULT", True, mode=self.mode)
         self._target = "" if self._refused else target.name
@@ -130,11 +130,6 @@ class Heard:
         self.text = text
 
 
-def edited(ob):
-    """True where somebody has to say first what becomes of what Blender's own tools have made of the sculpt."""
-    return live.of(ob) is None and sculpts.changed(ob.data)
-
-
 def under(context, event):
     """The object with a surface that the pointer is on; of a live sculpt's chunk, the sculpt. None where there is
     none."""
@@ -174,7 +169,28 @@ def _fit(chosen, context):
         chosen.diameter = fit.cutter(context, chosen.side)
 
 
-class RIFFLER_OT_make_sculpt(bpy.types.Operator):
+class TakesDrag:
+    """Mixin of operators that ask first, and go on with the drag that was kept."""
+
+    mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"HIDDEN", "SKIP_SAVE"})
+    stroke: StringProperty(
+        name="Stroke",
+        options={"HIDDEN", "SKIP_SAVE"},
+        description="What riffler.stroke takes, with a view that goes from the world to clip space; empty: no stroke",
+    )
+
+    def go_on(self, context):
+        """The drag becomes a stroke on the sculpt that is active now."""
+        if not self.stroke:
+            return {"FINISHED"}
+        data = json.loads(self.stroke)
+        to_world = np.linalg.inv(sculpts.from_world(sculpts.active(context)))
+        matrix = np.array(data["view"]["matrix"], float).reshape(4, 4) @ to_world
+        data["view"]["matrix"] = matrix.ravel().tolist()
+        return bpy.ops.riffler.stroke("EXEC_DEFAULT", True, mode=self.mode, stroke=json.dumps(data))
+
+
+class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
     """Make the object a sculpt, with units, pitch and cutter chosen from its size; the object itself is hidden"""
 
     bl_idname = "riffler.make_sculpt"
@@ -182,12 +198,6 @@ class RIFFLER_OT_make_sculpt(bpy.types.Operator):
     bl_options = set()  # making the sculpt is one undo step, and the stroke another
 
     object: StringProperty(name="Object", options={"HIDDEN", "SKIP_SAVE"}, description="Empty: the active one")
-    mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"HIDDEN", "SKIP_SAVE"})
-    stroke: StringProperty(
-        name="Stroke",
-        options={"HIDDEN", "SKIP_SAVE"},
-        description="What riffler.stroke takes, with a view that goes from the world to clip space; empty: no stroke",
-    )
     side: FloatProperty(
         name="Longest side (mm)",
         min=0.0,
@@ -260,7 +270,7 @@ class RIFFLER_OT_make_sculpt(bpy.types.Operator):
                 ob.select_set(ob in selected)
             context.view_layer.objects.active = active
             return shared.fail(self, error)
-        return stroke_on(context, self.mode, self.stroke) if self.stroke else {"FINISHED"}
+        return self.go_on(context)
 
     # ------------------------------------------------------------------ within
     def _source(self, context):
@@ -279,7 +289,7 @@ class RIFFLER_OT_make_sculpt(bpy.types.Operator):
             _fit(self, context)
 
 
-class RIFFLER_OT_edits_first(bpy.types.Operator):
+class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):
     """Say what becomes of what Blender's own tools have made of the sculpt; then the stroke goes on"""
 
     bl_idname = "riffler.edits_first"
@@ -296,8 +306,6 @@ class RIFFLER_OT_edits_first(bpy.types.Operator):
         options={"SKIP_SAVE"},
         description="What becomes of them",
     )
-    mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"HIDDEN", "SKIP_SAVE"})
-    stroke: StringProperty(name="Stroke", options={"HIDDEN", "SKIP_SAVE"}, description="As of riffler.make_sculpt")
 
     @classmethod
     def poll(cls, context):
@@ -319,17 +327,7 @@ class RIFFLER_OT_edits_first(bpy.types.Operator):
             call("EXEC_DEFAULT", True)
         except RuntimeError as error:
             return shared.fail(self, error)
-        return stroke_on(context, self.mode, self.stroke) if self.stroke else {"FINISHED"}
-
-
-def stroke_on(context, mode, text):
-    """The drag that was kept, on the sculpt that is active now; the view in `text` is from the world to clip space."""
-    data = json.loads(text)
-    matrix = np.array(data["view"]["matrix"], float).reshape(4, 4) @ np.linalg.inv(
-        sculpts.from_world(sculpts.active(context))
-    )
-    data["view"]["matrix"] = matrix.ravel().tolist()
-    return bpy.ops.riffler.stroke("EXEC_DEFAULT", True, mode=mode, stroke=json.dumps(data))
+        return self.go_on(context)
 
 
 def _units(ob):

@@ -68,8 +68,7 @@ class ExportSurface(FileWork):
         ob, path = sculpts.active(context), bpy.path.abspath(self.filepath)
         problems.check_target(path, self.filename_ext)
         shared.check_state(self, context, ob)
-        if live.of(ob) is None:
-            shared.tell_edits(self, ob.data)
+        shared.tell_edits(self, ob)
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name
 

@@ -10,7 +10,7 @@ import numpy as np
 import riffler
 
 from .. import properties
-from ..bl import chosen, events, fixtures, live, pen_session, sculpts, states
+from ..bl import chosen, events, fixtures, pen_session, sculpts, states
 from ..core import brush, problems, reach
 from ..core import units as names
 from ..drawing import force, pace
@@ -185,8 +185,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
             if len(context.scene.riffler.sculpt.maps()) > 1:
                 self.report({"WARNING"}, local(NO_COPIES))
             shared.check_state(self, context, ob)
-            if live.of(ob) is None:  # before 4.0 the mesh of a live one is only the corners of its box
-                shared.refuse_edits(ob)
+            shared.refuse_edits(ob)
             depth = names.clean(context.scene.riffler.sculpt.depth)
             tool = tool_for(mode, riffler.Tool.from_dict(self.tool_dict(context)), depth)
             folder, options = recordings(self), session_options(context, ob, self, mode)

@@ -90,8 +90,8 @@ class RIFFLER_OT_plan_delete_paths(bpy.types.Operator):
             self._delete(context, ob, plan, going)
         except shared.ERRORS as error:
             return shared.fail(self, error)
-        count, left = len(going), names.format_count(len(plan.paths) - len(going))
-        self.report({"INFO"}, f"{ob.name}: {names.format_count(count)} path{'s' * (count > 1)} deleted, {left} left")
+        left = names.format_count(len(plan.paths) - len(going))
+        self.report({"INFO"}, f"{ob.name}: {names.counted(len(going), 'path')} deleted, {left} left")
         return {"FINISHED"}
 
     def _going(self, ob, plan):

@@ -26,7 +26,7 @@ class SculptWork(LongWork):
             refusals.refuse(context, ob)
         else:
             shared.check_state(self, context, ob)
-            shared.tell_edits(self, ob.data) if self.leaves_mesh else shared.refuse_edits(ob)
+            shared.tell_edits(self, ob) if self.leaves_mesh else shared.refuse_edits(ob)
         self._object, self._identity = ob.name, store.identity(ob.data)
         return ob, store.content(ob.data)
 

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from riffler.mesh_notes import notes_on
 
-from ..bl import refusals, sculpts
+from ..bl import edits, refusals, sculpts
 from ..core import json_object, units
 from ..core.problems import capitalised, said
 from ..translations import local
@@ -80,13 +80,13 @@ def busy(cls, context, simulation=True):
 def refuse_edits(ob):
     """ValueError where Blender's own tools have changed the mesh of a sculpt since it was shown: it would be shown anew
     from the volume, and nobody's work is dropped unasked."""
-    if sculpts.changed(ob.data):
+    if edits.made(ob):
         raise ValueError(local(EDITS_FIRST).format(ob.name))
 
 
-def tell_edits(operator, mesh):
-    """A warning where the same is true of what only reads the volume."""
-    if sculpts.changed(mesh):
+def tell_edits(operator, ob):
+    """The same as a warning, for what only reads the volume and leaves the mesh."""
+    if edits.made(ob):
         operator.report({"WARNING"}, local(EDITS_LEFT_OUT))
 
 

@@ -12,7 +12,7 @@ import time
 import bpy
 import riffler
 
-from ..bl import fixtures, live, sculpts
+from ..bl import edits, fixtures, live, sculpts
 from ..core import brush, reach, units
 from ..core.stroke import Sample
 from ..drawing import force, pace, pointer
@@ -82,8 +82,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         global _held
         if self.stroke or bpy.app.background or context.region_data is None:
             return self.execute(context)
-        ob = sculpts.active(context)
-        if live.of(ob) is None and sculpts.changed(ob.data):  # somebody is asked first, and the drag kept meanwhile
+        if edits.made(sculpts.active(context)):  # somebody is asked first, and the drag kept meanwhile
             return bpy.ops.riffler.stroke_elsewhere("INVOKE_DEFAULT", mode=self.mode)
         context.window.cursor_modal_set("WAIT")  # the first stroke brings the sculpt into chunks
         try:

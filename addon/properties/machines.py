@@ -59,7 +59,9 @@ class RifflerMachines(bpy.types.PropertyGroup):
 
     def given(self, machine):
         """The options of a machine that somebody has set, as riffler takes them."""
-        own = self.of(machine)
-        keys = {fact["name"]: fields.identifier(fact["name"]) for fact in _facts(machine)}
-        set_ones = {fact["name"]: fact for fact in _facts(machine) if own.is_property_set(keys[fact["name"]])}
-        return {name: fields.value(fact, getattr(own, keys[name])) for name, fact in set_ones.items()}
+        own, found = self.of(machine), {}
+        for fact in _facts(machine):
+            key = fields.identifier(fact["name"])
+            if own.is_property_set(key):
+                found[fact["name"]] = fields.value(fact, getattr(own, key))
+        return found

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..bl import plan_rows
 from ..bl.turning import plan_object
 from ..core import units as names
 from ..operators import plan_paths
@@ -54,9 +55,7 @@ class RIFFLER_PT_plan_paths(OfPlan, bpy.types.Panel):
 
 def summary(p):
     """“284 paths on, 5204.1 mm: 280 Free, 4 Blocked”, of those that are on."""
-    found = {}
-    for row in p.rows:
-        found[row.state] = found.get(row.state, 0) + 1
+    found = plan_rows.counts(p)
     off = found.pop("off", 0)
     length = names.trim(sum(row.length for row in p.rows if row.on), 1)
     parts = [f"{names.format_count(found[state])} {local(SAID[state])}" for state in SAID if state in found]
