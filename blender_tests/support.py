@@ -95,6 +95,11 @@ def select(ob):
     bpy.context.view_layer.objects.active = ob
 
 
+def is_hidden(ob):
+    """True where it is not drawn: by its eye, or as chunks stand for it."""
+    return part("bl.chunks").is_hidden(ob) or ob.hide_get()
+
+
 def mesh_volume(co, tri):
     """Divergence theorem, by hand: the reference for what the product says."""
     a, b, c = (co[tri[:, k]].astype(float) for k in range(3))

@@ -43,10 +43,6 @@ def take():
     return support.part("bl.programs").take(bpy.context, programs.settings())
 
 
-def hidden(ob):
-    return support.part("bl.chunks").is_hidden(ob) or ob.hide_get()
-
-
 def test_scrubbing_back_and_forth_equals_carving_the_prefix_by_bytes():
     ob = programs.resolved()
     stock = programs.stock()
@@ -55,7 +51,7 @@ def test_scrubbing_back_and_forth_equals_carving_the_prefix_by_bytes():
     scene = bpy.context.scene
     scene.frame_set(1)
     assert bpy.ops.riffler.simulate(source="PLAN") == {"FINISHED"}
-    assert hidden(stock)
+    assert support.is_hidden(stock)
     assert scene.frame_start <= now().course.first and now().course.last <= scene.frame_end
     rows = set()
     for frame in (1, 60, 145, 30, 1, 145, 100, 0, 72):
@@ -67,7 +63,7 @@ def test_scrubbing_back_and_forth_equals_carving_the_prefix_by_bytes():
         assert abs(seen() - now().prefix.volume.volume) < 0.02 * now().prefix.volume.volume
     assert len(rows) >= 6
     assert bpy.ops.riffler.simulate_stop() == {"FINISHED"} and now() is None
-    assert not hidden(stock) and support.part("bl.chunks").shown() == []
+    assert not support.is_hidden(stock) and support.part("bl.chunks").shown() == []
     assert support.part("bl.store").identity(stock.data) == identity
     assert np.array_equal(support.coordinates(stock.data), before)
     assert support.part("bl.plan_store").is_plan(ob)
@@ -113,7 +109,7 @@ def test_an_nc_file_is_simulated_in_the_scene_s_and_in_the_stock_s_frame():
     bpy.context.view_layer.update()
     call = lambda: bpy.ops.riffler.simulate(source="FILE", filepath=path, machine="3-axis")  # noqa: E731
     support.refused(call, "scaled or mirrored", "Clear > Scale")
-    assert now() is None and not hidden(stock)
+    assert now() is None and not support.is_hidden(stock)
 
 
 def block(low, high, pitch=0.5):
@@ -165,14 +161,14 @@ def test_saving_and_undo_end_it():
     support.push("before")
     bpy.ops.riffler.simulate(source="PLAN")
     bpy.ops.wm.save_as_mainfile(filepath=support.out("simulated.blend"), copy=True)
-    assert now() is None and not hidden(bpy.data.objects[name])
+    assert now() is None and not support.is_hidden(bpy.data.objects[name])
     bpy.ops.riffler.simulate(source="PLAN")
     bpy.ops.mesh.primitive_cube_add()
     support.push("cube")
     bpy.ops.ed.undo()
     assert now() is None and support.part("bl.chunks").shown() == []
     stock = bpy.data.objects[name]
-    assert not hidden(stock) and len(stock.data.polygons) == count
+    assert not support.is_hidden(stock) and len(stock.data.polygons) == count
     assert bpy.ops.riffler.simulate(source="PLAN") == {"FINISHED"}
     bpy.ops.wm.read_homefile()
     assert now() is None and not bpy.context.window_manager.riffler.simulating
@@ -186,7 +182,11 @@ def test_a_plan_that_changes_ends_it():
     bpy.ops.riffler.simulate(source="PLAN")
     keyed.insert(keyed.pair(ob)[0], 73, (0, -0.3, 1))
     notice = bpy.context.window_manager.riffler.notice
-    assert now() is None and not hidden(stock) and notice == f"{ob.name}: simulation ended: the plan has changed"
+    assert (
+        now() is None
+        and not support.is_hidden(stock)
+        and notice == f"{ob.name}: simulation ended: the plan has changed"
+    )
     support.refused(bpy.ops.riffler.simulate, "path 1 may collide")
     bpy.ops.riffler.plan_resolve()
     bpy.ops.riffler.simulate(source="PLAN")

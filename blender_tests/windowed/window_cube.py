@@ -3,7 +3,6 @@ over it. The cube stays, Riffler asks, Return is pressed, and the drag is a stro
 then the sculpt. A drag off everything says what to do, a drag over another sculpt strokes that one. At the end the cube
 is a small figure, by the mouse and keys alone."""
 
-import itertools
 import time
 from pathlib import Path
 
@@ -23,32 +22,15 @@ def cube():
     return bpy.data.objects["Cube"]
 
 
-def pixel(screen, place):
-    """In the window, of a place in the world."""
-    region = screen.region()
-    matrix = np.array(screen.area.spaces.active.region_3d.perspective_matrix)
-    sight = support.part("core.sight").Sight(matrix, (region.width, region.height))
-    return (sight.project([place])[0] + (region.x, region.y)).round().astype(int)
-
-
 def drag(screen, *places):
-    way = [pixel(screen, p) for p in places]
-    screen.move(*map(int, way[0]))
-    yield 0.3
-    stroke.press(screen, *way[0], "PRESS")
-    yield 0.1
-    for a, b in itertools.pairwise(way):
-        for share in np.linspace(0, 1, 8)[1:]:
-            screen.move(*map(int, a + share * (b - a)))
-            yield 0.02
-    stroke.press(screen, *way[-1], "RELEASE")
-    yield 0.5
+    """Through places in the world, by the left button."""
+    yield from lessons.brushed(screen, cube(), places, steps=7)
+    yield 0.4
 
 
 def answered(screen, key="RET"):
-    x, y = screen.at
     for value in ("PRESS", "RELEASE"):
-        screen.window.event_simulate(key, value, x=x, y=y)
+        lessons.event(screen, key, value, screen.at)
     yield 0.3
 
 
@@ -78,7 +60,7 @@ def steps(screen):
     assert cube().matrix_world == place and cube().hide_get()
     yield 1.0
     carved = volume()
-    screen.move(*map(int, pixel(screen, (0, -0.3, 1))))
+    screen.move(*map(int, lessons.pixel(screen, cube(), (0, -0.3, 1))))
     yield 0.7
     yield from lessons.picture(screen, "cube-2", lessons.view_box(screen))
 
@@ -143,9 +125,8 @@ def sized(screen, radius, depth):
         screen.to_view()
         for key in ("F", *f"{size:g}", "RET"):
             name = {".": "PERIOD"}.get(key, WORDS[int(key)] if key.isdigit() else key)
-            x, y = screen.at
             for value in ("PRESS", "RELEASE"):
-                screen.window.event_simulate(name, value, x=x, y=y, shift=shift and key == "F")
+                lessons.event(screen, name, value, screen.at, shift=shift and key == "F")
             yield 0.05
     yield 0.2
     found = bpy.context.scene.riffler.sculpt

@@ -36,10 +36,6 @@ def sculpt():
     return bpy.data.objects["Stock"]
 
 
-def hidden():
-    return stroke.module("bl.chunks").is_hidden(sculpt()) or sculpt().hide_get()
-
-
 def groove(screen, y, **more):
     yield from stroke.drag(screen, [(15, y, 20), (45, y, 20)], **more)
 
@@ -53,7 +49,7 @@ def in_mesh(y):
 
 def framed(screen):
     yield from groove(screen, 10)
-    assert stroke.run() is not None and hidden()
+    assert stroke.run() is not None and support.is_hidden(sculpt())
     view = screen.area.spaces.active.region_3d
     view.view_location, view.view_distance = (1.0, 2.0, 3.0), 9.0
     yield 0.5
@@ -84,7 +80,7 @@ def in_modeling(screen):
     before = screen.window.workspace
     screen.window.workspace = bpy.data.workspaces["Modeling"]
     yield lambda: sculpt().mode == "EDIT" and not stroke.module("bl.working").lives
-    assert not hidden()
+    assert not support.is_hidden(sculpt())
     yield 1.0
     screen.window.workspace = before
     yield lambda: sculpt().mode == "OBJECT"
@@ -101,7 +97,7 @@ def from_the_header(screen):
         assert bpy.context.active_object == sculpt()  # whose modes the header's menu has
         bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
     yield lambda: not stroke.module("bl.working").lives
-    assert sculpt().mode == "SCULPT" and not hidden() and in_mesh(32)
+    assert sculpt().mode == "SCULPT" and not support.is_hidden(sculpt()) and in_mesh(32)
     yield 1.0
     before = support.coordinates(sculpt().data)
     yield from screen.drag([tuple(map(int, stroke.pixel(screen, (x, 50, 20)))) for x in (20, 25, 30, 35, 40)], 0.1)

@@ -24,10 +24,6 @@ def there():
     return now().prefix.row == wanted and not bpy.app.timers.is_registered(support.part("bl.simulating")._tick)
 
 
-def hidden(ob):
-    return support.part("bl.chunks").is_hidden(ob) or ob.hide_get()
-
-
 def steps(screen):
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     with screen.override():
@@ -68,7 +64,7 @@ def simulated(screen, stock):
         scene.frame_set(frame)
         yield there
         whole = now().prefix.volume.copy()
-        assert hidden(stock) and 0 < now().prefix.row < now().prefix.rows - 1
+        assert support.is_hidden(stock) and 0 < now().prefix.row < now().prefix.rows - 1
         left = programs_volume(now().prefix.row)
         assert whole.to_bytes() == left
     yield 0.5
@@ -81,7 +77,7 @@ def simulated(screen, stock):
         bpy.ops.screen.animation_cancel()
     screen.key("ESC")
     yield lambda: now() is None
-    assert not hidden(stock) and support.part("bl.chunks").shown() == []
+    assert not support.is_hidden(stock) and support.part("bl.chunks").shown() == []
     yield 0.5
 
 
@@ -106,7 +102,7 @@ def verified(screen, stock):
             "RUNNING_MODAL"
         }
     yield lambda: not bpy.context.window_manager.riffler.running
-    assert verify.kinds() == ["gouge"] and hidden(stock)
+    assert verify.kinds() == ["gouge"] and support.is_hidden(stock)
     index = 0
     with screen.override():
         bpy.ops.riffler.finding_go("INVOKE_DEFAULT", of="VERIFY", index=index)
@@ -130,4 +126,4 @@ def verified(screen, stock):
     with screen.override():
         bpy.ops.riffler.verify_clear("EXEC_DEFAULT", True)
     yield 0.5
-    assert not hidden(stock) and screen.area.spaces.active.shading.color_type == "MATERIAL"
+    assert not support.is_hidden(stock) and screen.area.spaces.active.shading.color_type == "MATERIAL"
