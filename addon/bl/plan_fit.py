@@ -19,7 +19,7 @@ def _shape(tool):
 
 
 def _sized(scene):
-    """What somebody who has said that a part's size is right has said it of."""
+    """The part and the unit that an answer about its size holds for."""
     return f"{scene.riffler.plan.part.name} {units.mm_per_unit(scene):g}"
 
 

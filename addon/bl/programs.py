@@ -60,8 +60,8 @@ def numbered(paths):
 
 
 def made_of(context, ob):
-    """The riffler.Program that was made last of a plan, as long as it is that plan's and led as the panel says; or
-    None."""
+    """The riffler.Program that was made last of a plan; None once the plan, or how the panel links its paths, has
+    changed."""
     mark, program = plan_states.state(ob).program
     return program if mark == _mark(context, ob) else None
 

@@ -58,8 +58,8 @@ def flat(ob, matrix=None):
 
 
 def sheared(ob, matrix=None):
-    """Why an object cannot have something put at its place, or nothing: Blender drops the shear of whatever is put
-    there, so that would not be at the same place. `matrix`: of the world, if not its own."""
+    """Why nothing can be put at an object's place, or nothing: Blender drops the shear, so it would lie elsewhere.
+    `matrix`: of the world, if not its own."""
     if not _is_sheared(_axes(ob, matrix)):
         return ""
     return f"{ob.name} is sheared: {BY_CONSTRAINT if ob.parent is None else CLEAR_PARENT}"

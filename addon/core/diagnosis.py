@@ -80,7 +80,7 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
 
 
 def _with_numpy(machine: Machine) -> list[str]:
-    """Steps where numpy is what is missing: whatever else is installed stays as it is."""
+    """Steps to install numpy alone."""
     if not machine.system_python:
         return ["numpy is missing or too old in this Python: install Blender from blender.org, which carries it."]
     install = next((NUMPY[name] for name in machine.distribution if name in NUMPY), "install its package of numpy")

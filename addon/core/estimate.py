@@ -41,7 +41,7 @@ def check_block(size, pitch: float) -> None:
 
 
 def too_thin(name: str, pitch: float) -> str:
-    """What is said of a sculpt that would have material, and nothing to be seen."""
+    """The error for a sculpt whose material lies between the rays, so that its mesh would be empty."""
     return f"Nothing of {name} is thick enough for a pitch of {pitch:g} mm: take a finer one"
 
 

@@ -1,4 +1,4 @@
-"""Units, pitch and cutter that suit an object of some size, for whoever begins to sculpt it."""
+"""The unit, pitch and cutter that suit an object of a given size, to begin sculpting with."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from . import units
 
 FEW_RAYS = 50  # along the longest side: fewer show no detail
-BEGIN_RAYS = 200  # along the longest side of what somebody begins to sculpt: every look at it is quick
+BEGIN_RAYS = 200  # along the longest side of a new sculpt: fine enough to carve, and quick to show
 HANDY = (10.0, 500.0)  # mm: an object whose longest side lies between is taken to be as large as the scene says
 WANTED = 100.0  # mm: about what the longest side of any other object becomes
 CUTTERS = 10  # diameters of the cutter along the longest side: a chip that is seen
