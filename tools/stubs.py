@@ -18,8 +18,7 @@ STUB = ROOT / "native" / "python" / "riffler" / "_core.pyi"
 HEAD = "# Made by `make stubs` from the built module; not to be edited.\n"
 # What is not of the interface, or differs from one build of it to the next.
 FIXES = [
-    (r"^from \. import bench$", "import types"),
-    (r"^__compiler__: str = .*$", "bench: types.ModuleType\n__compiler__: str"),
+    (r"^__compiler__: str = .*$", "__compiler__: str"),
     (r"^__version__: str = .*$", "__version__: str"),
     (r"(?<=def __next__\(self\) -> )\.\.\.:", "Program:"),  # an iterator that is bound before what it gives
     (r"typing_extensions\.Buffer", "collections.abc.Buffer"),  # its name since Python 3.12

@@ -12,7 +12,7 @@ import riffler
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from riffler import cli
-from riffler.bench import parts, scenes
+from riffler_bench import parts, scenes
 
 TYPES = """<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
 <Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
