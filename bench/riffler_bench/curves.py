@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 SPACING = 0.002  # mm between the points that are looked at
-TOGETHER = 64  # points that share their candidates
+TOGETHER = (4096, 64)  # points that share their candidates: those of the small groups are among those of the large
 
 
 @dataclass(frozen=True)
@@ -51,19 +51,24 @@ class Segments:
         which, share = np.zeros(len(points), int), np.zeros(len(points))
         if not len(self) or not len(points):
             return distance, which, share
-        order = z_order(points)
-        for start in range(0, len(points), TOGETHER):
-            part = order[start : start + TOGETHER]
-            some = points[part]
-            middle = (some.min(0) + some.max(0)) / 2
-            radius = np.linalg.norm(some - middle, axis=1).max()
-            far, _ = apart(middle[None], self.begin, self.end)
-            near = np.flatnonzero(far[0] <= far[0].min() + 2 * radius + 1e-9)
-            d, u = apart(some, self.begin[near], self.end[near])
-            best = d.argmin(1)
-            rows = np.arange(len(some))
-            distance[part], which[part], share[part] = d[rows, best], near[best], u[rows, best]
+        order, (many, few) = z_order(points), TOGETHER
+        for start in range(0, len(points), many):
+            group = order[start : start + many]
+            candidates = self._near(points[group], np.arange(len(self)))
+            for first in range(0, len(group), few):
+                part = group[first : first + few]
+                near = self._near(points[part], candidates)
+                d, u = apart(points[part], self.begin[near], self.end[near])
+                best, rows = d.argmin(1), np.arange(len(part))
+                distance[part], which[part], share[part] = d[rows, best], near[best], u[rows, best]
         return distance, which, share
+
+    def _near(self, points: np.ndarray, among: np.ndarray) -> np.ndarray:
+        """Those of the segments `among` that can be nearest to one of the points."""
+        middle = (points.min(0) + points.max(0)) / 2
+        radius = np.linalg.norm(points - middle, axis=1).max()
+        far, _ = apart(middle[None], self.begin[among], self.end[among])
+        return among[far[0] <= far[0].min() + 2 * radius + 1e-9]
 
 
 def z_order(points: np.ndarray) -> np.ndarray:
