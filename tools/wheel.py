@@ -56,8 +56,6 @@ def sources(distribution: Distribution = RIFFLER) -> list[Path]:
         folders.append(distribution.project)
     for folder in folders:
         files += (f for f in folder.rglob("*") if f.is_file() and f.suffix not in {".so", ".pyc"})
-    # Configuring reads these; nothing is built by them.
-    files += (f for name in BESIDE - distribution.parts for f in (ROOT / "native" / name).glob("CMakeLists.txt"))
     return files
 
 
