@@ -9,7 +9,9 @@ from .core import native
 MODULES = (
     "properties",
     "preferences",
-    "bl.handlers",
+    "bl.attributes",
+    "bl.store",
+    "bl.plan_store",
     "bl.live",
     "bl.edits",
     "bl.tools_kept",
@@ -33,6 +35,7 @@ MODULES = (
     "operators.plan_setup",
     "operators.plan_find",
     "operators.plan_tool",
+    "operators.plan_scene_unit",
     "operators.plan_watch",
     "bl.surroundings",  # hears of changes before those who ask it
     "bl.replan",
@@ -45,13 +48,13 @@ MODULES = (
     "operators.plan_least_tilt",
     "operators.plan_nc",
     "bl.simulating",
-    "operators.simulate",
     "operators.verify",
     "drawing.legend",
     "operators.plan_turn",
     "operators.long",  # after the operators: what runs is cancelled while its class is still there
     "ui.recover_panel",  # on top of the others, when there is something to be said
     "ui.panels",
+    "ui.tool_panel",
     "ui.clay_panel",
     "ui.result_panel",
     "ui.pen_panel",
@@ -64,7 +67,7 @@ MODULES = (
     "ui.sculpt_panel",
     "gizmos.size",
     "gizmos.orientation",
-    "ui.tools",  # last: what its buttons call is there
+    "ui.toolbar",  # last: what its buttons call is there
     "ui.menus",
     "ui.keymaps",
     "translations",

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 
 from ..core import colours
+from . import events
 from .views import views
 
 DISTANCE = "riffler_deviation"  # mm
@@ -80,3 +81,20 @@ def _before():
     """{view: its colours}"""
     kept = bpy.context.window_manager.riffler.shading
     return dict(line.rsplit("/", 1) for line in kept.split("\n") if line)
+
+
+@bpy.app.handlers.persistent
+def _on_history(*_):
+    follow()
+
+
+_HANDLERS = {"undo_post": _on_history, "redo_post": _on_history}
+CLASSES = ()
+
+
+def attach():
+    events.listen(_HANDLERS)
+
+
+def detach():
+    events.ignore(_HANDLERS)

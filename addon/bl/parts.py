@@ -4,8 +4,9 @@ import numpy as np
 import riffler
 
 from ..core import poses
-from ..properties.plan import WITH_SURFACE
 from . import meshes, refusals, units
+
+WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "FONT", "META"}  # types of objects that have a surface, or may have one
 
 
 def surface(ob, depsgraph, to_mm):
@@ -60,11 +61,7 @@ def unfit(ob, scene):
     return ""
 
 
-def fixtures(settings, part):
-    """The objects of the fixtures' collection that have a surface, but the part. ValueError where there is one whose
-    surface would be passed over."""
-    if settings.fixtures is None:
-        return []
-    if why := next(filter(None, map(refusals.instance, settings.fixtures.all_objects)), ""):
-        raise ValueError(f"{why}, or take it out of the fixtures")
-    return [ob for ob in settings.fixtures.all_objects if ob.type in WITH_SURFACE and ob != part]
+def source_object(context):
+    """The object that would become material, or None."""
+    ob = context.object
+    return ob if ob is not None and ob.type in WITH_SURFACE else None

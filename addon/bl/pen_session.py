@@ -13,7 +13,7 @@ from pathlib import Path
 
 import bpy
 
-from ..core import journal, pen
+from ..core import journal, pen, tool_solid
 from . import live
 from .states import SPARE, snapshots
 
@@ -40,7 +40,7 @@ class PenSession:
             self.live = live.begin(context, ob)
             self.live.cut_off = False
             self._take_up()
-            self.live.chunks.show_tool(pen.solid(tool.outline(0.02 * tool.diameter)))
+            self.live.chunks.show_tool(tool_solid.solid(tool.outline(0.02 * tool.diameter)))
         except BaseException:
             self.run.halt()
             self.run.close()

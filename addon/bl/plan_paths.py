@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from . import plan_curves, plan_store, replan, sculpts, simulating, timeline, units, views
+from . import plan_curves, plan_states, plan_store, replan, sculpts, timeline, units, views
 
 
 def follow(row):
@@ -32,7 +32,7 @@ def switch_to(ob, off):
     plan_store.write(ob, replace(plan, off=frozenset(off)))
     show(ob)
     views.redraw()  # their lines have other colours now
-    simulating.drop_outdated()
+    plan_states.tell_followers()
     if timeline.pair(ob) is not None:
         replan.sync(bpy.context.scene, ob)
 

@@ -48,12 +48,20 @@ class State:
     job: object = None  # core.collisions.ClearanceJob
 
 
+followers = []  # functions that are called after a plan has changed
+
 _states = {}
 _known = (-1, ())  # how many objects there were, and the keys of the plans on the timeline
 
 
 def state(plan_ob):
     return _states.setdefault(sculpts.key_of(plan_ob), State())
+
+
+def tell_followers():
+    """A plan has changed: what was made of it may be outdated."""
+    for follower in followers:
+        follower()
 
 
 def forget():

@@ -11,7 +11,8 @@ import riffler
 
 from ..core import record
 from ..core.cache import ContentCache
-from . import packed, plan_rows, refusals, sculpts
+from ..operators import fit
+from . import events, packed, plan_rows, refusals, sculpts
 
 RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
 
@@ -160,3 +161,41 @@ def _shared(ob):
     """True where a copy of the object has the same image."""
     image = ob.riffler.plan.store
     return any(other != ob and other.riffler.plan.store == image for other in bpy.data.objects)
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    clear_cache()
+
+
+@bpy.app.handlers.persistent
+def _on_history(*_):
+    look_again()
+
+
+@bpy.app.handlers.persistent
+def _on_update(scene, depsgraph):
+    """Objects that go to another scene are no more and no fewer."""
+    if depsgraph.id_type_updated("COLLECTION") or depsgraph.id_type_updated("SCENE"):
+        look_again()
+
+
+_HANDLERS = {
+    "load_post": _on_load,
+    "undo_post": _on_history,
+    "redo_post": _on_history,
+    "depsgraph_update_post": _on_update,
+}
+CLASSES = ()
+
+
+def attach():
+    events.listen(_HANDLERS)
+    fit.HOLDERS.append(is_plan)
+
+
+def detach():
+    if is_plan in fit.HOLDERS:
+        fit.HOLDERS.remove(is_plan)
+    events.ignore(_HANDLERS)
+    clear_cache()

@@ -12,7 +12,19 @@ import riffler
 
 from ..core import course, json_object, machine_fields, problems
 from ..core import units as names
-from . import live, plan_fit, plan_states, plan_store, refusals, replan, sculpts, surroundings, timeline, units
+from . import (
+    cut_program,
+    live,
+    plan_fit,
+    plan_states,
+    plan_store,
+    refusals,
+    replan,
+    sculpts,
+    surroundings,
+    timeline,
+    units,
+)
 
 
 # ------------------------------------------------------------------ of a plan
@@ -128,41 +140,6 @@ def options(scene, machine, text=""):
     return given
 
 
-def removing(name, content):
-    """The cuts of a sculpt that a machine can make: those that take material away. ValueError where there is none."""
-    cuts = [c for c in content.cuts if c.mode == "remove"]
-    if not cuts:
-        raise ValueError(f"{name} has no cuts yet: carve it first")
-    return cuts
-
-
-def not_in_cuts(content):
-    """What of a sculpt its `removing` cuts do not make, as sentences."""
-    added = sum(cut.mode != "remove" for cut in content.cuts)
-    masked = sum(cut.mode == "remove" and cut.masked for cut in content.cuts)
-    said = []
-    if added:
-        said.append(f"No machine can put material on: left out {names.counted(added, 'stroke')} that did")
-    if masked:
-        said.append(f"Cuts made beside a mask: {masked}. They cut what it protected, too")
-    if content.shaped:
-        said.append("Only cuts are in it: no crop, smoothing or relief, and no edits of the mesh")
-    return said
-
-
-def of_cuts(name, cuts, volume, feed, spindle):
-    """The program of these cuts of a sculpt, in its own frame."""
-    return riffler.Program.from_cl(
-        [c.poses for c in cuts],
-        tools=[riffler.Tool.from_dict(c.tool) for c in cuts],
-        feed=feed,
-        spindle=spindle,
-        # retracts clear the stock as it was before the first cut
-        occupied=(volume.lower, volume.upper),
-        provenance={"stock": name},
-    )
-
-
 # ------------------------------------------------------------------ on a stock
 @dataclass
 class Setup:
@@ -249,11 +226,11 @@ def _new(name, program, where, **more):
 
 def _cuts(context, ob):
     settings, content = context.scene.riffler.nc, live.content(ob)
-    v, cuts = content.volume, removing(ob.name, content)
-    program = of_cuts(ob.name, cuts, v, units.clean(settings.feed), units.clean(settings.spindle))
+    v, cuts = content.volume, cut_program.removing(ob.name, content)
+    program = cut_program.of_cuts(ob.name, cuts, v, units.clean(settings.feed), units.clean(settings.spindle))
     out = _new(f"{ob.name}'s cuts", program, _timed(context.scene, program), machine=settings.post, in_machine=True)
     out.stock = riffler.Volume.block(v.lower, v.upper, v.pitch, v.directions)
-    out.sculpt, out.to_world, out.notes = ob.name, _rigid(context, ob), tuple(not_in_cuts(content))
+    out.sculpt, out.to_world, out.notes = ob.name, _rigid(context, ob), tuple(cut_program.not_in_cuts(content))
     return out
 
 

@@ -17,7 +17,7 @@ import riffler
 
 from ..core import keys, motion, path_names, playback
 from ..core.surroundings import nothing
-from . import events, plan_collisions, plan_states, plan_store, simulating, timeline, units
+from . import events, plan_collisions, plan_states, plan_store, timeline, units
 from .plan_states import Baked, on_timeline, rendering, scene_of, state
 
 CLASSES = ()
@@ -67,7 +67,7 @@ def sync(scene, plan_ob):
     except ERRORS as error:
         now.problems.append(str(error))
     if now.changes:
-        simulating.drop_outdated()
+        plan_states.tell_followers()
 
 
 def _take_keys(plan_ob, plan, tool, now):

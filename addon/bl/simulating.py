@@ -11,19 +11,21 @@ import time
 import bpy
 import riffler
 
-from ..core import pen
+from .. import properties
+from ..core import tool_solid
+from ..core import units as names
 from ..core.prefix import Prefix
 from ..core.problems import said
-from . import chunks, events, plan_store, sculpts, states, timeline
+from ..operators import shared
+from . import chunks, events, plan_states, plan_store, programs, replan, sculpts, states, timeline
 
-CLASSES = ()
 BUDGET, PAUSE = 0.02, 0.01  # s of carving, and between two lots of it
 SHOWN = 0.15  # s between two pictures of a stock that is still catching up
 _now = None
 
 
 class Simulation:
-    """Of a bl.programs.Setup. `prefix.volume` is the stock as it is shown."""
+    """Of a programs.Setup. `prefix.volume` is the stock as it is shown."""
 
     def __init__(self, context, setup):
         ob = bpy.data.objects[setup.sculpt]
@@ -70,7 +72,7 @@ class Simulation:
             tool, pose = self.prefix.pose(self.prefix.row)
             if tool is not self._tool:
                 self._tool = tool
-                self.chunks.show_tool(pen.solid(tool.outline()))
+                self.chunks.show_tool(tool_solid.solid(tool.outline()))
             self.chunks.place_tool(pose)
 
 
@@ -176,10 +178,77 @@ _HANDLERS = {
 }
 
 
+# ---------------------------------------------------------------------- operators
+def program_poll(cls, context):
+    """True where there may be a program on a stock."""
+    if not shared.object_mode(cls, context):
+        return False
+    if programs.stock_object(context) is None:
+        return shared.deny(cls, programs.no_stock(context))
+    return True
+
+
+class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, bpy.types.Operator):
+    """Show the stock as the program leaves it at the current frame: play, or drag the frame. Esc in the view ends it"""
+
+    bl_idname = "riffler.simulate"
+    bl_label = "Simulate"
+    bl_options = {"REGISTER"}  # what is shown is no step of undo
+
+    @classmethod
+    def poll(cls, context):
+        return program_poll(cls, context) and not shared.busy(cls, context, simulation=False)
+
+    def execute(self, context):
+        try:
+            end()
+            replan.flush()  # the program is that of the keys as they are now
+            setup = programs.take(context, self)
+            now = begin(context, setup)
+            if now is None:
+                raise ValueError(context.window_manager.riffler.notice)
+        except shared.ERRORS as error:
+            end()
+            return shared.fail(self, error)
+        first, last = now.course.first, now.course.last
+        timeline.show_range(context.scene, first, last)
+        count = names.counted(len(setup.program.poses), "row")
+        done = f"{setup.name}: {count} at frames {first} to {last}. Esc in the view ends it"
+        shared.tell_all(self, done, setup.notes)
+        return {"FINISHED"}
+
+    def invoke(self, context, event):
+        return self.execute(context)
+
+
+class RIFFLER_OT_simulate_stop(bpy.types.Operator):
+    """End the simulation: the stock is seen as it is"""
+
+    bl_idname = "riffler.simulate_stop"
+    bl_label = "End Simulation"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        if active() is None:
+            return shared.deny(cls, "Nothing is being simulated")
+        return True
+
+    def execute(self, context):
+        end()
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_simulate, RIFFLER_OT_simulate_stop)
+
+
 def attach():
     events.listen(_HANDLERS)
+    plan_states.followers.append(drop_outdated)
 
 
 def detach():
+    if drop_outdated in plan_states.followers:
+        plan_states.followers.remove(drop_outdated)
     events.ignore(_HANDLERS)
     end()

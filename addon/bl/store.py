@@ -1,7 +1,9 @@
 """The sculpt's data inside the .blend: a packed image that the mesh points to.
 
 The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and volume as one thing, and it goes when
-the mesh goes. A copy of a mesh shares the image until one of the two is written.
+the mesh goes. A copy of a mesh shares the image until one of the two is written. Sculpts need no handler of undo and
+redo: Blender brings back the mesh together with the content id of its volume, and the volume of that id is in the cache
+or in the packed image that came back too.
 """
 
 import bpy
@@ -9,7 +11,7 @@ import riffler
 
 from ..core import record
 from ..core.cache import Content, ContentCache
-from . import packed
+from . import events, packed
 
 TOKEN = "riffler_token"  # on the image: the state of a live sculpt that it has (bl/live.py)
 _cache = ContentCache()
@@ -78,3 +80,21 @@ def write(mesh, content, token="", made=None):
 
 def _shared(mesh, image):
     return any(m != mesh and m.riffler.store == image for m in bpy.data.meshes)
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    clear_cache()  # another file: the memory is worth more than what it held
+
+
+_HANDLERS = {"load_post": _on_load}
+CLASSES = ()
+
+
+def attach():
+    events.listen(_HANDLERS)
+
+
+def detach():
+    events.ignore(_HANDLERS)
+    clear_cache()

@@ -14,7 +14,7 @@ import numpy as np
 import riffler
 
 from ..core.surroundings import Making, Surroundings
-from . import events, parts, units
+from . import events, parts, refusals, units
 from .plan_states import scene_of
 
 CLASSES = ()
@@ -156,7 +156,7 @@ def _objects(context, ob):
     part = part_of(context.scene, ob)
     if why := parts.unfit(part, context.scene):
         raise ValueError(why)
-    fixtures = parts.fixtures(context.scene.riffler.plan, part)
+    fixtures = fixture_objects(context.scene.riffler.plan, part)
     return part, fixtures, (part.name, *(f.name for f in fixtures), units.mm_per_unit(context.scene))
 
 
@@ -190,3 +190,13 @@ def attach():
 def detach():
     events.ignore(_HANDLERS)
     _kept.clear()
+
+
+def fixture_objects(settings, part):
+    """The objects of the fixtures' collection that have a surface, but the part. ValueError where there is one whose
+    surface would be passed over."""
+    if settings.fixtures is None:
+        return []
+    if why := next(filter(None, map(refusals.instance, settings.fixtures.all_objects)), ""):
+        raise ValueError(f"{why}, or take it out of the fixtures")
+    return [ob for ob in settings.fixtures.all_objects if ob.type in parts.WITH_SURFACE and ob != part]

@@ -14,7 +14,7 @@ import math
 import bpy
 import numpy as np
 
-from ..core import collisions, path_names, pen, quaternions
+from ..core import collisions, path_names, quaternions, tool_solid
 from . import meshes, units, versions
 
 TOOL, MOTION, PLAN = "riffler_tool", "riffler_motion", "riffler_plan"
@@ -85,7 +85,7 @@ def make(context, plan_ob, tool):
     shown.lock_scale = (True, True, True)
     shown.rotation_mode = ghost.rotation_mode = "QUATERNION"
     _follow(shown, ghost)
-    vertices, triangles = pen.solid(tool.outline())
+    vertices, triangles = tool_solid.solid(tool.outline())
     meshes.fill(shown.data, vertices / units.mm_per_unit(context.scene), triangles)
     shown[UNIT] = units.mm_per_unit(context.scene)
     shown[PLAN] = ghost[PLAN] = plan_ob

@@ -3,9 +3,9 @@
 import bpy
 import numpy as np
 
-from ..bl import looking, turning
+from ..bl import looking, turning, views
 from ..core import cspace, glyphs, turn
-from . import batches, views
+from . import batches
 
 CLASSES = ()
 CELL = 8.0  # pixels at a scale of 1

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
+from ..bl import views
 from ..core import glyphs, scale, units
-from . import bars, batches, views
+from . import bars, batches
 
 FORCE, TORQUE, BEYOND = (0.98, 0.62, 0.12), (0.25, 0.62, 0.98), (0.95, 0.15, 0.12)
 LENGTH, WIDTH = 140.0, 6.0  # pixels: an arrow at the limit, its shaft

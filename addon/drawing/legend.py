@@ -2,9 +2,9 @@
 
 import bpy
 
-from ..bl import attributes
+from ..bl import attributes, views
 from ..core import colours
-from . import bars, batches, views
+from . import bars, batches
 
 CORNER = (90.0, 40.0)  # pixels from the view's lower right, the sidebar not counted
 

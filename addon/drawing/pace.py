@@ -6,7 +6,7 @@ while a renderer in software is the processor.
 
 import time
 
-from . import views
+from ..bl import views
 
 _in_views = views.InViews()
 _stages, _begun = None, 0.0

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..bl import hiding, pen_session, plan_store, turning, units
+from ..bl import hiding, pen_session, plan_store, turning, units, views
 from ..core import glyphs
-from . import batches, views
+from . import batches
 
 CLASSES = ()
 NEAR = 24.0  # pixels from the pointer to a contact that it points at

@@ -4,11 +4,11 @@ cut to cut, once a program was made of the plan."""
 import bpy
 import numpy as np
 
-from ..bl import plan_rows, plan_store, programs, units
+from ..bl import plan_rows, plan_store, programs, units, views
 from ..core import course, glyphs, path_lines
 from ..core import units as names
 from ..translations import local
-from . import bars, batches, views
+from . import bars, batches
 
 CLASSES = ()
 # Label, colour and width in pixels of each kind; the order is that of core/path_lines.py.

@@ -6,10 +6,9 @@ Blender draws cursors over the finished view, so following the pointer costs no 
 
 import numpy as np
 
-from ..bl import live, meshes, sculpts, units
+from ..bl import live, meshes, parts, sculpts, units
 from ..core import brush, fitting, glyphs, poses, symmetry
 from ..core.sight import Sight
-from ..properties.plan import WITH_SURFACE
 from . import batches
 
 COLOURS = {
@@ -119,7 +118,7 @@ def _before(context, region, space, at):
     """Where no sculpt is active: a ring as wide as the cutter would be on the active object if it were one
     (core/fitting.py); without an object, any ring."""
     ob, pixels = context.object, 0.0
-    if ob is not None and ob.type in WITH_SURFACE and min(ob.dimensions) > 0:
+    if ob is not None and ob.type in parts.WITH_SURFACE and min(ob.dimensions) > 0:
         middle = meshes.matrix(ob.matrix_world) @ np.append(np.mean(ob.bound_box, axis=0), 1.0)
         seen = Sight(meshes.matrix(space.perspective_matrix), (region.width, region.height))
         pixels = 0.5 * max(ob.dimensions) / fitting.CUTTERS * seen.pixels_per_unit(middle[:3])

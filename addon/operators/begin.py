@@ -9,12 +9,11 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 
-from .. import properties
-from ..bl import chunks, edits, meshes, refusals, sculpts
+from ..bl import chunks, edits, meshes, parts, refusals, sculpts
 from ..core import fitting
 from ..core import units as names
 from ..translations import local
-from . import fit, shared, stock
+from . import fit, sculpt_work, shared
 from .stroke import MODES, MOVES, sample
 
 WIDE = 70  # characters in a line of a popup
@@ -47,7 +46,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
     def invoke(self, context, event):
         """The drag belongs to this operator whatever comes of it, so that nothing is moved or selected by it."""
         self._refused, self._rows, self._begin = refusal(context), [], time.perf_counter()
-        target = None if self._refused else under(context, event) or stock.source_object(context)
+        target = None if self._refused else under(context, event) or parts.source_object(context)
         if not self._refused:
             self._refused = unfit(context, target)
         if not self._refused and sculpts.is_sculpt(target) and not edits.made(target):
@@ -116,7 +115,7 @@ def refusal(context):
     if shared.busy(heard, context):
         return heard.text
     ob = sculpts.active(context)
-    if ob is not None and not shared.sculpt_poll(heard, context):
+    if ob is not None and not sculpt_work.sculpt_poll(heard, context):
         return heard.text
     return ""
 
@@ -153,7 +152,7 @@ def unfit(context, ob):
         return refusals.instance(context.object) or NOTHING
     if why := refusals.instance(ob):
         return why
-    if ob.type not in properties.WITH_SURFACE:
+    if ob.type not in parts.WITH_SURFACE:
         return NOTHING
     if ob.name not in context.view_layer.objects or not ob.visible_get():  # one that the pointer is on all the same
         stands = (o for o in context.view_layer.objects if o.instance_collection is not None)
@@ -274,7 +273,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
 
     # ------------------------------------------------------------------ within
     def _source(self, context):
-        return bpy.data.objects.get(self.object) if self.object else stock.source_object(context)
+        return bpy.data.objects.get(self.object) if self.object else parts.source_object(context)
 
     def _choose(self, context):
         """Whatever was not chosen, from the object's size."""
@@ -309,7 +308,7 @@ class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return shared.sculpt_poll(cls, context)
+        return sculpt_work.sculpt_poll(cls, context)
 
     def invoke(self, context, event):
         return context.window_manager.invoke_props_dialog(self, width=320)

@@ -14,12 +14,12 @@ from ..bl.curves import deformed
 from ..core import reach, units
 from ..core.job import Cut, CutJob
 from ..translations import local
-from . import paths, shared
+from . import paths, sculpt_work
 from .files import FileWork
 from .sculpt_work import SculptWork
 
 
-class CutShell(shared.TakesTool, SculptWork):
+class CutShell(sculpt_work.TakesTool, SculptWork):
     """Mixin; a subclass has `make_cuts(context, ob)`, which returns them."""
 
     doing = "Cutting"

@@ -7,12 +7,12 @@ from bpy_extras.io_utils import ExportHelper
 from riffler import tasks
 
 from .. import properties
-from ..bl import live, programs, sculpts
+from ..bl import cut_program, live, sculpts
 from ..core import poses, problems, threemf_out
 from ..core import units as names
 from ..core.job import AfterJob, PiecesJob, TaskJob
 from ..translations import local
-from . import paths, shared
+from . import paths, sculpt_work, shared
 from .files import FileWork
 
 
@@ -22,7 +22,7 @@ class Export(ExportHelper):
     @classmethod
     def poll(cls, context):
         if sculpts.active(context) is None:
-            return shared.deny(cls, shared.no_sculpt(context))
+            return shared.deny(cls, sculpt_work.no_sculpt(context))
         return True
 
     def execute(self, context):
@@ -30,7 +30,7 @@ class Export(ExportHelper):
             path = bpy.path.abspath(self.filepath)
             problems.check_target(path)
             ob = sculpts.active(context)
-            shared.check_state(self, context, ob)
+            sculpt_work.check_state(self, context, ob)
             done = self.write(context, ob, path)
         except shared.ERRORS as error:
             return shared.fail(self, error)
@@ -38,9 +38,9 @@ class Export(ExportHelper):
         return {"FINISHED"}
 
     def removing(self, ob, content):
-        """programs.removing, and a word on what is left out."""
-        cuts = programs.removing(ob.name, content)
-        for said in programs.not_in_cuts(content):
+        """cut_program.removing, and a word on what is left out."""
+        cuts = cut_program.removing(ob.name, content)
+        for said in cut_program.not_in_cuts(content):
             self.report({"WARNING"}, local(said))
         return cuts
 
@@ -60,15 +60,15 @@ class ExportSurface(FileWork):
     @classmethod
     def poll(cls, context):
         if sculpts.active(context) is None:
-            return shared.deny(cls, shared.no_sculpt(context))
+            return shared.deny(cls, sculpt_work.no_sculpt(context))
         running = context.window_manager.riffler.running
         return not running or shared.deny(cls, f"{running}: Esc cancels")
 
     def begin(self, context):
         ob, path = sculpts.active(context), bpy.path.abspath(self.filepath)
         problems.check_target(path, self.filename_ext)
-        shared.check_state(self, context, ob)
-        shared.tell_edits(self, ob)
+        sculpt_work.check_state(self, context, ob)
+        sculpt_work.tell_edits(self, ob)
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name
 
@@ -148,7 +148,7 @@ class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
         content = live.content(ob)
         feed, spindle = names.clean(self.feed), names.clean(self.spindle)
         cuts = self.removing(ob, content)
-        program = programs.of_cuts(ob.name, cuts, content.volume, feed, spindle)
+        program = cut_program.of_cuts(ob.name, cuts, content.volume, feed, spindle)
         program.write(path, post=self.post)
         return f"{names.counted(len(cuts), 'cut')}, {names.counted(len(program.poses), 'row')}"
 

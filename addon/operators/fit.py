@@ -3,14 +3,17 @@
 import bpy
 import numpy as np
 
-from ..bl import plan_store, sculpts, units
+from ..bl import sculpts, units
 from ..core import fitting
 from ..core import units as names
+
+# What an object is whose size in mm rests on the scene's unit. Features that make such objects add theirs.
+HOLDERS = [sculpts.is_sculpt]
 
 
 def others(context):
     """True where the scene's unit is that of sculpts or plans that are there."""
-    return any(sculpts.is_sculpt(ob) or plan_store.is_plan(ob) for ob in context.scene.objects)
+    return any(holds(ob) for ob in context.scene.objects for holds in HOLDERS)
 
 
 def side(context, longest):

@@ -8,7 +8,7 @@ from mathutils import Vector
 
 from ..bl import live, meshes, sculpts
 from ..core import poses
-from . import shared
+from . import sculpt_work, shared
 
 SENSOR = 36.0  # mm; a view's lens is one of a sensor as wide (Blender's DEFAULT_SENSOR_WIDTH)
 ROOM = 1.1  # around what is framed
@@ -57,7 +57,7 @@ class RIFFLER_OT_leave(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return shared.sculpt_poll(cls, context)
+        return sculpt_work.sculpt_poll(cls, context)
 
     def execute(self, context):
         try:

@@ -9,8 +9,9 @@ or failed work leaves nothing behind.
 import time
 
 import bpy
+from bpy.props import FloatProperty, StringProperty
 
-from ..bl import events
+from ..bl import events, views
 from ..core.job import RefreshClock, run_through, slice_budget
 from ..translations import local
 from . import shared
@@ -23,6 +24,15 @@ AGAIN, SETTLED = 0.5, 10.0  # s between redraws of the sidebars after the end, a
 CLASSES = ()
 _until = 0.0  # sidebars are drawn again
 _running = None  # the operator whose work runs in a window, if one's does
+
+
+class WorkProgress:
+    running: StringProperty(description="What runs (“Cutting”); empty where nothing does")
+    simulating: StringProperty(description="The program that is simulated; empty where none is")
+    shading: StringProperty(description="How views were shaded before they showed colours of distances")
+    percent: FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100, precision=0)
+    notice: StringProperty(description="What happened to a sculpt that nobody asked for; empty where all is well")
+    text: StringProperty(description="How far it is, in its own words")
 
 
 class LongWork:
@@ -142,7 +152,7 @@ class LongWork:
         state.text = self._job.text or "Esc cancels"
         context.window_manager.progress_update(state.percent)
         _status(context, f"Riffler: {local(self.doing)}, {state.percent:.0f} %    {local('Esc: cancel')}")
-        shared.redraw_sidebars(context)
+        views.redraw_sidebars(context)
 
     def _end(self, context):
         global _running
@@ -152,7 +162,7 @@ class LongWork:
         wm.progress_end()
         wm.riffler.running = ""
         _status(context, None)
-        shared.redraw_sidebars(context)
+        views.redraw_sidebars(context)
         _settle()
 
 
@@ -166,7 +176,7 @@ def _settle():
 
 
 def _redraw():
-    shared.redraw_sidebars(bpy.context)
+    views.redraw_sidebars(bpy.context)
     return AGAIN if time.monotonic() < _until else None
 
 

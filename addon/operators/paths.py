@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import riffler
+from mathutils import Vector
 
 from ..bl import curves as bl_curves
-from ..bl import sculpts, surface
+from ..bl import sculpts
 from ..core import curves, poses, problems
 from ..core import journal as journals
 from ..core.job import Cut
@@ -24,7 +26,7 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
             # The surface bends between the curve's points: look at it every pitch.
             points, tilt = curves.refine(points, tilt, ob.data.riffler.pitch)
             scale = sculpts.shown_mm_per_unit(ob.data)
-            places, normals = surface.nearest(ob, depsgraph, points, scale)
+            places, normals = nearest_on_surface(ob, depsgraph, points, scale)
         if follow:
             distinct = curves.distinct(places)
             points, tilt, normals = places[distinct], tilt[distinct], normals[distinct]
@@ -85,3 +87,18 @@ def to_recording(cuts, volume):
             journal.add_tool(len(tools), cut.tool)
         journal.add_stroke(tools.index(cut.tool) + 1, cut.poses, tolerance=cut.tolerance)
     return journal
+
+
+def nearest_on_surface(ob, depsgraph, points, mm_per_unit):
+    """Nearest points (n, 3) of the sculpt as it is shown and the surface's normals (n, 3) there, in millimetres in its
+    own frame like `points`."""
+    if not ob.data.polygons:
+        raise ValueError("the sculpt has no surface left to follow")
+    evaluated = ob.evaluated_get(depsgraph)
+    places, normals = np.empty_like(points), np.empty_like(points)
+    for k, p in enumerate(points / mm_per_unit):
+        found, place, normal, _ = evaluated.closest_point_on_mesh(Vector(p))
+        if not found:
+            raise ValueError(f"the sculpt has no surface near {points[k]}")
+        places[k], normals[k] = place, normal
+    return places * mm_per_unit, normals

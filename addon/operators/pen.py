@@ -10,12 +10,12 @@ import numpy as np
 import riffler
 
 from .. import properties
-from ..bl import chosen, events, fixtures, pen_session, sculpts, states
+from ..bl import chosen, events, fixtures, pen_session, sculpts, states, views
 from ..core import brush, problems, reach
 from ..core import units as names
 from ..drawing import force, pace
 from ..translations import local
-from . import shared
+from . import sculpt_work, shared
 
 FRAME = 1 / 30  # s from one look to the next
 TELL = 0.2  # s between two changes of what the panel says
@@ -121,7 +121,7 @@ def recordings(settings):
 NO_COPIES = "Mirror and Radial are for strokes of the pointer: a session of a device makes no copies"
 
 
-class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.Operator):
+class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.types.Operator):
     """Sculpt with a pen or another device, until Esc or until this is called again"""
 
     bl_idname = "riffler.pen_sculpt"
@@ -145,7 +145,7 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
 
     @classmethod
     def poll(cls, context):
-        return pen_session.running is not None or shared.sculpt_poll(cls, context)
+        return pen_session.running is not None or sculpt_work.sculpt_poll(cls, context)
 
     def execute(self, context):
         """For `seconds`, in one go."""
@@ -184,8 +184,8 @@ class RIFFLER_OT_pen_sculpt(shared.TakesTool, properties.PenSettings, bpy.types.
             mode = mode_of(context, self.mode)
             if len(context.scene.riffler.sculpt.maps()) > 1:
                 self.report({"WARNING"}, local(NO_COPIES))
-            shared.check_state(self, context, ob)
-            shared.refuse_edits(ob)
+            sculpt_work.check_state(self, context, ob)
+            sculpt_work.refuse_edits(ob)
             depth = names.clean(context.scene.riffler.sculpt.depth)
             tool = tool_for(mode, riffler.Tool.from_dict(self.tool_dict(context)), depth)
             folder, options = recordings(self), session_options(context, ob, self, mode)
@@ -237,7 +237,7 @@ def _tell(session):
     state.force, state.text, state.why = told
     why = f"    {run.why}" if run.why else ""
     _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: take a stroke back{why}")
-    shared.redraw_sidebars(bpy.context)
+    views.redraw_sidebars(bpy.context)
 
 
 def _strokes(session):
@@ -259,7 +259,7 @@ def _leave():
         force.end()
     pace.end()
     _status(None)
-    shared.redraw_sidebars(bpy.context)
+    views.redraw_sidebars(bpy.context)
 
 
 def _stop(operator):

@@ -19,7 +19,7 @@ from ..bl import (
 )
 from ..core import units as names
 from ..core.job import TaskJob
-from . import shared
+from . import sculpt_work, shared
 from .long import LongWork
 
 
@@ -69,7 +69,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         settings = context.scene.riffler.plan
         if self.replace and not plan_store.is_plan(context.scene.objects.get(self.replace)):
             raise ValueError(f"there is no plan {self.replace!r} in this scene: leave Replace empty for a new one")
-        self._tool = riffler.Tool.from_dict(shared.tool_of_text(self.tool) if self.tool else settings.tool_dict())
+        self._tool = riffler.Tool.from_dict(sculpt_work.tool_of_text(self.tool) if self.tool else settings.tool_dict())
         part = self._own_part(context) or settings.part
         live.end_all()  # the mesh of a sculpt that is being worked at is not up to date
         mesh = parts.in_world(context, part)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import bpy
 from bpy.props import EnumProperty
 
-from ..bl import findings, plan_curves, plan_paths, plan_store, replan, simulating, timeline, units
+from ..bl import findings, plan_curves, plan_paths, plan_states, plan_store, replan, timeline, units
 from ..bl.turning import plan_object
 from ..core import locating
 from ..core import units as names
@@ -128,7 +128,7 @@ class RIFFLER_OT_plan_delete_paths(bpy.types.Operator):
             replan.sync(context.scene, ob)
         if p.row >= len(after.paths):
             p.row = len(after.paths) - 1
-        simulating.drop_outdated()
+        plan_states.tell_followers()
 
 
 CLASSES = (RIFFLER_OT_plan_switch, RIFFLER_OT_plan_delete_paths)

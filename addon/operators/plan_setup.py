@@ -5,8 +5,7 @@ import numpy as np
 import riffler
 from bpy_extras.io_utils import ImportHelper
 
-from .. import properties
-from ..bl import libraries, live, parts, plan_fit, refusals
+from ..bl import libraries, live, parts, plan_fit, refusals, surroundings
 from ..core import library
 from ..core import units as names
 from ..core.surroundings import check_fixture
@@ -18,7 +17,7 @@ FIXTURES = "Riffler Fixtures"
 
 def surfaces(context):
     """The selected objects that have a surface."""
-    return [ob for ob in context.selected_objects if ob.type in properties.WITH_SURFACE]
+    return [ob for ob in context.selected_objects if ob.type in parts.WITH_SURFACE]
 
 
 def described(mesh):
@@ -102,7 +101,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
         for ob in added:
             settings.fixtures.objects.link(ob)
         try:
-            held = parts.fixtures(settings, settings.part)
+            held = surroundings.fixture_objects(settings, settings.part)
         except ValueError as error:  # something that was put into the collection otherwise
             self.report({"WARNING"}, shared.as_sentence(str(error)))
             return {"FINISHED"}

@@ -10,8 +10,7 @@ from dataclasses import dataclass, field
 import bpy
 import riffler
 
-from ..bl import events, live, parts, plan_curves, plan_store, surroundings, units
-from . import shared
+from ..bl import events, live, parts, plan_curves, plan_store, surroundings, units, views
 
 CLASSES = ()
 QUIET = 0.4  # s without a change, before a part is looked at
@@ -89,7 +88,7 @@ def _look():
             except ValueError as error:
                 verdict = Verdict(str(error), 0)
             _known[ob.name] = (_key(context, ob), verdict)
-    shared.redraw_sidebars(context)
+    views.redraw_sidebars(context)
     return None
 
 

@@ -129,7 +129,7 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
             raise ValueError(f"there is no object {name!r}" if name else "select the reference as well, or name it")
         if reference == ob:
             raise ValueError(f"{ob.name} is measured from itself: choose another reference")
-        if reference.type not in properties.WITH_SURFACE:
+        if reference.type not in parts.WITH_SURFACE:
             raise ValueError(f"{name} has no surface: choose a mesh, curve, text, surface or metaball")
         self._object = ob.name
         own = _in_world(context, ob)

@@ -1,11 +1,8 @@
-"""What the operators have in common."""
+"""What operators of every feature have in common: why they are refused, what they report, how they fail."""
 
 import bpy
-import numpy as np
 from riffler.mesh_notes import notes_on
 
-from ..bl import edits, refusals, sculpts
-from ..core import json_object, units
 from ..core.problems import capitalised, said
 from ..translations import local
 
@@ -21,43 +18,6 @@ NAVIGATION = {
 }
 # What is a message to the person in front of the screen; anything else is a fault of ours, and its traceback is shown.
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
-
-
-EDITS_FIRST = "{} was edited in Blender's own modes: Take Edits keeps that, Rebuild Mesh drops it; then go on"
-EDITS_LEFT_OUT = "The mesh was edited: what is made is the volume, without the edits. Take Edits takes them over first"
-
-
-def tool_of_text(text):
-    """A tool's dictionary from JSON."""
-    return json_object.loads(text, "tool")
-
-
-class TakesTool:
-    """Mixin of operators that cut with the scene's tool or one that they are given."""
-
-    tool: bpy.props.StringProperty(
-        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the scene's tool"
-    )
-
-    def tool_dict(self, context):
-        return tool_of_text(self.tool) if self.tool else context.scene.riffler.tool.dictionary()
-
-
-def sculpt_poll(cls, context):
-    """True where the active object is a sculpt that can be changed; otherwise the button's tooltip says why not."""
-    ob = sculpts.active(context)
-    if ob is None:
-        return deny(cls, no_sculpt(context))
-    if not object_mode(cls, context):
-        return False
-    if why := refusals.linked(ob, ob.data):
-        return deny(cls, why)
-    return not busy(cls, context)
-
-
-def no_sculpt(context):
-    """Why the active object is none, with the step that helps."""
-    return refusals.instance(context.object) or "Select a sculpt first, or make a new stock"
 
 
 def object_mode(cls, context):
@@ -77,40 +37,12 @@ def busy(cls, context, simulation=True):
     return bool(state.running or state.sculpting or (state.simulating and simulation))
 
 
-def refuse_edits(ob):
-    """ValueError where Blender's own tools have changed the mesh of a sculpt since it was shown: it would be shown anew
-    from the volume, and nobody's work is dropped unasked."""
-    if edits.made(ob):
-        raise ValueError(local(EDITS_FIRST).format(ob.name))
-
-
-def tell_edits(operator, ob):
-    """The same as a warning, for what only reads the volume and leaves the mesh."""
-    if edits.made(ob):
-        operator.report({"WARNING"}, local(EDITS_LEFT_OUT))
-
-
-def check_state(operator, context, ob):
-    """ValueError where a sculpt cannot be worked with; a warning where what is seen is not its volume, as it is scaled,
-    mirrored or modified."""
-    refusals.refuse(context, ob)
-    for why in filter(None, (refusals.scaled(ob), refusals.modified(ob))):
-        operator.report({"WARNING"}, why)
-
-
 def tell_turned(operator, name, mesh):
     """A warning where a mesh that is taken as a solid has triangles that are turned for it."""
     found = {}
     mesh.oriented(found)
     for note in notes_on(found):
         operator.report({"WARNING"}, f"{name}: {note}")
-
-
-def tell_made(operator, ob):
-    """The size of a new sculpt's box, and what its mesh has."""
-    size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
-    triangles = units.counted(len(ob.data.polygons), "triangle")
-    operator.report({"INFO"}, f"{ob.name}: {units.format_size(size)}, {triangles}")
 
 
 def tell_all(operator, done, notes, wrong=False):
@@ -140,13 +72,3 @@ def draw_fields(operator, keys):
     operator.layout.use_property_split = True
     for key in keys:
         operator.layout.prop(operator, key)
-
-
-def redraw_sidebars(context):
-    """The sidebars only: the view itself is costly, and is drawn again when the mesh changes."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()

@@ -16,7 +16,7 @@ from ..core import units as names
 from ..core.cache import Content
 from ..properties import stock
 from ..translations import local
-from . import fit, shared
+from . import fit, sculpt_work, shared
 
 SHAPES = (
     ("BLOCK", "Block", "A cuboid of material", "CUBE", 0),
@@ -84,7 +84,7 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         except shared.ERRORS as error:
             kept.restore()
             return shared.fail(self, error)
-        shared.tell_made(self, ob)
+        sculpt_work.tell_made(self, ob)
         return {"FINISHED"}
 
     def draw(self, context):

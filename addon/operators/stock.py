@@ -15,16 +15,10 @@ from ..core import estimate, fitting
 from ..core import units as names
 from ..core.cache import Content
 from ..core.job import DoneJob, TaskJob
-from . import paths, shared
+from . import paths, sculpt_work, shared
 from .long import LongWork
 
 NO_SOURCE = "select the object that is to be the material: a mesh, curve, text, surface or metaball"
-
-
-def source_object(context):
-    """The object that would become material, or None."""
-    ob = context.object
-    return ob if ob is not None and ob.type in properties.WITH_SURFACE else None
 
 
 def source_size(ob, scene):
@@ -56,7 +50,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
 
     def invoke(self, context, event):
         """Only a mesh takes long; whatever else it is made from is there at once."""
-        long = self.source == "OBJECT" and not _is_its_volume(context, source_object(context))
+        long = self.source == "OBJECT" and not _is_its_volume(context, parts.source_object(context))
         return _viewed(context, super().invoke(context, event) if long else self.execute(context))
 
     def modal(self, context, event):
@@ -84,7 +78,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
             if sculpts.is_sculpt(source):
                 sculpts.take_looks(ob, source)
             source.hide_set(True)
-        shared.tell_made(self, ob)
+        sculpt_work.tell_made(self, ob)
         across = round(max(np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)) / volume.pitch)
         if across < fitting.FEW_RAYS:
             rays = names.counted(across, "ray")
@@ -117,7 +111,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         return _New("Stock", _at_cursor(context)), DoneJob(volume)
 
     def _from_object(self, context):
-        source = source_object(context)
+        source = parts.source_object(context)
         if source is None:
             raise ValueError(refusals.instance(context.object) or NO_SOURCE)
         if unfit := refusals.disabled(source, context.view_layer) or refusals.flat(source):
@@ -197,7 +191,7 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
 
     def execute(self, context):
         stock = context.scene.riffler.stock
-        source = source_object(context)
+        source = parts.source_object(context)
         if stock.source == "OBJECT" and source is None:
             return shared.fail(self, ValueError("select the object that is to be the material"))
         if stock.source == "RECORDING":
@@ -219,7 +213,7 @@ class RIFFLER_OT_rebuild(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return shared.sculpt_poll(cls, context)
+        return sculpt_work.sculpt_poll(cls, context)
 
     def execute(self, context):
         try:

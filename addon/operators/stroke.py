@@ -17,7 +17,7 @@ from ..core import brush, reach, units
 from ..core.stroke import Sample
 from ..drawing import force, pace, pointer
 from ..translations import local
-from . import shared
+from . import sculpt_work, shared
 
 LOOK = 1 / 30  # s from one look to the next
 MODES = (
@@ -39,7 +39,7 @@ _held = None  # the operator whose stroke is being made in a window
 last = ""  # the newest stroke that was made by hand, for riffler.stroke(stroke=…)
 
 
-class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
+class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
     """Sculpt where the pointer goes. Esc or the right button takes the stroke back"""
 
     bl_idname = "riffler.stroke"
@@ -59,7 +59,7 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return shared.sculpt_poll(cls, context)
+        return sculpt_work.sculpt_poll(cls, context)
 
     def execute(self, context):
         if not self.stroke:
@@ -135,8 +135,8 @@ class RIFFLER_OT_stroke(shared.TakesTool, bpy.types.Operator):
         ob = sculpts.active(context)
         self._fresh = live.of(ob) is None
         if self._fresh:
-            shared.check_state(self, context, ob)
-            shared.refuse_edits(ob)
+            sculpt_work.check_state(self, context, ob)
+            sculpt_work.refuse_edits(ob)
         self._run = live.begin(context, ob)
 
     def _start(self, context, view):

@@ -10,13 +10,25 @@ import riffler
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
 from .. import properties
-from ..bl import attributes, events, findings, meshes, parts, plan_store, programs, sculpts, surroundings, units
+from ..bl import (
+    attributes,
+    events,
+    findings,
+    meshes,
+    parts,
+    plan_store,
+    programs,
+    sculpts,
+    simulating,
+    surroundings,
+    units,
+)
 from ..core import poses, titles
 from ..core import units as names
 from ..core.job import ChainJob, ThreadTask
 from ..core.surroundings import check_fixture
 from ..translations import local
-from . import shared, simulate
+from . import shared
 from .long import LongWork
 
 MOST = 1000  # lines in the list
@@ -42,7 +54,7 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
 
     @classmethod
     def poll(cls, context):
-        return simulate.program_poll(cls, context) and not shared.busy(cls, context)
+        return simulating.program_poll(cls, context) and not shared.busy(cls, context)
 
     def begin(self, context):
         setup = programs.take(context, self)
@@ -160,7 +172,9 @@ def _around(context, setup):
     plan_ob = context.scene.objects.get(setup.plan) if setup.plan else plan_store.active(context)
     ob = surroundings.part_of(context.scene, plan_ob)
     to_stock = np.linalg.inv(setup.to_world)
-    held = [(f.name, _fixture(context, f, to_stock)) for f in parts.fixtures(context.scene.riffler.plan, ob)]
+    held = [
+        (f.name, _fixture(context, f, to_stock)) for f in surroundings.fixture_objects(context.scene.riffler.plan, ob)
+    ]
     if ob is None:
         return "", None, held
     return ob.name, _moved(parts.in_world(context, ob), to_stock), held

@@ -4,8 +4,9 @@ A module has the fields of one topic; here they are put together, and attached t
 """
 
 import bpy
-from bpy.props import PointerProperty
+from bpy.props import PointerProperty, StringProperty
 
+from ..operators.long import WorkProgress
 from .clay import ReliefSettings, RifflerClay
 from .cut import CutSettings, NcSettings, RifflerCut, RifflerNc
 from .machines import GROUPS, RifflerMachines
@@ -19,10 +20,9 @@ from .plan import (
     RifflerPlan,
     RifflerPlanObject,
 )
-from .progress import WorkProgress
 from .result import ResultSettings, RifflerResult
 from .sculpt import RifflerSculpt
-from .stock import RifflerMesh, RifflerObject, RifflerStock, StockSettings
+from .stock import RifflerMesh, RifflerStock, StockSettings
 from .tool import RifflerCutter, RifflerTool
 from .verify import GivenOptions, ProgramSettings, RifflerVerify, VerifySettings
 from .without_undo import RifflerStrokeFields, RifflerToolFields
@@ -58,6 +58,16 @@ class RifflerScene(bpy.types.PropertyGroup):
     sculpt: PointerProperty(type=RifflerSculpt)
     verify: PointerProperty(type=RifflerVerify)
     machines: PointerProperty(type=RifflerMachines)
+
+
+class RifflerObject(bpy.types.PropertyGroup):
+    """On an object. `token` and `mark`, of a sculpt that is being worked at: which state of it is shown, and whose work
+    it is. Blender's undo brings both back with the object; on the mesh they would make Blender read the whole mesh
+    again."""
+
+    token: StringProperty()
+    mark: StringProperty(description="What the work at the sculpt is known by, also after it")
+    plan: PointerProperty(type=RifflerPlanObject)
 
 
 class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):

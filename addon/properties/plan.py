@@ -14,13 +14,10 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..bl.parts import WITH_SURFACE
 from ..core import json_object, presets
 from .fields import length
 from .machines import MACHINES
-
-# Objects that have a surface, or may have one.
-WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
-
 
 SHOWN = (
     ("CONTACTS", "Contacts", "Where the cutter touches the part, on both sides of each path", 1),

@@ -12,7 +12,6 @@ from bpy.props import (
 )
 
 from .fields import length
-from .plan import RifflerPlanObject
 
 DIRECTIONS = (
     ("xyz", "Three (tri-dexel)", "Rays along x, y and z: sharp edges and clean walls wherever the tool comes from"),
@@ -49,16 +48,6 @@ class StockSettings:
 
 class RifflerStock(StockSettings, bpy.types.PropertyGroup):
     pass
-
-
-class RifflerObject(bpy.types.PropertyGroup):
-    """On an object. `token` and `mark`, of a sculpt that is being worked at: which state of it is shown, and whose work
-    it is. Blender's undo brings both back with the object; on the mesh they would make Blender read the whole mesh
-    again."""
-
-    token: StringProperty()
-    mark: StringProperty(description="What the work at the sculpt is known by, also after it")
-    plan: PointerProperty(type=RifflerPlanObject)
 
 
 class RifflerMesh(bpy.types.PropertyGroup):

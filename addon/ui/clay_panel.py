@@ -7,7 +7,7 @@ from ..bl import sculpts
 from ..core import units as names
 from ..operators import clay, mask, relief
 from ..translations import CONTEXT, local
-from .panels import Sidebar, at_work, give, lines
+from .panel_parts import Sidebar, at_work, give, lines
 
 
 class Clay(Sidebar):

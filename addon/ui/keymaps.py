@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import bpy
 import rna_keymap_ui
 
-from ..operators import simulate
+from ..bl import simulating
 from ..translations import CONTEXT
 from . import menus, sculpt_panel
 
@@ -30,7 +30,7 @@ def _menu(operator, menu, **event):
     return Key("Object Mode", operator, event, menu.bl_label, {"name": menu.bl_idname})
 
 
-STOP = simulate.RIFFLER_OT_simulate_stop
+STOP = simulating.RIFFLER_OT_simulate_stop
 # Blender has nothing on these keys in any version, but for Esc, which is ours only while something is simulated.
 KEYS = (
     _menu("wm.call_menu_pie", sculpt_panel.RIFFLER_MT_sculpt_pie, type="W", ctrl=True, shift=True),

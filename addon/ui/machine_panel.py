@@ -5,8 +5,7 @@ import bpy
 from ..core import machine_fields as fields
 from ..operators import machine
 from ..translations import local
-from .panels import lines
-from .pen_panel import wrapped
+from .panel_parts import lines, wrapped
 from .plan_panel import Tab
 
 

@@ -17,7 +17,7 @@ from ..operators import (
     solid,
     stock,
 )
-from .panels import give
+from .panel_parts import give
 
 
 class RIFFLER_MT_object(bpy.types.Menu):

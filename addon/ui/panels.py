@@ -1,44 +1,15 @@
-"""The sidebar's tab. Drawing reads properties only: no volume is touched."""
+"""The sidebar's tab: the active sculpt, new stock, cuts and exports. Drawing reads properties only: no volume is
+touched."""
 
 import bpy
 
 from .. import properties
-from ..bl import edits, live, refusals, sculpts, units, versions
-from ..core import estimate, fitting, presets
+from ..bl import edits, live, parts, refusals, sculpts, units
+from ..core import estimate, fitting
 from ..core import units as names
 from ..operators import begin, clay, cut, export, scene, stock
 from ..translations import CONTEXT
-
-
-class Sidebar:
-    """In the tab of artists: what is sculpted and with what comes first, by bl_order; machining comes last."""
-
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Riffler"
-
-
-def lines(layout, *texts, icon="NONE"):
-    column = layout.column(align=True)
-    column.scale_y = 0.8
-    for k, text in enumerate(texts):
-        column.label(text=text, icon=icon if k == 0 else ("BLANK1" if icon != "NONE" else "NONE"))
-
-
-def give(op, settings, group):
-    """A button's operator gets what the panel shows: the fields of `group`, which both have."""
-    for key in group.__annotations__:
-        setattr(op, key, getattr(settings, key))
-
-
-def at_work(layout, context, *operators):
-    """True where one of these runs, whose progress takes the place of the buttons, so that nothing moves."""
-    state = context.window_manager.riffler
-    if state.running not in {operator.doing for operator in operators}:
-        return False
-    versions.progress(layout, state)
-    layout.label(text=state.text)
-    return True
+from .panel_parts import Sidebar, at_work, give, lines
 
 
 class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
@@ -51,7 +22,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         ob = sculpts.active(context)
         if ob is None:
             lines(layout, "No sculpt is active.", "Make one, or Add > Mesh.", icon="INFO")
-            if stock.source_object(context) is not None:
+            if parts.source_object(context) is not None:
                 layout.operator(begin.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT")
             return
         self._facts(layout, ob)
@@ -149,7 +120,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         if settings.source == "RECORDING":
             layout.prop(settings, "recording", text="")
             return None
-        source = stock.source_object(context)
+        source = parts.source_object(context)
         if source is None:
             lines(layout, "Select an object.", icon="INFO")
             return None
@@ -162,34 +133,6 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
             return
         op = layout.operator(stock.RIFFLER_OT_new_stock.bl_idname, icon="CUBE")
         give(op, settings, properties.StockSettings)
-
-
-class RIFFLER_MT_tools(bpy.types.Menu):
-    bl_idname = "RIFFLER_MT_tools"
-    bl_label = "Tool Presets"
-
-    def draw(self, context):
-        for tool in presets.presets():
-            op = self.layout.operator(scene.RIFFLER_OT_tool_preset.bl_idname, text=tool["name"], translate=False)
-            op.name = tool["name"]
-
-
-class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
-    bl_idname = "RIFFLER_PT_tool"
-    bl_label = "Tool (mm)"
-    bl_order = 3
-
-    def draw(self, context):
-        layout = self.layout
-        preset = context.scene.riffler.tool.from_preset()
-        layout.menu(RIFFLER_MT_tools.bl_idname, text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        tool = context.window_manager.riffler.tool  # whose fields make no undo steps
-        layout.prop(tool, "kind")
-        column = layout.column(align=True)
-        for key in presets.SIZES[tool.kind]:
-            column.prop(tool, key)
 
 
 class RIFFLER_PT_cut(Sidebar, bpy.types.Panel):
@@ -242,4 +185,4 @@ class RIFFLER_PT_export(Sidebar, bpy.types.Panel):
         layout.operator(export.RIFFLER_OT_export_recording.bl_idname, text="Save Recording…", icon="REC")
 
 
-CLASSES = (RIFFLER_MT_tools, RIFFLER_PT_sculpt, RIFFLER_PT_stock, RIFFLER_PT_tool, RIFFLER_PT_cut, RIFFLER_PT_export)
+CLASSES = (RIFFLER_PT_sculpt, RIFFLER_PT_stock, RIFFLER_PT_cut, RIFFLER_PT_export)

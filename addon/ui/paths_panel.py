@@ -8,8 +8,7 @@ from ..core import units as names
 from ..operators import plan_paths
 from ..properties.plan import STATES
 from ..translations import local
-from .panels import lines
-from .pen_panel import wrapped
+from .panel_parts import lines, wrapped
 from .plan_panel import OfPlan
 
 ICONS = {"free": "CHECKMARK", "blocked": "CANCEL", "keyed": "KEYFRAME_HLT", "unplanned": "KEYFRAME", "off": "REMOVE"}

@@ -3,18 +3,10 @@
 import bpy
 
 from .. import properties
-from ..core import diagnosis
 from ..operators import pen
-from ..translations import local
-from .panels import Sidebar, give, lines
+from .panel_parts import Sidebar, give, lines, wrapped
 
 WHAT = {kind: what for kind, _, what, *_ in properties.DEVICES}
-
-
-def wrapped(context, text):
-    """The sidebar's labels do not wrap: fitted to its width, and looked up whole."""
-    width = max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6)
-    return diagnosis.wrap(local(text), width)
 
 
 class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):

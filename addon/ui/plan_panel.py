@@ -7,14 +7,13 @@ import bpy
 import riffler
 
 from .. import properties
-from ..bl import libraries, parts, plan_fit, plan_store, tool_pictures, units, versions
+from ..bl import libraries, parts, plan_fit, plan_store, surroundings, tool_pictures, units, versions
 from ..bl.turning import plan_object
 from ..core import library, presets, size_guess
 from ..core import units as names
 from ..operators import plan_find, plan_setup, plan_tool, plan_watch, scene, shared
 from ..translations import local
-from .panels import Sidebar, give, lines
-from .pen_panel import wrapped
+from .panel_parts import Sidebar, give, lines, wrapped
 
 PICTURE = 4.5  # lines that a tool's picture is high
 
@@ -130,7 +129,7 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
         row.operator(plan_setup.RIFFLER_OT_plan_fixtures_add.bl_idname, text="", icon="ADD")
         row.operator(plan_setup.RIFFLER_OT_plan_fixtures_remove.bl_idname, text="", icon="REMOVE")
         try:
-            held = [ob.name for ob in parts.fixtures(settings, settings.part)]
+            held = [ob.name for ob in surroundings.fixture_objects(settings, settings.part)]
         except ValueError as error:
             lines(layout, *wrapped(context, f"{error}."), icon="ERROR")
             return

@@ -6,8 +6,7 @@ import bpy
 
 from ..bl import keeping, live
 from ..operators import recover
-from .panels import Sidebar, lines
-from .pen_panel import wrapped
+from .panel_parts import Sidebar, lines, wrapped
 
 
 class RIFFLER_PT_recover(Sidebar, bpy.types.Panel):

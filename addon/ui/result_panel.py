@@ -5,7 +5,7 @@ import bpy
 from .. import properties
 from ..bl import attributes
 from ..operators import result
-from .panels import Sidebar, at_work, give, lines
+from .panel_parts import Sidebar, at_work, give, lines
 
 
 class RIFFLER_PT_result(Sidebar, bpy.types.Panel):

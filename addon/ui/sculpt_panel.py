@@ -2,11 +2,11 @@
 
 import bpy
 
-from ..bl import live, sculpts
+from ..bl import live, parts, sculpts
 from ..core import presets, units
-from ..operators import begin, stock
+from ..operators import begin
 from ..translations import CONTEXT
-from .panels import Sidebar, lines
+from .panel_parts import Sidebar, lines
 
 MODES = {"riffler.carve": "Carve", "riffler.add": "Add", "riffler.smooth": "Smooth", "riffler.mask": "Mask"}
 
@@ -43,7 +43,7 @@ def draw_header(context, layout):
 
 def begin_button(layout, context):
     """Makes the active object a sculpt, where it is none and could be one."""
-    source = stock.source_object(context)
+    source = parts.source_object(context)
     if source is not None:
         layout.operator(begin.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT")
 

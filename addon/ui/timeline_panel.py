@@ -5,8 +5,7 @@ import bpy
 from ..bl import plan_collisions, plan_states, timeline, turning
 from ..core import units as names
 from ..operators import plan_keys, plan_least_tilt
-from .panels import lines
-from .pen_panel import wrapped
+from .panel_parts import lines, wrapped
 from .plan_panel import OfPlan
 
 

@@ -4,11 +4,10 @@ import bpy
 
 from .. import properties
 from ..bl import programs, simulating, timeline, turning, versions
-from ..operators import plan_nc, simulate, verify
+from ..operators import plan_nc, verify
 from ..translations import local
 from . import machine_panel
-from .panels import lines
-from .pen_panel import wrapped
+from .panel_parts import lines, wrapped
 from .plan_panel import OfPlan, Tab
 
 ICONS = {
@@ -78,10 +77,10 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
         settings = context.scene.riffler.verify
         self._program(layout, context, settings)
         row = layout.row(align=True)
-        op = row.operator(simulate.RIFFLER_OT_simulate.bl_idname, icon="PLAY")
+        op = row.operator(simulating.RIFFLER_OT_simulate.bl_idname, icon="PLAY")
         self._give(op, settings, properties.ProgramSettings)
         if simulating.active() is not None:
-            row.operator(simulate.RIFFLER_OT_simulate_stop.bl_idname, text="", icon="X")
+            row.operator(simulating.RIFFLER_OT_simulate_stop.bl_idname, text="", icon="X")
         column = layout.column(align=True)
         column.use_property_split = True
         column.use_property_decorate = False
