@@ -3,7 +3,7 @@
 import bpy
 
 from ..core import presets
-from ..operators import scene, shared
+from ..operators import shared
 from ..translations import CONTEXT
 from .panel_parts import Sidebar
 
@@ -31,7 +31,7 @@ class RIFFLER_MT_tools(bpy.types.Menu):
 
     def draw(self, context):
         for tool in presets.presets():
-            op = self.layout.operator(scene.RIFFLER_OT_tool_preset.bl_idname, text=tool["name"], translate=False)
+            op = self.layout.operator(RIFFLER_OT_tool_preset.bl_idname, text=tool["name"], translate=False)
             op.name = tool["name"]
 
 
