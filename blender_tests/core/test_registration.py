@@ -11,7 +11,7 @@ import addon
 from addon import registration
 
 ADDON = Path(addon.__file__).parent
-LISTED = (*registration.MODULES, registration.FALLBACK)
+LISTED = (*(path for section in registration.SECTIONS for path in section.paths()), registration.FALLBACK)
 
 
 def path_of(name):

@@ -9,7 +9,7 @@ from pathlib import Path
 import riffler
 
 import addon
-from addon.core import machine_fields
+from addon.plan.pure import machine_fields
 
 ADDON = Path(addon.__file__).parent
 TABLE = json.loads((ADDON / "translations" / "de.json").read_text(encoding="utf-8"))
@@ -19,7 +19,7 @@ MESSAGES = {"wrapped": (1,), "deny": (1,), "poll_message_set": (0,), "local": (0
 SHOWN = {**FIELDS_OF, **MESSAGES}
 NOT_SHOWN = {
     "package.py",  # makes the zips
-    "ui/fallback.py",  # what is said where the core does not load, and no table either
+    "blender/fallback.py",  # what is said where the core does not load, and no table either
 }
 FIELDS = {"name", "description"}
 TABLES = {"STATES", "KINDS", "LOOK"}  # of words, by the name of what has them

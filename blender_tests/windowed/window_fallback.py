@@ -5,9 +5,8 @@ import tempfile
 from pathlib import Path
 
 import bpy
-import harness
 
-import support
+from support import common, harness
 
 INSTALL = False
 
@@ -20,7 +19,7 @@ def steps(screen):
     sys.path.insert(0, str(folder))
     if harness.job["mode"] == "legacy":  # that zip has a core in it, which loads
         harness.job["mode"] = "source"
-    support.MODULE = harness.install()
+    common.MODULE = harness.install()
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     cut = harness.load(Path(__file__).with_name("window_cut.py"))
     yield from cut.open_tab(screen, "RIFFLER_PT_fallback")

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import bpy
-import harness
 
-import support
+from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 # two million triangles: work that can be seen
@@ -52,7 +51,7 @@ def steps(screen):
 def written(screen):
     """Both formats, by the selector."""
     for operator in (bpy.ops.riffler.export_stl, bpy.ops.riffler.export_3mf):
-        path = Path(support.out(f"chosen.{operator.idname()[-3:]}"))
+        path = Path(common.out(f"chosen.{operator.idname()[-3:]}"))
         path.unlink(missing_ok=True)
         yield from choose(screen, operator, path)
         yield path.exists
@@ -62,7 +61,7 @@ def written(screen):
 
 def cancelled(screen):
     """Esc: no file, and nothing beside it; what was there stays."""
-    path = Path(support.out("chosen.3mf"))
+    path = Path(common.out("chosen.3mf"))
     # Other windows write into the same folder.
     before, beside = path.read_bytes(), set(path.parent.glob("*chosen*"))
     yield from choose(screen, bpy.ops.riffler.export_3mf, path, check_existing=False)
@@ -75,11 +74,11 @@ def cancelled(screen):
 
 def no_recording(screen):
     """A file that is none is said in the words of whoever finds it, and nothing runs."""
-    shared, said = support.part("operators.shared"), []
+    shared, said = common.part("blender.operator_parts"), []
     fail = shared.fail
     shared.fail = lambda operator, error: said.append(str(error)) or fail(operator, error)
     try:
-        yield from choose(screen, bpy.ops.riffler.cut_recording, support.out("chosen.stl"))
+        yield from choose(screen, bpy.ops.riffler.cut_recording, common.out("chosen.stl"))
         yield lambda: said
         yield 0.5
     finally:
@@ -91,7 +90,7 @@ def no_recording(screen):
 def recording(screen):
     """Strokes from a file: behind the window, and one step of undo."""
     name = cut.spiral(2, 6_000, "Spiral")
-    path = Path(support.out("chosen.rjournal"))
+    path = Path(common.out("chosen.rjournal"))
     with screen.override():
         bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
         assert bpy.ops.riffler.cut_curve(curve=name, depth=2) == {"FINISHED"}

@@ -5,11 +5,10 @@ import tempfile
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
-from sculpting import matches_its_volume, nothing_is_left
 
-import support
+from support import common, harness
+from support.sculpting import matches_its_volume, nothing_is_left
 
 REAL_EVENTS = True
 NAME = "Stock"
@@ -23,7 +22,7 @@ def content():
 
 
 def held():
-    return support.part("drawing.pointer").held is not None
+    return common.part("sculpt.pointer").held is not None
 
 
 def drag(screen, first, last, release=True):
@@ -41,7 +40,7 @@ def drag(screen, first, last, release=True):
     screen.button("RELEASE")
     yield lambda: not held()
     yield 0.5
-    _, samples, _ = support.part("core.brush").read(support.part("operators.stroke").last)
+    _, samples, _ = common.part("sculpt.pure.brush_stroke").read(common.part("sculpt.stroke_operator").last)
     region = screen.region()
     for sample, wanted in ((samples[0], a), (samples[-1], b)):
         assert (sample.x + region.x, sample.y + region.y) == tuple(wanted), (sample, wanted)

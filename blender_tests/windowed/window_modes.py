@@ -6,10 +6,9 @@ import tempfile
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 stroke = harness.load(Path(__file__).with_name("window_stroke.py"))
 LOWEST = 18.5  # mm: the bottom of a groove of 1.5 mm in the top at 20
@@ -42,14 +41,14 @@ def groove(screen, y, **more):
 
 def in_mesh(y):
     """Whether the sculpt's own mesh has the groove at `y` (mm)."""
-    co = support.coordinates(sculpt().data) * sculpt().data.riffler.mm_per_unit
+    co = common.coordinates(sculpt().data) * sculpt().data.riffler.mm_per_unit
     near = co[(np.abs(co[:, 1] - y) < 1) & (np.abs(co[:, 0] - 30) < 5) & (co[:, 2] > 10)]
     return abs(near[:, 2].min() - LOWEST) < 0.1
 
 
 def framed(screen):
     yield from groove(screen, 10)
-    assert stroke.run() is not None and support.is_hidden(sculpt())
+    assert stroke.run() is not None and common.is_hidden(sculpt())
     view = screen.area.spaces.active.region_3d
     view.view_location, view.view_distance = (1.0, 2.0, 3.0), 9.0
     yield 0.5
@@ -79,13 +78,13 @@ def in_modeling(screen):
     assert stroke.run() is not None
     before = screen.window.workspace
     screen.window.workspace = bpy.data.workspaces["Modeling"]
-    yield lambda: sculpt().mode == "EDIT" and not stroke.module("bl.working").lives
-    assert not support.is_hidden(sculpt())
+    yield lambda: sculpt().mode == "EDIT" and not stroke.module("sculpt.live_sculpt").lives
+    assert not common.is_hidden(sculpt())
     yield 1.0
     screen.window.workspace = before
     yield lambda: sculpt().mode == "OBJECT"
     yield 1.0
-    assert in_mesh(22) and not stroke.module("bl.sculpts").edited(sculpt().data)
+    assert in_mesh(22) and not stroke.module("sculpt.sculpts").edited(sculpt().data)
 
 
 def from_the_header(screen):
@@ -96,34 +95,34 @@ def from_the_header(screen):
     with screen.override():
         assert bpy.context.active_object == sculpt()  # whose modes the header's menu has
         bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
-    yield lambda: not stroke.module("bl.working").lives
-    assert sculpt().mode == "SCULPT" and not support.is_hidden(sculpt()) and in_mesh(32)
+    yield lambda: not stroke.module("sculpt.live_sculpt").lives
+    assert sculpt().mode == "SCULPT" and not common.is_hidden(sculpt()) and in_mesh(32)
     yield 1.0
-    before = support.coordinates(sculpt().data)
+    before = common.coordinates(sculpt().data)
     yield from screen.drag([tuple(map(int, stroke.pixel(screen, (x, 50, 20)))) for x in (20, 25, 30, 35, 40)], 0.1)
     yield 1.0
-    assert not np.array_equal(support.coordinates(sculpt().data), before), "the brush of Sculpt Mode did nothing"
+    assert not np.array_equal(common.coordinates(sculpt().data), before), "the brush of Sculpt Mode did nothing"
     with screen.override():
         bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="OBJECT")
     stroke.tool(screen, "riffler.carve")
     yield 0.5
-    assert stroke.module("bl.edits").noticed(sculpt())
-    edited = support.coordinates(sculpt().data)[:, 2].max()
+    assert stroke.module("sculpt.mesh_edits").noticed(sculpt())
+    edited = common.coordinates(sculpt().data)[:, 2].max()
     yield from groove(screen, 44)
     yield 0.5
     for value in ("PRESS", "RELEASE"):
         screen.window.event_simulate("RET", value, x=screen.at[0], y=screen.at[1])
-    yield lambda: stroke.run() is not None and stroke.module("drawing.pointer").held is None
-    stroke.module("bl.live").end_all()
+    yield lambda: stroke.run() is not None and stroke.module("sculpt.pointer").held is None
+    stroke.module("sculpt.live_registry").end_all()
     yield 0.5
     assert in_mesh(32) and in_mesh(44)
     mm = sculpt().data.riffler.mm_per_unit
-    assert abs(support.coordinates(sculpt().data)[:, 2].max() - edited) * mm < 0.1, "the edits were dropped"
+    assert abs(common.coordinates(sculpt().data)[:, 2].max() - edited) * mm < 0.1, "the edits were dropped"
 
 
 def in_local_view(screen):
     """Blender crashes where an object is put into the local view of a screen that no window shows."""
-    text = stroke.module("operators.stroke").last
+    text = stroke.module("sculpt.stroke_operator").last
     with screen.override():
         bpy.ops.view3d.localview()
     before = screen.window.workspace
@@ -131,7 +130,7 @@ def in_local_view(screen):
     yield 2.0
     with screen.override():
         assert bpy.ops.riffler.stroke(stroke=text, mode="ADD") == {"FINISHED"}
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
     screen.window.workspace = before
     yield 2.0
     with screen.override():
@@ -147,11 +146,11 @@ def saved_in_mid_stroke(screen):
         with screen.override():
             bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "saved.blend"), copy=True)
         screen.move(*map(int, stroke.pixel(screen, (40, 44, 20))))
-        yield lambda: stroke.module("drawing.pointer").held is None
+        yield lambda: stroke.module("sculpt.pointer").held is None
         stroke.press(screen, *screen.at, "RELEASE")
         yield 0.5
     assert stroke.volume().to_bytes() == whole and stroke.run() is None and sculpt().visible_get()
     yield from groove(screen, 40)
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
     yield 0.5
     assert in_mesh(40)
