@@ -140,6 +140,11 @@ def imports(addon: Path, path: Path):
                 yield node.lineno, (*base, alias.name) if is_module else base
 
 
+def is_there(addon: Path, module: tuple[str, ...]) -> bool:
+    path = addon.joinpath(*module)
+    return path.is_dir() or path.with_suffix(".py").exists()
+
+
 def is_pure(parts: tuple[str, ...]) -> bool:
     return not PURE.isdisjoint(parts[:-1])
 
@@ -161,9 +166,11 @@ def addon_problems(addon: Path = ROOT / "addon") -> list[str]:
             if isinstance(module, str):
                 if is_pure(own) and OF_BLENDER.fullmatch(module.partition(".")[0]):
                     problems.append(f"{place}: a pure module imports {module}, which only Blender has")
+            elif not is_there(addon, module):
+                problems.append(f"{place}: {'.'.join(module)} is not there")
             elif module and module[0] not in order[: rank + 1]:
                 problems.append(f"{place}: {own[0]} imports {'.'.join(module)}, which is not before it")
-            elif module and is_pure(own) and not is_pure(module):
+            elif module and is_pure(own) and PURE.isdisjoint(module):
                 problems.append(f"{place}: a pure module imports {'.'.join(module)}, which is not pure")
     return problems
 

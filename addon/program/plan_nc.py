@@ -14,7 +14,7 @@ from ..common.job import AfterJob, ChainJob
 from ..plan import findings, fit_check, obstacles, plan_states, plan_store, replan, timeline
 from ..plan.current_pose import plan_object
 from ..plan.machines import MACHINES
-from ..plan.plan.operators.plan_work import PlanWork, part_poll, plan_poll
+from ..plan.operators.plan_work import PlanWork, part_poll, plan_poll
 from ..plan.pure import location_messages
 from . import programs
 from .properties import GivenOptions

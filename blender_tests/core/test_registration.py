@@ -16,7 +16,7 @@ LISTED = (*(path for section in registration.SECTIONS for path in section.paths(
 
 def path_of(name):
     path = ADDON.joinpath(*name.split("."))
-    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return path.with_suffix(".py") if path.with_suffix(".py").exists() else path / "__init__.py"
 
 
 def top_level(path):

@@ -23,21 +23,6 @@ def test_a_journal_is_named_after_sculpt_and_date(name, expected):
     assert pen_run.journal_name(name, WHEN) == f"{expected} 2026-01-02 03-04-05.rjournal"
 
 
-def test_the_tool_that_is_shown_is_closed_and_outward():
-    outline = [
-        ("cutter", np.array([[0, 0], [3, 0], [3, 10], [0, 10]])),
-        ("shank", np.array([[0, 10], [2, 10], [0, 12]])),
-    ]
-    vertices, triangles = pen_run.solid(outline, sides=720)
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
-    assert volume == pytest.approx(np.pi * (90 + 8 / 3), rel=1e-4)
-    # the points on the axis are there once for each side: weld them
-    place = np.unique(vertices.round(9), axis=0, return_inverse=True)[1].ravel()
-    edges = place[triangles][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    assert sorted(map(tuple, edges)) == sorted(map(tuple, edges[:, ::-1]))
-
-
 class Mouse:
     """A device that a test moves; strokes along x, 1 mm deep."""
 
