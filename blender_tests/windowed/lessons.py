@@ -272,7 +272,7 @@ def hidden(screen, ob):
 def interpreted(path, rows):
     """LinuxCNC's interpreter accepts the program and finds so many feed moves at least; where there is none, that is a
     test that was skipped."""
-    judge = harness.load(HERE.parent / "headless" / "test_plan_nc.py")
+    judge = harness.load(HERE.parent / "headless" / "program" / "test_plan_nc.py")
     try:
         feeds = judge.interpreted(Path(path))
     except common.Skip as reason:

@@ -9,7 +9,7 @@ from support import common, harness, programs
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
-paths = harness.load(HERE.parent / "headless" / "test_plan_paths.py")
+paths = harness.load(HERE.parent / "headless" / "plan" / "test_plan_paths.py")
 ABOVE = ("RIFFLER_PT_plan_part", "RIFFLER_PT_plan_tool", "RIFFLER_PT_plan")
 
 

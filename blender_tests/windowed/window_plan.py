@@ -10,7 +10,7 @@ from support import common, harness
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
-find = harness.load(HERE.parent / "headless" / "test_plan_find.py")
+find = harness.load(HERE.parent / "headless" / "plan" / "test_plan_find.py")
 
 
 def running():

@@ -9,7 +9,7 @@ from support import common, harness, programs
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
-verify = harness.load(HERE.parent / "headless" / "test_verify.py")
+verify = harness.load(HERE.parent / "headless" / "program" / "test_verify.py")
 
 
 def now():
