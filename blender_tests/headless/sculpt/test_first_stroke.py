@@ -86,12 +86,13 @@ def test_beside_a_plan_the_scenes_unit_stays_the_plans():
     fit, plan_store = common.part("sculpt.fit"), common.part("plan.plan_store")
     bpy.ops.mesh.primitive_cube_add(size=2)
     assert not fit.others(bpy.context) and fit.side(bpy.context, 2.0) == 100
-    kept, plan_store.is_plan = plan_store.is_plan, lambda ob: ob.name == "Light"
+    assert plan_store.is_plan in fit.HOLDERS
+    fit.HOLDERS.append(lambda ob: ob.name == "Light")
     try:
         assert fit.others(bpy.context) and fit.side(bpy.context, 2.0) == 2
         assert bpy.ops.riffler.make_sculpt() == {"FINISHED"}
     finally:
-        plan_store.is_plan = kept
+        fit.HOLDERS.pop()
     assert np.isclose(bpy.context.scene.unit_settings.scale_length, 0.001)
 
 
