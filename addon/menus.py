@@ -6,7 +6,7 @@ from .blender.panel_parts import give
 from .plan import properties as plan_properties
 from .plan.operators import find, least_tilt, setup
 from .sculpt import first_stroke, persistence
-from .stock import clay, cut, export, mask, new_stock, recover, result, solid
+from .stock import clay, cut, export, new_stock, protection, recover, result, solid
 from .stock import properties as stock_properties
 
 
@@ -29,7 +29,11 @@ class RIFFLER_MT_object(bpy.types.Menu):
         for cls in (clay.RIFFLER_OT_split, clay.RIFFLER_OT_take_edits, new_stock.RIFFLER_OT_rebuild):
             layout.operator(cls.bl_idname)
         layout.separator()
-        for cls in (mask.RIFFLER_OT_mask_form, mask.RIFFLER_OT_mask_invert, mask.RIFFLER_OT_mask_clear):
+        for cls in (
+            protection.RIFFLER_OT_mask_form,
+            protection.RIFFLER_OT_mask_invert,
+            protection.RIFFLER_OT_mask_clear,
+        ):
             layout.operator(cls.bl_idname)
         layout.separator()
         give(layout.operator(result.RIFFLER_OT_to_mesh.bl_idname), settings.result, stock_properties.ResultSettings)

@@ -56,7 +56,7 @@ SECTIONS = (
             "solid",
             "cut",
             "clay",
-            "mask",
+            "protection",
             "relief",
             "result",
             "export",

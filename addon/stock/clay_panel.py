@@ -6,7 +6,7 @@ from ..blender.panel_parts import Sidebar, at_work, give, lines
 from ..common import units
 from ..sculpt import sculpts
 from ..translations import CONTEXT, local
-from . import clay, mask, properties, relief
+from . import clay, properties, protection, relief
 
 
 class Clay(Sidebar):
@@ -60,17 +60,17 @@ class RIFFLER_PT_mask(Clay, bpy.types.Panel):
     def draw(self, context):
         layout = self.layout
         settings = context.scene.riffler.clay
-        if at_work(layout, context, mask.RIFFLER_OT_mask_form):
+        if at_work(layout, context, protection.RIFFLER_OT_mask_form):
             return
         layout.prop(settings, "form")
         row = layout.row(align=True)
         for how, text in (("REPLACE", "Mask"), ("ADD", "Add"), ("SUBTRACT", "Subtract")):
-            op = row.operator(mask.RIFFLER_OT_mask_form.bl_idname, text=text)
+            op = row.operator(protection.RIFFLER_OT_mask_form.bl_idname, text=text)
             op.form = settings.form.name if settings.form else ""
             op.how = how
         row = layout.row(align=True)
-        row.operator(mask.RIFFLER_OT_mask_invert.bl_idname, text="Invert")
-        row.operator(mask.RIFFLER_OT_mask_clear.bl_idname, text="Clear")
+        row.operator(protection.RIFFLER_OT_mask_invert.bl_idname, text="Invert")
+        row.operator(protection.RIFFLER_OT_mask_clear.bl_idname, text="Clear")
 
 
 class RIFFLER_PT_relief(Clay, bpy.types.Panel):
