@@ -47,7 +47,7 @@ def sculpt(side):
 
 
 class Looks:
-    """Stages of each event in s, told from the add-on's own clocks (core/stages.py) and from around its brush."""
+    """Seconds of each event by stage: from the add-on's own clocks (sculpt/pure/stages.py) and from around its brush."""
 
     def __init__(self, live):
         self.live, self.rows, self._added = live, [], 0.0
