@@ -47,7 +47,7 @@ def sculpt(side):
 
 
 class Looks:
-    """Seconds of each event by stage: from the add-on's own clocks (sculpt/pure/stages.py) and from around its brush."""
+    """Seconds of each event by stage, by the add-on's clocks (sculpt/pure/stages.py) and from around its brush."""
 
     def __init__(self, live):
         self.live, self.rows, self._added = live, [], 0.0
