@@ -11,8 +11,8 @@ import riffler
 
 from ..blender import handlers, operator_parts, preferences_access, views
 from ..common import problems, units
-from ..sculpt import draw_pace, fixtures, force_view, sculpt_work, sculpts, undo_states
-from ..sculpt.pure import brush_stroke, reach
+from ..sculpt import brushes, draw_pace, fixtures, force_view, sculpt_work, sculpts, undo_states
+from ..sculpt.pure import reach
 from ..translations import local
 from . import properties
 from . import session as pen_session
@@ -24,29 +24,23 @@ TELL = 0.2  # s between two changes of what the panel says
 TOOL = "riffler.carve"
 MODES = (
     ("TOOL", "As the tool at hand", "What the sculpt tool in the toolbar does; without one, Carve"),
-    ("REMOVE", "Carve", "Take material away"),
-    ("ADD", "Add", "Put material on"),
+    *brushes.entries(brush for brush in brushes.BRUSHES.values() if brush.session),
 )
-OF_TOOLS = {"riffler.add": "add"}  # any other carves
-SAID = {"remove": "removed", "add": "put on"}
-NO_STROKE = {
-    "remove": "no stroke",
-    "add": "no stroke where the stock's box has room; Make Room in Clay gives it more",
-}
-NOT_OURS = {"riffler.smooth": "Smooth", "riffler.mask": "Mask"}  # tools whose work no session does
 
 _shown = None  # arrows and gauge (sculpt/force_view.py)
 _told, _told_at = (), 0.0  # what the panel says, and since when
 
 
-def mode_of(context, choice):
-    """What a session does to the material: "remove" or "add". ValueError where the tool at hand does something else."""
+def brush_of(context, choice):
+    """What a session does to the material. ValueError where the tool at hand does something that no session can."""
     if choice != "TOOL":
-        return choice.lower()
-    tool = _at_hand(context)
-    if tool in NOT_OURS:
-        raise ValueError(f"a pen carves or puts material on: take Carve or Add instead of {NOT_OURS[tool]}")
-    return OF_TOOLS.get(tool, "remove")
+        return brushes.of(choice.lower())
+    brush = brushes.of_tool(_at_hand(context))
+    if brush is None:
+        return brushes.of("remove")
+    if not brush.session:
+        raise ValueError(f"a pen carves or puts material on: take Carve or Add instead of {brush.label}")
+    return brush
 
 
 def _at_hand(context):
@@ -55,15 +49,10 @@ def _at_hand(context):
     return tool.idname if tool is not None else ""
 
 
-def tool_for(mode, tool, depth):
-    """What of the cutter a session works with: put on, a whole one would be a wall as high as it is long."""
-    return brush_stroke.stub(tool, depth) if mode == "add" else tool
-
-
-def session_options(context, ob, settings, mode="remove"):
+def session_options(context, ob, settings, brush):
     clean = units.clean
     options = {
-        "mode": mode,
+        "mode": brush.cuts,
         "stiffness": clean(settings.stiffness),
         "material": riffler.Material(removal_constant=clean(settings.removal_constant)),
         "obstacles": obstacles(context, ob),
@@ -172,7 +161,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
             return {"CANCELLED"}
         _take_up_tool(context)
         settings, session = context.scene.riffler.sculpt, pen_session.running
-        if session.run.pushes and mode_of(context, self.mode) not in ("mask", "unmask"):
+        if session.run.pushes and brush_of(context, self.mode).chips:
             _shown = force_view.begin(units.clean(settings.limit), session.diameter, session.live.to_world)
         draw_pace.begin(session.live.stages)
         bpy.app.timers.register(_look, first_interval=FRAME)
@@ -181,14 +170,14 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
     def _start(self, context):
         ob = sculpts.active(context)
         try:
-            mode = mode_of(context, self.mode)
+            brush = brush_of(context, self.mode)
             if len(context.scene.riffler.sculpt.maps()) > 1:
                 self.report({"WARNING"}, local(NO_COPIES))
             sculpt_work.check_state(self, context, ob)
             sculpt_work.refuse_edits(ob)
             depth = units.clean(context.scene.riffler.sculpt.depth)
-            tool = tool_for(mode, riffler.Tool.from_dict(self.tool_dict(context)), depth)
-            folder, options = recordings(self), session_options(context, ob, self, mode)
+            tool = brush.cutter(riffler.Tool.from_dict(self.tool_dict(context)), depth)
+            folder, options = recordings(self), session_options(context, ob, self, brush)
             device = open_device(self)
             pen_session.PenSession(context, ob, device, tool, options, folder, _leave)
         except (*operator_parts.ERRORS, TypeError) as error:
@@ -226,7 +215,8 @@ def _tell(session):
     if _shown is not None and run.pose is not None:
         _shown.pose, _shown.to_world = run.pose, session.live.to_world
         _shown.force, _shown.torque = run.push
-    what = " put on" if session.mode == "add" else ""
+    brush = brushes.of(session.mode)
+    what = f" {brush.done}" if brush.puts_on else ""
     hand = f"Hand: {run.state}, {run.force:.2f} N"
     text = f"{units.format_volume(session.changed)}{what} in {_strokes(session)}"
     told = hand, text, run.why
@@ -274,9 +264,10 @@ def _stop(operator):
 def _said(operator, session):
     """What a session has done, and whether that is anything."""
     problem = session.problem or session.run.why
-    done = SAID[session.mode]
+    brush = brushes.of(session.mode)
+    done = brush.done
     if not session.count:
-        why = problem or NO_STROKE[session.mode]
+        why = problem or brush.no_stroke
         operator.report({"WARNING"}, f"Nothing was {done} in {session.seconds:.1f} s: {why}")
         return {"CANCELLED"}
     note = f"; {session.problem}" if session.problem else ""

@@ -9,23 +9,22 @@ The work ends by itself once no window has the sculpt and one of its tools (idle
 modal runs between strokes, since Blender makes no autosave while something does.
 """
 
-import uuid
-
 import bpy
 import numpy as np
 import riffler
 
 from ..blender import refusals, versions
-from ..common import blocks
 from ..common.contents import Content
-from ..common.job import cuts_of
 from ..common.poses import moving
-from . import chunks, idle_detection, persistence, sculpt_store, sculpts
+from . import brushes, chunks, idle_detection, persistence, sculpt_store, sculpts, undo_states
 from .pure import reach, symmetry
 from .pure.stages import Stages
-from .undo_states import SPARE, State, snapshots, state_of
+from .pure.stroke_record import StrokeRecord, copy_of, revision
+from .sculpt_identity import SculptIdentity
+from .shown_surface import ShownSurface
+from .undo_states import State
 
-lives = {}  # by the mark of the object (sculpts.new_mark); sculpt/live_registry.py keeps it
+lives = {}  # by the mark of the object (sculpts.new_mark); live_registry.py keeps it
 
 
 class LiveSculpt:
@@ -37,10 +36,10 @@ class LiveSculpt:
         content = sculpt_store.content(ob.data)
         sculpts.new_mark(ob)
         self._take(ob, content)
-        self._mesher = riffler.Mesher(self.volume)
-        self.chunks = chunks.Chunks(context, ob, self._mesher.shape, self.mm)
+        mesher = riffler.Mesher(self.volume)
+        self._show_in(chunks.Chunks(context, ob, mesher.shape, self.mm), mesher)
         try:
-            self.chunks.update(self._mesher, self._mesher.patches(), self.mask)
+            self.chunks.update(mesher, mesher.patches(), self.mask)
         except Exception:
             chunks.sweep(self.mark, self.name)
             raise
@@ -54,46 +53,51 @@ class LiveSculpt:
         """Of a sculpt whose chunks an undo has brought back after the work at it had ended."""
         self = cls.__new__(cls)
         self._take(ob, state.content)
-        self.chunks = chunks.Chunks.found(ob, state.shape, self.mm)
+        self._show_in(chunks.Chunks.found(ob, state.shape, self.mm))
         self.token = ob.riffler.token
         self.persistence = persistence.Persistence(ob, self.token)
         versions.lighten(ob.data)
-        self._show(state)
+        self._surface.adopt(state.fillings, self.volume, self.mask)
         self.chunks.hide_tool()
         return self
 
     def _take(self, ob, content):
-        self.mark, self.name, self.mm = ob.riffler.mark, ob.name, sculpts.shown_mm_per_unit(ob.data)
-        self._identities = {sculpt_store.identity(ob.data)}  # under which the file has states of this work
+        self._identity = SculptIdentity(ob)
         self.stages = Stages()
-        self.volume, self.mask, self.cuts = content.volume.copy(), _copy(content.mask), list(content.cuts)
-        self.shaped = content.shaped  # by other means than cuts
-        self._mesher, self._stale = None, False  # stale: it has another state than the volume
+        self._become(content)
+        self.token = ""  # of the state
+        self._facts = None  # (token, of it)
         self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
-        self.strength = 0.5  # of dabs that soften
+        self.strength = 0.5  # of brushes that blend
         self.keep_out = None  # of the copies by symmetry, as BrushStroke's
-        self._apart = set()  # copies whose last moves were kept out
-        self.awake, self._away = True, idle_detection.IdleClock()
-        self._strokes, self._begin = [], None  # of the stroke that is being made
+        self.stroke = None  # StrokeRecord of the one that is being made
         self.cut_off = False  # whether the box has cut off what this stroke, or this session, put on
         self._outline = None, None  # a tool, and its cutter's
-        self._masked, self._painted = [], []  # where the mask has changed since the last look, and in this stroke
-        self._reached, self._swept = [], []  # what tools have swept since the last look, and in this stroke
-        self.token = ""
-        self._facts = None  # (token, of it)
+        self.awake, self._idle = True, idle_detection.IdleClock()
         self._objects = -1  # in the file, when copies were last looked for
-        self.device = None  # pen/session.PenSession, while one sculpts this
+        self.device = None  # pen/session.py: PenSession, while one sculpts this
+
+    def _show_in(self, chunks, mesher=None):
+        self.chunks, self._surface = chunks, ShownSurface(chunks, self.stages, mesher)
 
     # ------------------------------------------------------------------ where things are
     @property
     def object(self):
         """The sculpt, as long as it is the one that this was begun with and nothing else has changed it; otherwise
         None."""
-        ob = sculpts.marked(self.mark, self.name)
-        if ob is None or not ob.users or sculpt_store.identity(ob.data) not in self._identities:
-            return None
-        self.name = ob.name
-        return ob
+        return self._identity.object
+
+    @property
+    def mark(self):
+        return self._identity.mark
+
+    @property
+    def name(self):
+        return self._identity.name
+
+    @property
+    def mm(self):
+        return self._identity.mm
 
     @property
     def to_mm(self):
@@ -105,15 +109,14 @@ class LiveSculpt:
         """(4, 4): mm in the sculpt's frame → Blender units in the world."""
         return np.linalg.inv(self.to_mm)
 
-    @property
-    def mesher(self):
-        """riffler.Mesher of the volume as it is: undo alone does not need it, the next stroke does."""
-        if self._mesher is None:
-            self._mesher = riffler.Mesher(self.volume)
-        elif self._stale:
-            self._mesher.update(self.volume)
-        self._stale = False
-        return self._mesher
+    # ------------------------------------------------------------------ what it is
+    def _become(self, content):
+        """Takes over a state: volume, mask, cuts, and whether other means have shaped it."""
+        self.volume = content.volume.copy()
+        self.mask, self.cuts, self.shaped = copy_of(content.mask), list(content.cuts), content.shaped
+
+    def _content(self):
+        return Content(self.volume.copy(), self.cuts, copy_of(self.mask), self.shaped)
 
     @property
     def facts(self):
@@ -122,33 +125,36 @@ class LiveSculpt:
             self._facts = self.token, sculpts.facts(Content(self.volume, self.cuts, self.mask))
         return self._facts[1]
 
-    # ------------------------------------------------------------------ a stroke
+    @property
+    def mesher(self):
+        return self._surface.mesher(self.volume)
+
     def freeze(self):
         """The surface as it is now, for picking while the stroke changes it."""
         return self.mesher.freeze()
 
+    def show(self):
+        self._surface.show(self.volume, self.mask, self.object.matrix_world)
+
+    # ------------------------------------------------------------------ a stroke
     def begin_stroke(self):
         _ = self.mesher  # has to know what is shown before it changes
         ob = self.object
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
-        self._strokes, self._painted, self._swept, self.cut_off = [], [], [], False
-        self._apart.clear()
-        self._begin = self.volume.copy(), _copy(self.mask)
-        self._next = uuid.uuid4().hex  # the token of the state that the stroke makes
+        self.stroke, self.cut_off = StrokeRecord(self._content()), False
         versions.lighten(ob.data)
-        self.persistence.begin_stroke(ob, self.token, Content(self._begin[0], self.cuts, self._begin[1], self.shaped))
+        self.persistence.begin_stroke(ob, self.token, self.stroke.begin)
 
     def begin_device_stroke(self):
         """What a device has begun to take belongs to a stroke."""
-        content = snapshots.get(self.token).content
-        self._strokes, self._painted = [], []
-        self._begin, self._next = (content.volume.copy(), _copy(content.mask)), uuid.uuid4().hex
+        content = undo_states.snapshots.get(self.token).content
+        self.stroke = StrokeRecord(Content(content.volume.copy(), content.cuts, copy_of(content.mask), content.shaped))
         versions.lighten(self.object.data)
 
     @property
     def in_stroke(self):
-        return self._begin is not None
+        return self.stroke is not None
 
     def give_up(self):
         """What a device has taken since the last state is there again."""
@@ -158,39 +164,55 @@ class LiveSculpt:
 
     def took(self, tool, rows, mode):
         """The poses, (n, 6), of a stroke with `tool`, a dictionary, that a device has made."""
-        if mode == "add":
-            self._reach_out(riffler.Tool.from_dict(tool), rows)
-        self._strokes.append((0, tool, mode, [rows]))
+        brush, tool = brushes.of(mode), riffler.Tool.from_dict(tool)
+        if brush.puts_on:
+            self._reach_out(tool, rows)
+        if self.in_stroke:
+            brush.record(self.stroke, 0, tool, rows, True)
 
     def carve(self, tool, poses, dt=None, mode="remove", new=True):
-        """Carves the poses, (n, 6), and their copies by symmetry. `new`: they do not go on from the last ones. Returns
-        riffler.Cut of the poses themselves, but for those that stand; of "soften", dabs at the tips as wide as the
-        tool, None."""
-        if mode == "unmask" and self.mask is None:
+        """Applies a brush (`mode`: its id) along the poses, (n, 6), and along their copies by symmetry. `new`: they do
+        not go on from the last ones. Returns what Brush.apply does of the poses themselves."""
+        brush = brushes.of(mode)
+        if brush.idle(self):
             return None
-        if self._begin is None:
+        if self.stroke is None:
             self.begin_stroke()
-        first, poses = None, np.asarray(poses, float)
-        if mode == "soften":
-            poses = poses[0 if new else 1 :]  # the first was dabbed with the last ones
-            if not len(poses):
-                return None
-        else:
-            poses, dt = moving(poses, dt)
+        first, stroke = None, self.stroke
+        poses, dt = brush.moves(np.asarray(poses, float), dt, new)
+        if not len(poses):
+            return None
         with self.stages.of("cut"):
             for k, copy in enumerate(symmetry.copies(poses, self.maps, self.centre)):
                 copy = self._kept_out(k, copy)
                 if copy is None:
                     continue
-                cut = self._cut(tool, copy, dt if k == 0 else None, mode)
-                if mode == "add":
-                    self._reach_out(tool, copy)
+                cut = self._apply(brush, tool, copy, dt if k == 0 else None)
                 first = first or cut
-                self.persistence.carved(tool.to_dict(), copy, mode, self._next, self.strength)
-                self._note(tool, copy, mode, new or k in self._apart, k)
-                self._apart.discard(k)
+                self.persistence.carved(tool.to_dict(), copy, brush.journal, stroke.token, self.strength)
+                brush.record(stroke, k, tool, copy, new or k in stroke.apart)
+                stroke.apart.discard(k)
         self.stages.count(moves=max(len(poses) - 1, 0))
         return first
+
+    def _apply(self, brush, tool, poses, dt):
+        extent = self._extent(tool, poses)
+        if brush.paints:
+            self._surface.masked.append(extent)
+            self.stroke.painted.append(extent)
+        else:
+            self._surface.reached.append(extent)
+            self.stroke.swept.append(extent)
+        cut = brush.apply(self, tool, poses, dt)
+        if brush.puts_on:
+            self._reach_out(tool, poses)
+        return cut
+
+    def _extent(self, tool, poses):
+        """(lower, upper) of what the cutter may touch, in rays."""
+        ends = np.vstack([poses[:, :3], poses[:, :3] + tool.length * poses[:, 3:]])
+        lower, upper = ends.min(axis=0) - tool.diameter / 2, ends.max(axis=0) + tool.diameter / 2
+        return (lower - self.volume.lower) / self.volume.pitch, (upper - self.volume.lower) / self.volume.pitch
 
     def _reach_out(self, tool, poses):
         if self._outline[0] is not tool:
@@ -203,116 +225,55 @@ class LiveSculpt:
             return poses
         kept = self.keep_out(poses, np.ones(len(poses) - 1))
         if kept is None:
-            self._apart.add(k)
+            self.stroke.apart.add(k)
             return None
         return moving(kept[0])[0]
-
-    def _cut(self, tool, poses, dt, mode):
-        if mode in ("mask", "unmask"):
-            if self.mask is None:
-                v = self.volume
-                self.mask = riffler.Volume.empty(v.lower, v.upper, v.pitch, v.directions)
-            self._masked.append(self._reach(tool, poses))
-            self._painted.append(self._masked[-1])
-            return self.mask.carve(tool, poses, dt=dt, mode="add" if mode == "mask" else "remove")
-        self._reached.append(self._reach(tool, poses))
-        self._swept.append(self._reached[-1])
-        if mode == "soften":
-            self.volume.soften(poses[:, :3], 0.5 * tool.diameter, self.strength, self.mask)
-            return None
-        return self.volume.carve(tool, poses, dt=dt, mode=mode, protect=self.mask)
-
-    def _reach(self, tool, poses):
-        """(lower, upper) of what the cutter may touch, in rays."""
-        ends = np.vstack([poses[:, :3], poses[:, :3] + tool.length * poses[:, 3:]])
-        lower, upper = ends.min(axis=0) - tool.diameter / 2, ends.max(axis=0) + tool.diameter / 2
-        return (lower - self.volume.lower) / self.volume.pitch, (upper - self.volume.lower) / self.volume.pitch
-
-    def _note(self, tool, poses, mode, new, copy):
-        """Among the cuts, where it can be cut again: what is protected is in the mask."""
-        if mode == "soften":  # which no cut tells
-            self._strokes.append((copy, {}, mode, []))
-        if mode not in ("remove", "add"):
-            return
-        if not new:
-            for stroke in reversed(self._strokes):
-                if stroke[0] == copy and stroke[2] == mode:
-                    stroke[3].append(poses[1:])
-                    return
-        self._strokes.append((copy, tool.to_dict(), mode, [poses]))
-
-    def show(self):
-        """Meshes what has changed since the last time, and fills the chunks that it is in."""
-        with self.stages.of("mesh"):
-            bricks = self.mesher.update(self.volume)
-        for rays in self._masked:  # the surface is the same there, but not its colour
-            bricks = sorted({*bricks, *blocks.within(self._mesher.shape, *rays)})
-        bricks = self._with_borders(bricks)
-        self._masked, self._reached = [], []
-        with self.stages.of("transfer"):
-            self.chunks.update(self._mesher, bricks, self.mask, self.stages)
-            self.chunks.place(self.object.matrix_world)
-        self.stages.looked()
-
-    def _with_borders(self, bricks):
-        """And those whose triangles are the same, but whose normals at the border to a changed one are others."""
-        if not versions.OWN_NORMALS or not len(bricks):
-            return bricks
-        shape = self._mesher.shape
-        swept = {b for reach in self._reached for b in blocks.within(shape, *reach)}
-        return sorted({*bricks, *(swept & blocks.beside(shape, bricks))})
 
     def finish_stroke(self, context, label=""):
         """What was carved since `begin_stroke` is a state of its own. The caller's operator makes the undo step; a
         caller that has none gives it a `label`. False where nothing has changed."""
-        begin, self._begin = self._begin, None
-        if begin is None or (begin[0].revision == self.volume.revision and _revision(begin[1]) == _revision(self.mask)):
+        stroke, self.stroke = self.stroke, None
+        if stroke is None or not stroke.changed(self.volume, self.mask):
             return False
-        self.cuts = [*self.cuts, *cuts_of(self._strokes, self.mask is not None)]
-        self.shaped |= any(mode == "soften" for _, _, mode, _ in self._strokes)
+        self.cuts = [*self.cuts, *stroke.cuts(self.mask is not None)]
+        self.shaped |= stroke.shaped
         self.show()
         ob = self.object
-        self._remember(ob, self._next)
-        self.persistence.finished(ob, snapshots.get(self.token).content, self.token)
-        self._identities.add(sculpt_store.identity(ob.data))
+        self._remember(ob, stroke.token)
+        self.persistence.finished(ob, undo_states.snapshots.get(self.token).content, self.token)
+        self._identity.written(ob)
         if label:
             bpy.ops.ed.undo_push(message=label)
         return True
 
     def cancel_stroke(self):
-        begin, self._begin = self._begin, None
-        if begin is not None:
-            self.volume, self.mask = begin
-            self._masked, self._reached = self._painted, self._swept
+        stroke, self.stroke = self.stroke, None
+        if stroke is not None:
+            self.volume, self.mask = stroke.begin.volume, stroke.begin.mask
+            self._surface.masked, self._surface.reached = stroke.painted, stroke.swept
             self.persistence.cancelled()
             self.show()
 
-    def _content(self):
-        return Content(self.volume.copy(), self.cuts, _copy(self.mask), self.shaped)
-
+    # ------------------------------------------------------------------ undo
     def _remember(self, ob, token=""):
-        before, self.token = self.token, token or uuid.uuid4().hex
-        content = self._content()
-        state = State(content, tuple(self._mesher.shape), dict(self.chunks.fillings))
-        snapshots.most = bpy.context.preferences.edit.undo_steps + SPARE
-        snapshots.hold({other.token for other in lives.values()})
-        snapshots.put(self.token, state, replaces=before)
+        """What is shown is a state that undo and redo may ask for."""
+        state = State(self._content(), self._surface.shape, dict(self.chunks.fillings))
+        self.token = undo_states.remember(state, token, self.token, {other.token for other in lives.values()})
         ob.riffler.token = self.token
 
-    # ------------------------------------------------------------------ undo
     def follow(self):
         """After an undo or a redo: this shows what Blender has brought back. False where it cannot."""
         ob = self.object
         if ob is None:
             return False
-        was, self.awake, self._begin = self.awake, self.chunks.there, None
+        was, self.awake, self.stroke = self.awake, self.chunks.there, None
         if was != self.awake:
             self.chunks.outline(was)
         if not self.awake:
             if self.device is not None:
                 self.device.drop()
             return True  # redo may bring it again
-        state = state_of(ob)
+        state = undo_states.state_of(ob)
         if state is None:
             return False
         dropped = self.device is not None and not self.chunks.tool_there  # its beginning was undone
@@ -321,19 +282,23 @@ class LiveSculpt:
         if dropped or self.device is not None or ob.riffler.token != self.token:
             self._bring(state.content, ob.riffler.token)
         self.persistence.went(self.token)
-        self._show(state)
+        self._surface.adopt(state.fillings, self.volume, self.mask)
         if self.device is None:
             self.chunks.hide_tool()
         return True
 
     def _bring(self, content, token):
-        if self.device is None or not self.device.go(content):
-            self.volume = content.volume.copy()
-        self.mask, self.cuts, self.shaped = _copy(content.mask), list(content.cuts), content.shaped
-        self.token, self._stale = token, True
+        volume = self.volume
+        kept = self.device is not None and self.device.go(content)
+        self._become(content)
+        if kept:  # the device's session has the volume, and has undone its own strokes in it
+            self.volume = volume
+        self.token = token
+        self._surface.outdate()
         if self.device is not None:
             _ = self.mesher  # has to know what is shown before the device cuts on
 
+    # ------------------------------------------------------------------ the end
     def forget(self):
         """Somebody works at it no more, and nothing of it is to be seen."""
         if self.device is not None:
@@ -342,13 +307,6 @@ class LiveSculpt:
             self.chunks.outline(True)
         self.persistence.end()
 
-    def _show(self, state):
-        """Blender has brought the chunks' meshes back, too; what it has not is filled."""
-        stale = self.chunks.adopt(state.fillings)
-        if stale:
-            self.chunks.update(self.mesher, stale, self.mask, self.stages)
-
-    # ------------------------------------------------------------------ the end
     def commit(self):
         """The sculpt's mesh and data are what is shown."""
         ob = self.object
@@ -356,8 +314,8 @@ class LiveSculpt:
             return
         if self._changed(ob):
             content = self._content()
-            sculpts.commit(ob.data, content, self.mm, "" if self._begin else self.token)
-            self._identities.add(sculpt_store.identity(ob.data))
+            sculpts.commit(ob.data, content, self.mm, "" if self.in_stroke else self.token)
+            self._identity.written(ob)
         elif sculpts.behind(ob.data) or not ob.data.polygons:
             sculpts.refill(ob.data, self.mm)
 
@@ -366,7 +324,7 @@ class LiveSculpt:
             content = sculpt_store.content(ob.data)
         except ValueError:  # what is packed is damaged: what is in memory takes its place
             return True
-        return content.volume.revision != self.volume.revision or _revision(content.mask) != _revision(self.mask)
+        return content.volume.revision != self.volume.revision or revision(content.mask) != revision(self.mask)
 
     def end(self):
         """Commits, and shows the sculpt itself again. An undo may bring the work back."""
@@ -388,10 +346,10 @@ class LiveSculpt:
     # ------------------------------------------------------------------ between strokes
     def look(self, now):
         """Ends the work that nobody is at any more; otherwise packs it while the hand rests."""
-        if not self.awake or self._begin is not None:
+        if not self.awake or self.in_stroke:
             return
         ob = self.object
-        if ob is None or ob.mode != "OBJECT" or self._away.long(idle_detection.stays(ob), now):
+        if ob is None or ob.mode != "OBJECT" or self._idle.long(idle_detection.stays(ob), now):
             self.end()
             return
         if self._objects != len(bpy.data.objects):
@@ -400,9 +358,9 @@ class LiveSculpt:
         self.rest(ob)
 
     def rest(self, ob):
-        state = snapshots.get(self.token)
+        state = undo_states.snapshots.get(self.token)
         if state is not None and self.persistence.look(ob, state.content, self.token):
-            self._identities.add(sculpt_store.identity(ob.data))
+            self._identity.written(ob)
 
     def _part_copies(self, ob):
         """What was duplicated meanwhile is a sculpt of its own, with the state that is shown. What shares the mesh
@@ -413,11 +371,3 @@ class LiveSculpt:
                 continue
             sculpts.commit(other.data, self._content(), self.mm)
             chunks.reveal(other)
-
-
-def _copy(volume):
-    return None if volume is None else volume.copy()
-
-
-def _revision(volume):
-    return None if volume is None else volume.revision

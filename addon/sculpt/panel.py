@@ -6,15 +6,20 @@ from ..blender import object_surfaces
 from ..blender.panel_parts import Sidebar, lines
 from ..common import presets, units
 from ..translations import CONTEXT
-from . import first_stroke, live_registry, sculpts
+from . import brushes, first_stroke, live_registry, sculpts
 
-MODES = {"riffler.carve": "Carve", "riffler.add": "Add", "riffler.smooth": "Smooth", "riffler.mask": "Mask"}
+AROUND = 4  # places of the pie that are left for brushes
 
 
-def tool_of(context):
-    """Identifier of the sculpt tool that is active in the 3D view, or ""."""
+def brush_of(context):
+    """The brush whose tool is active in the 3D view, or None."""
     tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
-    return tool.idname if tool is not None and tool.idname in MODES else ""
+    return brushes.of_tool(tool.idname) if tool is not None else None
+
+
+def choose(layout, brush, **how):
+    """A button that makes the brush's tool the active one."""
+    layout.operator("wm.tool_set_by_id", text=brush.label, text_ctxt=CONTEXT, **how).name = brush.tool
 
 
 def fields(context):
@@ -30,7 +35,8 @@ def draw_header(context, layout):
     preset = context.scene.riffler.tool.from_preset()
     layout.menu("RIFFLER_MT_tools", text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
     layout.prop(stroke, "radius", text="Radius (mm)")
-    if tool_of(context) == "riffler.smooth":
+    brush = brush_of(context)
+    if brush is not None and brush.second == "STRENGTH":
         layout.prop(stroke, "strength", slider=True)
     else:
         layout.prop(stroke, "depth", text="Depth (mm)")
@@ -79,10 +85,10 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
         self._work(layout, context)
 
     def _tools(self, layout, context):
-        active = tool_of(context)
+        active = brush_of(context)
         row = layout.row(align=True)
-        for name, label in MODES.items():
-            row.operator("wm.tool_set_by_id", text=label, text_ctxt=CONTEXT, depress=name == active).name = name
+        for brush in brushes.with_tool():
+            choose(row, brush, depress=brush is active)
 
     def _symmetry(self, layout, settings):
         row = layout.row(heading="Mirror", align=True)
@@ -124,14 +130,17 @@ class RIFFLER_MT_sculpt_pie(bpy.types.Menu):
 
     def draw(self, context):
         pie = self.layout.menu_pie()
-        for name, label in MODES.items():  # left, right, below, above
-            pie.operator("wm.tool_set_by_id", text=label, text_ctxt=CONTEXT).name = name
+        around, more = brushes.with_tool()[:AROUND], brushes.with_tool()[AROUND:]
+        for brush in around:  # left, right, below, above
+            choose(pie, brush)
         settings, tool = fields(context)
         box = pie.box().column()
         box.prop(tool, "kind", text="")
         for key in presets.SIZES[tool.kind][:2]:
             box.prop(tool, key)
         box = pie.box().column()
+        for brush in more:
+            choose(box, brush)
         box.prop(settings, "depth")
         box.prop(settings, "axis", text="")
         box.prop(settings, "string")

@@ -12,13 +12,6 @@ from . import live_registry, sculpts
 from .pure import brush_stroke, symmetry
 from .pure.view_rays import ViewRays
 
-COLOURS = {
-    "remove": (1.0, 0.45, 0.2),
-    "add": (0.3, 0.65, 1.0),
-    "soften": (0.55, 0.9, 0.45),
-    "mask": (0.85, 0.85, 0.85),
-    "unmask": (0.6, 0.6, 0.6),
-}
 AXES = ((1.0, 0.25, 0.3), (0.45, 0.8, 0.1), (0.25, 0.55, 1.0))  # planes square to x, y and z, as Blender's axes
 SHADOW = (0.0, 0.0, 0.0, 0.55)
 SHOWN = 1.5  # diameters of the tool above its tip: more would cover the view
@@ -34,8 +27,8 @@ def sight(region, space, run):
     return ViewRays(meshes.matrix(space.perspective_matrix) @ run.to_world, (region.width, region.height))
 
 
-def draw(context, mode, xy):
-    """`mode`: of sculpt/pure/brush_stroke.py; `xy`: the pointer in the window."""
+def draw(context, brush, xy):
+    """`xy`: the pointer in the window."""
     region, space = context.region, context.region_data
     ob = sculpts.active(context)
     if region is None or space is None or context.window_manager.riffler.sculpting:
@@ -44,10 +37,10 @@ def draw(context, mode, xy):
     zoom, corner = context.preferences.system.ui_scale, (region.x, region.y)
     if sizing is not None:
         rings = [(sizing.middle, sizing.first * sizing.scale, False), (sizing.middle, sizing.radius, True)]
-        _draw([(_ring(*ring), True, strong) for *ring, strong in rings], corner, COLOURS[mode], zoom)
+        _draw([(_ring(*ring), True, strong) for *ring, strong in rings], corner, brush.colour, zoom)
         return
     if ob is None:
-        _draw(_before(context, region, space, at), corner, COLOURS[mode], zoom)
+        _draw(_before(context, region, space, at), corner, brush.colour, zoom)
         return
     if held is None:
         _planes(context, ob, region, space, corner, zoom)
@@ -55,13 +48,13 @@ def draw(context, mode, xy):
     run = live_registry.of(ob)
     lines = None
     if run is not None and run.object is not None:
-        lines = _on_surface(context, mode, run, tool, at)
+        lines = _on_surface(context, brush, run, tool, at)
     if lines is None:
         lines = _beside(context, ob, region, space, at)
-    _draw(lines, corner, COLOURS[mode], zoom)
+    _draw(lines, corner, brush.colour, zoom)
 
 
-def _on_surface(context, mode, run, tool, at):
+def _on_surface(context, brush, run, tool, at):
     """None where nothing is under the pointer, and where a stroke would be refused with a message: drawing has none."""
     global pixels_per_mm
     settings = context.scene.riffler.sculpt
@@ -70,7 +63,7 @@ def _on_surface(context, mode, run, tool, at):
         if held is not None and held.pose is not None:
             cutter, pose, place, normal = held.tool, held.pose, None, None
         else:
-            probe = brush_stroke.BrushStroke(run, tool, view, settings.choice(mode), surface=run.mesher)
+            probe = brush_stroke.BrushStroke(run, tool, view, settings.choice(brush.id), surface=run.mesher)
             found = probe.hover(*at)
             if found is None:
                 return None

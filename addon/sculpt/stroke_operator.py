@@ -15,25 +15,13 @@ import riffler
 from ..blender import operator_parts
 from ..common import units
 from ..translations import local
-from . import draw_pace, fixtures, force_view, live_registry, mesh_edits, pointer, sculpt_work, sculpts
+from . import brushes, draw_pace, fixtures, force_view, live_registry, mesh_edits, pointer, sculpt_work, sculpts
 from .pure import brush_stroke, reach
 from .pure.stroke_path import Sample
 
 LOOK = 1 / 30  # s from one look to the next
-MODES = (
-    ("REMOVE", "Carve", "Take material away"),
-    ("ADD", "Add", "Put material on"),
-    ("SOFTEN", "Smooth", "Smooth the surface"),
-    ("MASK", "Mask", "Protect what the tool sweeps"),
-    ("UNMASK", "Unmask", "Protect it no more"),
-)
+MODES = brushes.entries(brushes.BRUSHES.values())
 MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
-ONE_DIRECTION = (
-    "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in the box "
-    "at the lower left"
-)
-CHIPS = {"REMOVE", "ADD"}  # what has a force
-LIFTED = {"remove", "soften"}  # what a tool does from outside; fixtures are in its way
 
 _held = None  # the operator whose stroke is being made in a window
 last = ""  # the newest stroke that was made by hand, for riffler.stroke(stroke=…)
@@ -74,7 +62,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
             self._undone()
             return operator_parts.fail(self, error)
         try:
-            brush_stroke.replay(self._brush, samples, looks)
+            brush_stroke.replay(self._stroke, samples, looks)
         except operator_parts.ERRORS as error:
             self._undone()
             return operator_parts.fail(self, error)
@@ -103,10 +91,10 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
             None  # since when what is carved, and what the last look has shown, may have waited
         )
         self._shown = None
-        if settings.show_force and self.mode in CHIPS:
+        if settings.show_force and brushes.of(self.mode.lower()).chips:
             limit = units.clean(settings.limit)
-            self._shown = force_view.begin(limit, self._brush.tool.diameter, self._run.to_world)
-        pointer.held = self._brush
+            self._shown = force_view.begin(limit, self._stroke.tool.diameter, self._run.to_world)
+        pointer.held = self._stroke
         draw_pace.begin(self._run.stages)
         self._timer = context.window_manager.event_timer_add(LOOK, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -144,16 +132,17 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
     def _start(self, context, view):
         ob = sculpts.active(context)
         settings, mode = context.scene.riffler.sculpt, self.mode.lower()
-        if mode == "soften" and self._run.volume.directions != "xyz":
-            raise ValueError(ONE_DIRECTION)
+        brush = brushes.of(mode)
+        if why := brush.refusal(self._run.volume):
+            raise ValueError(why)
         self._run.maps, self._run.strength = settings.maps(), units.clean(settings.strength)
-        tool, keep_out = self.tool_dict(context), None
-        if settings.fixtures is not None and mode in LIFTED:
+        tool, choice, keep_out = self.tool_dict(context), settings.choice(mode), None
+        if settings.fixtures is not None and brush.clear:
             obstacle = fixtures.collider(context, settings.fixtures, self._run.to_mm, {ob.name})
             if obstacle is not None:
-                keep_out = fixtures.keeper(riffler.Tool.from_dict(tool), obstacle)
+                keep_out = fixtures.keeper(brush.cutter(riffler.Tool.from_dict(tool), choice.depth), obstacle)
         self._run.keep_out = keep_out
-        self._brush = brush_stroke.BrushStroke(self._run, tool, view, settings.choice(mode), keep_out)
+        self._stroke = brush_stroke.BrushStroke(self._run, tool, view, choice, keep_out)
 
     def _step(self, context):
         """Once for each picture that Blender draws."""
@@ -166,7 +155,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
                 self._oldest = before
             if self._oldest is not None and now - self._looked >= LOOK:
                 self._looked, self._drawn, self._oldest = now, self._oldest, None
-                self._brush.look()
+                self._stroke.look()
                 self._tell(context)
         except operator_parts.ERRORS as error:
             self._give_up(context)
@@ -179,25 +168,25 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         self._taken, self._queue = now, []
         for k, sample in enumerate(queue, 1):
             passed = before + (now - before) * k / len(queue) - self._begin
-            carved |= self._brush.add(sample._replace(time=passed))
+            carved |= self._stroke.add(sample._replace(time=passed))
         return carved
 
     def _tell(self, context):
-        made = self._brush
+        made = self._stroke
         if self._shown is not None and made.pose is not None:
             self._shown.pose, self._shown.force, self._shown.torque = made.pose, made.force, made.torque
         if context.workspace is not None:
-            context.workspace.status_text_set(f"Riffler: {summary(made, self.mode)}    Esc: take the stroke back")
+            context.workspace.status_text_set(f"Riffler: {summary(made, made.brush)}    Esc: take the stroke back")
 
     def _end(self, context):
         global last
         try:
             self._carve(time.perf_counter())
-            self._brush.end()
+            self._stroke.end()
         except operator_parts.ERRORS as error:
             self._give_up(context)
             return operator_parts.fail(self, error)
-        last = self._brush.text()
+        last = self._stroke.text()
         self._leave(context)
         return self._finish(context)
 
@@ -213,7 +202,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
                 self.report({"WARNING"}, local(reach.CUT_OFF))
             return {"FINISHED"}
         self._undone()
-        self.report({"INFO"}, nothing(self._brush, self.mode))
+        self.report({"INFO"}, nothing(self._stroke, self._stroke.brush))
         return {"CANCELLED"}
 
     def _give_up(self, context):
@@ -252,21 +241,18 @@ def sample(event, corner):
     return Sample(event.mouse_x - corner[0], event.mouse_y - corner[1], pressure, lean[0], -lean[1])
 
 
-def summary(made, mode):
-    what = {"REMOVE": "removed", "ADD": "put on", "MASK": "protected", "UNMASK": "unprotected"}.get(mode, "changed")
+def summary(made, brush):
     lifted = f", {units.counted(made.lifted, 'move')} lifted over fixtures" if made.lifted else ""
-    return f"{units.format_volume(made.removed)} {what} in {units.counted(made.moves, 'move')}{lifted}"
+    return f"{units.format_volume(made.removed)} {brush.done} in {units.counted(made.moves, 'move')}{lifted}"
 
 
-def nothing(made, mode):
+def nothing(made, brush):
     """Why a stroke changed nothing."""
     if made.moves == 0 and made.lifted:
         return "The fixtures kept the tool out"
     if made.moves == 0:
         return "The stroke did not meet the sculpt"
-    if mode == "ADD":
-        return "Nothing was put on: the stock's box is full there, or protected. Make Room in Clay gives it more"
-    return "The stroke changed nothing: what it met is protected, or there was nothing left to change"
+    return brush.unchanged
 
 
 CLASSES = (RIFFLER_OT_stroke,)

@@ -4,24 +4,23 @@ from pathlib import Path
 
 import bpy
 
-from . import panel, pointer
-from .pure import brush_stroke
+from . import brushes, panel, pointer
+from .brushes.smooth import SMOOTH
 from .size_gizmo import RIFFLER_GGT_size
 
 ICONS = Path(__file__).resolve().parent.parent / "icons"  # an absolute path is taken as it is
 
 
-def _stroke(mode, **modifiers):
+def _stroke(brush, **modifiers):
     """On the active sculpt; where Blender may not call that, on whatever is under the pointer."""
     event = {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}
-    given = {"properties": [("mode", mode.upper())]}
+    given = {"properties": [("mode", brush.id.upper())]}
     return ("riffler.stroke", event, given), ("riffler.stroke_elsewhere", event, given)
 
 
-def _size(mode):
+def _size(brush):
     """F and Shift F, as in Sculpt Mode, where the second is strength; of a cutter that is its depth."""
-    second = "STRENGTH" if mode == "soften" else "DEPTH"
-    for field, shift in (("RADIUS", False), (second, True)):
+    for field, shift in (("RADIUS", False), (brush.second, True)):
         event = {"type": "F", "value": "PRESS", "shift": shift}
         yield ("riffler.resize", event, {"properties": [("field", field)]})
     for key, larger in (("LEFT_BRACKET", False), ("RIGHT_BRACKET", True)):
@@ -30,7 +29,7 @@ def _size(mode):
 
 
 class SculptTool:
-    """Mixin; a subclass has a mode of sculpt/pure/brush_stroke.py."""
+    """Mixin; a subclass has a brush."""
 
     bl_space_type = "VIEW_3D"
     bl_context_mode = "OBJECT"
@@ -38,32 +37,31 @@ class SculptTool:
     bl_widget = RIFFLER_GGT_size.bl_idname
 
 
-def _tool(mode, label, text):
-    """A WorkSpaceTool of a mode; Blender wants a class for each."""
+def _tool(brush):
+    """A WorkSpaceTool of a brush; Blender wants a class for each."""
 
     def draw_cursor(context, tool, xy):
-        pointer.draw(context, mode, xy)
+        pointer.draw(context, brush, xy)
 
-    name = label.lower()
     return type(
-        f"RifflerTool{label}",
+        f"RifflerTool{brush.label}",
         (SculptTool, bpy.types.WorkSpaceTool),
         {
-            "__doc__": text,
+            "__doc__": brush.tip,
             "__module__": __name__,
-            "bl_idname": f"riffler.{name}",
-            "bl_label": label,
-            "bl_description": text,
-            "bl_icon": str(ICONS / f"riffler.{name}"),
+            "bl_idname": brush.tool,
+            "bl_label": brush.label,
+            "bl_description": brush.tip,
+            "bl_icon": str(ICONS / f"riffler.{brush.icon}"),
             "bl_keymap": (
-                *_stroke(mode),
-                *_stroke(brush_stroke.OPPOSITE[mode], ctrl=True),
-                *_stroke("soften", shift=True),
+                *_stroke(brush),
+                *_stroke(brushes.opposite(brush), ctrl=True),
+                *_stroke(SMOOTH, shift=True),
                 ("riffler.pen_stop", {"type": "ESC", "value": "PRESS"}, None),
                 ("riffler.frame", {"type": "NUMPAD_PERIOD", "value": "PRESS"}, None),
                 ("riffler.leave", {"type": "TAB", "value": "PRESS"}, None),
                 ("riffler.leave", {"type": "TAB", "value": "PRESS", "ctrl": True}, {"properties": [("menu", True)]}),
-                *_size(mode),
+                *_size(brush),
                 (
                     "wm.call_menu_pie",
                     {"type": "W", "value": "PRESS"},
@@ -76,9 +74,4 @@ def _tool(mode, label, text):
     )
 
 
-TOOLS = (
-    _tool("remove", "Carve", "Take material away with the cutter, along the surface. Ctrl: put it on. Shift: smooth"),
-    _tool("add", "Add", "Put material on in the shape of the cutter. Ctrl: take it away. Shift: smooth"),
-    _tool("soften", "Smooth", "Smooth the surface as wide as the cutter"),
-    _tool("mask", "Mask", "Protect what the cutter sweeps from all other tools. Ctrl: protect it no more"),
-)
+TOOLS = tuple(map(_tool, brushes.with_tool()))

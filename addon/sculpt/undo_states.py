@@ -2,6 +2,7 @@
 change."""
 
 from dataclasses import dataclass
+from uuid import uuid4
 
 import bpy
 import riffler
@@ -19,6 +20,16 @@ class State:
     content: Content
     shape: tuple  # of the mesh's lattice of bricks
     fillings: dict | None  # what the chunks showed; None: not known
+
+
+def remember(state, token, before, shown):
+    """Keeps a state under its token, or under a new one, in place of `before`, which was shown until now; returns the
+    token. `shown`: those of all live sculpts, which stay however many there are."""
+    token = token or uuid4().hex
+    snapshots.most = bpy.context.preferences.edit.undo_steps + SPARE
+    snapshots.hold(shown)
+    snapshots.put(token, state, replaces=before)
+    return token
 
 
 def state_of(ob):

@@ -10,7 +10,7 @@ from ..blender import curve_objects
 from ..common import poses, problems, splines
 from ..common.job import Cut
 from ..sculpt import sculpts
-from ..sculpt.pure import journal as journals
+from ..sculpt.pure.journal import brush_of
 
 
 def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
@@ -56,9 +56,9 @@ def from_recording(path):
     journal = riffler.Journal.read(path)
     tools = journal.tools
     cuts = [
-        Cut(tools[s.tool], s.poses, s.tolerance, journals.SHAPING[s.mode])
+        Cut(tools[s.tool], s.poses, s.tolerance, brush_of(s).cuts)
         for s in journal.strokes
-        if len(s) > 1 and s.mode in journals.SHAPING
+        if len(s) > 1 and brush_of(s).cuts
     ]
     if not cuts:
         raise ValueError("the recording has no stroke with two poses that removes material or puts it on")

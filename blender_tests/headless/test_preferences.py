@@ -59,7 +59,9 @@ def test_no_session_lets_more_force_through_than_was_allowed():
     place = folder("limited")
     with preferred(force=0.2, torque=30.0, power=0.5):
         settings = bpy.context.scene.riffler.pen
-        given = common.part("pen.operators").session_options(bpy.context, ob, settings)
+        given = common.part("pen.operators").session_options(
+            bpy.context, ob, settings, common.part("sculpt.brushes").of("remove")
+        )
         assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (0.2, 30, 500))
         device = {"device": "simulated", "gap": 0.0, "removal_constant": 0.5}
         forces = []

@@ -124,12 +124,13 @@ def test_the_cursor_over_a_live_sculpt_that_is_scaled_to_nothing_is_quiet():
     name = sculpting.sculpt()
     run = sculpting.work(name)
     pointer, tool = common.part("sculpt.pointer"), bpy.context.scene.riffler.tool.dictionary()
+    carve = common.part("sculpt.brushes").of("remove")
     space = SimpleNamespace(perspective_matrix=np.diag([1 / 60, 1 / 60, -1 / 60, 1]))
     context = SimpleNamespace(region=SimpleNamespace(width=600, height=600), region_data=space, scene=bpy.context.scene)
-    assert pointer._on_surface(context, "remove", run, tool, (500, 500))  # from above, over the stock
+    assert pointer._on_surface(context, carve, run, tool, (500, 500))  # from above, over the stock
     bpy.data.objects[name].scale = (1, 1, 0)
     bpy.context.view_layer.update()
-    assert pointer._on_surface(context, "remove", run, tool, (500, 500)) is None
+    assert pointer._on_surface(context, carve, run, tool, (500, 500)) is None
     live().end_all()
 
 

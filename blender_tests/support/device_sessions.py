@@ -77,7 +77,7 @@ class Hand:
     ridge on what is `lowered`. It waits where the machine is busy: a session steps with the newest event only."""
 
     def __init__(self, ob, record=None, mode="remove", **options):
-        tool = common.part("pen.operators").tool_for(mode, riffler.Tool.ball(6, 30), 0.5)
+        tool = common.part("sculpt.brushes").of(mode).cutter(riffler.Tool.ball(6, 30), 0.5)
         self.pen, self._time = riffler.pen.Pointer("mouse"), 0.0
         self.pen.set_frame(origin=(0, 0, 17 if mode == "add" else 20), depth=1.0)
         self._give(-10, 0, 0)

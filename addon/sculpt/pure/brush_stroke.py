@@ -14,14 +14,12 @@ import numpy as np
 import riffler
 
 from ...common import json_object
+from .. import brushes
 from .reach import outline_of
 from .stroke_path import Hit, Sample, StrokeMaker, View, settings_for
 from .view_rays import ViewRays, cross
 
-MODES = ("remove", "add", "soften", "mask", "unmask")
-OPPOSITE = {"remove": "add", "add": "remove", "soften": "soften", "mask": "unmask", "unmask": "mask"}
 NUMBERS = len(Sample._fields)
-DABS = 1 / 6  # of the tool's width: from one dab of smoothing to the next
 AROUND = 0.25  # of the tool's width: the surface's normal is the mean of what is so far around a place
 TURN = 2 * np.pi * np.arange(16) / 8
 SPOKES, RINGS = np.stack([np.cos(TURN), np.sin(TURN)], axis=1), np.repeat([1.0, 0.5], 8)  # eight in each of two rings
@@ -31,7 +29,7 @@ SPOKES, RINGS = np.stack([np.cos(TURN), np.sin(TURN)], axis=1), np.repeat([1.0, 
 class Choice:
     """How a stroke is made, whatever makes it."""
 
-    mode: str = "remove"
+    mode: str = "remove"  # id of a brush
     depth: float = 0.5  # mm
     axis: str = "NORMAL"  # NORMAL, VIEW, UP, TILT
     pressure: str = "NONE"  # NONE, DEPTH, FEED
@@ -46,12 +44,9 @@ class BrushStroke:
 
     def __init__(self, run, tool: dict, sight: ViewRays, choice: Choice, keep_out=None, surface=None):
         """`surface`: what the tool follows; without one, the surface as it is now."""
-        if choice.mode not in MODES:
-            raise ValueError(f"mode must be one of {', '.join(MODES)}, not {choice.mode!r}")
+        self.brush = brushes.of(choice.mode)
         self._run, self._sight, self._choice, self._keep_out = run, sight, choice, keep_out
-        self._outwards = choice.mode == "add"
-        given = riffler.Tool.from_dict(tool)
-        self.tool = stub(given, choice.depth) if self._outwards else given
+        self.tool = self.brush.cutter(riffler.Tool.from_dict(tool), choice.depth)
         self.samples: list[Sample] = []
         self.looks: list[int] = []  # how many samples there were when the surface was looked at
         self.removed, self.moves, self.lifted = 0.0, 0, 0
@@ -90,16 +85,15 @@ class BrushStroke:
 
     # ------------------------------------------------------------------ within
     def _make_maker(self) -> StrokeMaker:
-        choice, view, axis, more = self._choice, self._sight.basis(), self._choice.axis, {}
-        diameter, depth = self.tool.diameter, choice.depth
-        if choice.mode == "soften":  # a dab is as wide as the tool, and its middle is the tip, on the surface
-            axis, depth, more = "NORMAL", 0.0, {"spacing": max(self._run.volume.pitch, DABS * diameter)}
+        choice, view = self._choice, self._sight.basis()
+        diameter, pitch = self.tool.diameter, self._run.volume.pitch
+        axis, depth, more = self.brush.path(choice.axis, choice.depth, diameter, pitch)
         if axis == "UP":  # of the stock, which is a view from above
             view, axis = View(*np.eye(3)), "VIEW"
-        if self._outwards:
+        if self.brush.puts_on:
             view = View(*(-v for v in view))
         settings = settings_for(
-            self._run.volume.pitch,
+            pitch,
             diameter,
             depth=depth,
             axis=axis,
@@ -118,7 +112,7 @@ class BrushStroke:
         _, point, normal, _ = found
         point, normal = np.asarray(point), self._around(np.asarray(point), np.asarray(normal))
         # Material is put on from within: by the tool's mirror image, whose tip comes out of the surface.
-        return Hit(point, -normal if self._outwards else normal)
+        return Hit(point, -normal if self.brush.puts_on else normal)
 
     def _around(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """The surface's normal without the jerks of its facets: the mean of a place and of two rings around it. Rays
@@ -149,7 +143,7 @@ class BrushStroke:
             self._apart = False
             self.moves += len(poses) - 1
             self.pose = poses[-1]
-            if cut is None:  # of what has no chip: smoothing
+            if cut is None:  # no chip
                 continue
             self.removed += float(np.sum(cut.removed))
             if len(cut.force):
@@ -167,16 +161,6 @@ def across(normal: np.ndarray) -> np.ndarray:
         size = math.hypot(x, y)
         first = (y / size, -x / size, 0.0)
     return np.array([first, cross((x, y, z), first)])
-
-
-def stub(tool, depth: float):
-    """The cutter without what stands on its end: put on, a whole one would be a pillar as long as it is."""
-    line = outline_of(tool)
-    widest = line[line[:, 0] >= line[:, 0].max() * (1 - 1e-9), 1].min()
-    data = tool.to_dict()
-    shorter = {k: v for k, v in data.items() if k not in ("shank", "holder")}
-    shorter["length"] = min(tool.length, max(float(widest), depth, 0.05 * tool.diameter))
-    return riffler.Tool.from_dict(shorter)
 
 
 def read(text: str) -> tuple[ViewRays, list[Sample], list[int]]:

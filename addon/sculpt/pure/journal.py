@@ -21,6 +21,8 @@ from riffler import files, tasks
 from ...common import json_object
 from ...common.contents import Content
 from ...common.job import Cut
+from .. import brushes
+from ..brushes.brush import Brush
 from . import sculpt_payload
 
 try:
@@ -31,8 +33,8 @@ except ImportError:  # Windows
 
 STROKES, STOCK, MASK, CUTS, ABOUT = "strokes.rjournal", "stock.rvol", "mask.rvol", "cuts", "about.json"
 STATES = "states"  # of a session's: a line for each state, of how many strokes make it and its token
-MODES = ("remove", "add", "mask", "unmask", "soften")  # that can be told again
-SHAPING = {"remove": "remove", "beside": "remove", "add": "add", "build": "add"}  # what a stroke is among the cuts
+# Modes of the strokes that a device's session writes, and the mode of the brush that does the same.
+OF_SESSIONS = {"beside": "remove", "build": "add"}
 FAR = 1 << 30
 PROBLEMS = (OSError, RuntimeError, ValueError)
 
@@ -109,7 +111,7 @@ class LiveJournal(StrokeJournal):
     # ------------------------------------------------------------------ strokes
     def carved(self, tool: dict, poses: np.ndarray, mode: str, token: str, strength: float = 0.5) -> None:
         """The poses, of which none stands (poses.moving), were carved in one go, on the way to the state `token`."""
-        if mode not in MODES:
+        if brushes.of_journal(mode) is None:
             self.whole = False
             return
         text = json.dumps(tool, sort_keys=True)
@@ -321,7 +323,7 @@ def part_of(folder: Path, count: int | None = None) -> tuple[riffler.Journal, li
 
 def shaped(folder: Path, journal: riffler.Journal) -> bool:
     """Whether what the journal tells was shaped by other means than cuts, too (Content.shaped)."""
-    return _before(folder)[1] or any(stroke.mode == "soften" for stroke in journal.strokes)
+    return _before(folder)[1] or any(brush_of(stroke).shapes for stroke in journal.strokes)
 
 
 def _before(folder: Path) -> tuple[list[Cut], bool]:
@@ -346,17 +348,23 @@ def states(folder: Path, about: dict, journal: riffler.Journal) -> list[str]:
     return out
 
 
+def brush_of(stroke) -> Brush:
+    """A brush that makes such strokes of a riffler.Journal; one that cuts nothing where there is none."""
+    return brushes.of_journal(OF_SESSIONS.get(stroke.mode, stroke.mode)) or Brush()
+
+
 def cuts_of(journal: riffler.Journal) -> list[Cut]:
     """The strokes that shape the material, pieces of one stroke put together. Those of symmetry's copies stay apart."""
     cuts: list[Cut] = []
     rows: dict[tuple, list[np.ndarray]] = {}
     tools, masked = journal.tools, bool(journal.stock and journal.stock["mask"])
     for stroke in journal.strokes:
-        masked |= stroke.mode == "mask"
-        if stroke.mode not in SHAPING:
+        brush = brush_of(stroke)
+        masked |= brush.protects
+        if not brush.cuts:
             continue
         poses = stroke.poses
-        key = (stroke.name, stroke.tool, SHAPING[stroke.mode], masked)
+        key = (stroke.name, stroke.tool, brush.cuts, masked)
         open_ones = rows.setdefault(key, [])
         for k, before in enumerate(open_ones):
             if np.array_equal(before[-1], poses[0]):

@@ -7,6 +7,7 @@ import pytest
 import riffler
 from hands import Run
 
+from addon.sculpt import brushes
 from addon.sculpt.pure import brush_stroke
 from addon.sculpt.pure.stroke_path import Sample
 from addon.sculpt.pure.view_rays import ViewRays
@@ -83,7 +84,7 @@ def test_what_is_put_on_is_the_same_bead_the_other_way_up(run, axis):
 )
 def test_what_puts_material_on_is_no_longer_than_its_end(tool, height):
     given = riffler.Tool.from_dict(tool)
-    short = brush_stroke.stub(given, 0.8)
+    short = brushes.of("add").cutter(given, 0.8)
     assert short.length == pytest.approx(height, abs=0.01) and short.diameter == 6
     low = np.linspace(0, 0.99 * short.length, 30)
 

@@ -243,8 +243,8 @@ def test_a_session_does_what_the_tool_at_hand_does():
             ("", "remove"),
         ):
             operators._at_hand = lambda context, tool=tool: tool
-            assert operators.mode_of(bpy.context, "TOOL") == mode
-            assert operators.mode_of(bpy.context, "ADD") == "add"
+            assert operators.brush_of(bpy.context, "TOOL").id == mode
+            assert operators.brush_of(bpy.context, "ADD").id == "add"
         ob = lowered()
         live().end_all()
         before = now()
