@@ -1,7 +1,7 @@
 """Riffler in Blender: carve a block with a pen as if milling it; take STL and NC code away.
 
-This module imports neither bpy nor the native core, so `addon.core` is importable anywhere, and a core that does not
-load ends in a panel that says why rather than in a traceback.
+This module imports neither bpy nor the native core, so `addon.common` and every `pure` folder are importable anywhere,
+and a core that does not load ends in a panel that says why rather than in a traceback.
 """
 
 import sys

@@ -4,12 +4,11 @@ import bpy
 import riffler
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from . import properties
-from .bl import chosen
-from .core import diagnosis
-from .operators import doctor
+from . import keymaps
+from .blender import doctor, preferences_access
+from .common import diagnosis
+from .pen import properties as pen_properties
 from .translations import local
-from .ui import keymaps
 
 HID = (
     "Pens and pucks are HID devices. There is no permission in Blender for using them: Riffler opens one while a "
@@ -46,7 +45,7 @@ class RifflerPreferences(bpy.types.AddonPreferences):
 
     device: EnumProperty(
         name="Device",
-        items=[d for d in properties.DEVICES if d[0] != properties.RECORDING],
+        items=[d for d in pen_properties.DEVICES if d[0] != pen_properties.RECORDING],
         default="simulated",
         description="What the hand holds where a scene does not say otherwise",
     )
@@ -120,7 +119,7 @@ class RifflerPreferences(bpy.types.AddonPreferences):
             row = column.split(factor=0.4)
             row.label(text="")
             try:
-                there = chosen.target(name)
+                there = preferences_access.target(name)
             except FileNotFoundError as error:
                 row.label(text=str(error), icon="ERROR")
             else:
@@ -140,7 +139,7 @@ CLASSES = (RifflerPreferences,)
 
 
 def attach():
-    found = chosen.preferences()
+    found = preferences_access.preferences()
     if found is not None:
         _use_threads(found, None)
 

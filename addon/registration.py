@@ -1,75 +1,106 @@
-"""What the add-on registers, in order; taken back in the reverse order."""
+"""What the add-on registers, section by section; unregistered in the reverse order."""
 
 import importlib
+from typing import NamedTuple
 
-from .core import native
+from .common import native
 
-# A module has CLASSES, which may be empty, and may have attach(), called once they are registered, and detach(), called
-# before they are unregistered, even where attach() has failed in the middle.
-MODULES = (
-    "properties",
-    "preferences",
-    "bl.handlers",
-    "bl.live",
-    "bl.edits",
-    "bl.tools_kept",
-    "operators.stock",
-    "operators.solid",
-    "operators.cut",
-    "operators.clay",
-    "operators.mask",
-    "operators.relief",
-    "operators.result",
-    "operators.pen",
-    "operators.stroke",
-    "operators.begin",
-    "operators.resize",
-    "operators.live_view",
-    "operators.export",
-    "operators.scene",
-    "operators.doctor",
-    "operators.recover",
-    "operators.machine",
-    "operators.plan_setup",
-    "operators.plan_find",
-    "operators.plan_tool",
-    "operators.plan_watch",
-    "bl.surroundings",  # hears of changes before those who ask it
-    "bl.replan",
-    "bl.looking",
-    "drawing.paths",
-    "drawing.plan_lines",
-    "operators.plan_paths",
-    "drawing.cspace",
-    "operators.plan_keys",
-    "operators.plan_least_tilt",
-    "operators.plan_nc",
-    "bl.simulating",
-    "operators.simulate",
-    "operators.verify",
-    "drawing.legend",
-    "operators.plan_turn",
-    "operators.long",  # after the operators: what runs is cancelled while its class is still there
-    "ui.recover_panel",  # on top of the others, when there is something to be said
-    "ui.panels",
-    "ui.clay_panel",
-    "ui.result_panel",
-    "ui.pen_panel",
-    "bl.tool_pictures",
-    "ui.plan_panel",
-    "ui.paths_panel",
-    "ui.machine_panel",
-    "ui.timeline_panel",
-    "ui.verify_panel",
-    "ui.sculpt_panel",
-    "gizmos.size",
-    "gizmos.orientation",
-    "ui.tools",  # last: what its buttons call is there
-    "ui.menus",
-    "ui.keymaps",
-    "translations",
+
+class Section(NamedTuple):
+    """A folder of the add-on, "" for its root, and those of its modules that have something to register, in order.
+
+    A module has CLASSES, which may be empty. It may have attach(), called once they are registered, and detach(),
+    called before they are unregistered, even where attach() has failed in the middle."""
+
+    folder: str
+    names: tuple[str, ...]
+
+    def register(self):
+        for module in self.modules():
+            _take(module)
+
+    def paths(self):
+        """What the modules are called, below the add-on."""
+        return [f"{self.folder}.{name}" if self.folder else name for name in self.names]
+
+    def modules(self):
+        return [_module(path) for path in self.paths()]
+
+
+# The order of the features is a layer order, too (tools/check_layers.py): a feature imports `common`, `translations`,
+# `blender` and the features before it, never one after it. A section without a folder may import all of them.
+SECTIONS = (
+    Section("", ("properties", "preferences")),
+    Section("blender", ("attributes", "doctor")),
+    Section(
+        "sculpt",
+        (
+            "sculpt_store",
+            "live_registry",
+            "mesh_edits",
+            "kept_settings",
+            "stroke_operator",
+            "first_stroke",
+            "resize",
+            "live_view",
+            "tool_panel",
+            "panel",
+            "size_gizmo",
+        ),
+    ),
+    Section("pen", ("operators", "panel")),
+    Section(
+        "stock",
+        (
+            "new_stock",
+            "solid",
+            "cut",
+            "clay",
+            "protection",
+            "relief",
+            "result",
+            "export",
+            "millimetres",
+            "recover",
+            "deviation_legend",
+            "recover_panel",  # above the others while it has something to show
+            "panel",
+            "clay_panel",
+            "result_panel",
+        ),
+    ),
+    Section(
+        "plan",
+        (
+            "plan_store",
+            "obstacles",  # hears of changes before the modules that ask it
+            "replan",
+            "orientation_probe",
+            "path_view",
+            "orientation_map_view",
+            "tool_icons",
+            "operators.machine_options",
+            "operators.setup",
+            "operators.find",
+            "operators.change_tool",
+            "operators.scene_unit",
+            "operators.watch",
+            "operators.switch_paths",
+            "operators.keys",
+            "operators.least_tilt",
+            "operators.turn",
+            "panel",
+            "paths_panel",
+            "machine_panel",
+            "timeline_panel",
+            "orientation_gizmo",
+        ),
+    ),
+    Section("program", ("line_view", "simulation", "plan_nc", "verify", "panel")),
+    # Work that runs is cancelled while its class is still registered. The toolbar's buttons call what is there.
+    Section("", ("blender.long_work", "toolbar", "menus", "keymaps", "translations")),
 )
-FALLBACK = "ui.fallback"  # instead of them all, where the native core does not load
+FALLBACK = "blender.fallback"  # instead of them all, where the native core does not load
 
 _undo = []  # one function per thing that was registered
 
@@ -82,15 +113,16 @@ def register():
             fallback.set_error(error)
             _take(fallback)
         else:
-            for module in modules():
-                _take(module)
+            modules()  # all are imported before the first class is registered
+            for section in SECTIONS:
+                section.register()
     except Exception:
-        unregister()  # half an add-on helps nobody; Blender shows the error
+        unregister()  # roll back: never leave a partial registration; Blender shows the error
         raise
 
 
 def unregister():
-    """Takes back all there is to take back, whatever fails; then raises what failed first."""
+    """Unregisters everything that was registered, whatever fails; then raises the first error."""
     first = None
     while _undo:
         try:
@@ -102,8 +134,8 @@ def unregister():
 
 
 def modules():
-    """Those of MODULES; all are imported before the first is made use of."""
-    return [_module(name) for name in MODULES]
+    """Of all sections, in order."""
+    return [module for section in SECTIONS for module in section.modules()]
 
 
 def _module(name):
@@ -121,7 +153,7 @@ def _take(module):
 
     for cls in module.CLASSES:
         _one_line(cls)
-        _module("bl.versions").own_words(cls)
+        _module("blender.versions").own_words(cls)
         bpy.utils.register_class(cls)
         _undo.append(lambda cls=cls: bpy.utils.unregister_class(cls))
     if hasattr(module, "detach"):  # first: what fails in the middle leaves something to be taken back

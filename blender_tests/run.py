@@ -7,7 +7,7 @@
 Each (Blender, way of installing), and each script of a window, is one process with a time limit; a few run at a time.
 Ways of installing: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
 source folder, of which one Blender tests what goes by the way of installing, and everything where --blender or --mode
-names it. Tests whose time goes into the core (support.core_bound) run in the oldest and the newest Blender, and in any
+names it. Tests whose time goes into the core (common.core_bound) run in the oldest and the newest Blender, and in any
 that --blender or --mode names. Ends with the slowest tests and the number of those that passed, failed and were
 skipped, with reasons; exit code 1 if one failed.
 """
@@ -28,13 +28,11 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-import soaking
-
-import environments
-from environments import ROOT, Environment
+from support import environments, soak_runs
+from support.environments import ROOT, Environment
+from support.report import MARK
 
 HERE = Path(__file__).resolve().parent
-MARK = "RIFFLER_TEST "
 sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
@@ -123,7 +121,7 @@ class Bench:
                 "BLENDER_USER_SCRIPTS": str(Path(resources) / "scripts"),
             }
             (Path(resources) / "scripts" / "addons").mkdir(parents=True)
-            done = environment.run(HERE / "harness.py", variables, timeout)
+            done = environment.run(HERE / "support" / "harness.py", variables, timeout)
         self.judge(where, done, timeout)
 
     def begin(self, where: str) -> None:
@@ -238,7 +236,7 @@ def main() -> int:
     parser.add_argument("--no-headless", action="store_true", help="windows only")
     parser.add_argument("--figures", action="store_true", help="also measure; writes out/blender/figures.json")
     parser.add_argument("--timeout", type=float, default=1200, help="seconds for one process")
-    soaking.add_arguments(parser)
+    soak_runs.add_arguments(parser)
     arguments = parser.parse_args()
 
     tally = Tally()
@@ -253,7 +251,7 @@ def main() -> int:
         paths = native_paths(wheel, Path(folder) / "native")
         bench = Bench(paths, zips, out, arguments.only, arguments.timeout, tally, arguments.figures)
         if arguments.soak:
-            for run in soaking.runs(bench, arguments):
+            for run in soak_runs.runs(bench, arguments):
                 run()
             return close(tally)
         if not arguments.blender and not arguments.mode:
@@ -264,7 +262,7 @@ def main() -> int:
         if not arguments.no_headless:
             runs += headless(bench, arguments)
             if arguments.mode in (None, "source"):
-                runs += soaking.runs(bench, arguments)
+                runs += soak_runs.runs(bench, arguments)
         if not arguments.no_window:
             runs += windowed(bench, arguments)
         with ThreadPoolExecutor(1 if arguments.figures else AT_ONCE) as pool:
@@ -276,7 +274,7 @@ def main() -> int:
 
 def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
     """The processes to be run, in any order."""
-    files = sorted((HERE / "headless").glob("test_*.py"))
+    files = sorted((HERE / "headless").rglob("test_*.py"), key=lambda path: path.name)
     usable, runs = [], []
     for environment in environments.find():
         if arguments.blender not in environment.name:
@@ -300,7 +298,7 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
         if arguments.mode in (None, "source"):
             runs.append(partial(bench.run, environment, "none", [HERE / "broken" / "test_fallback.py"]))
             if arguments.figures:
-                runs.append(partial(bench.run, environment, "source", [HERE / "figures.py"], {"only": ""}))
+                runs.append(partial(bench.run, environment, "source", [HERE / "support" / "figures.py"], {"only": ""}))
     if len(usable) > 1 and arguments.mode in (None, "source"):
         runs.append(partial(chain, bench, usable))
     return runs
@@ -323,7 +321,7 @@ def chain(bench: Bench, usable: list[Environment]) -> None:
 
 def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
     """As `headless`: a process for each script."""
-    import window
+    from support import window
 
     application = environments.application()
     if arguments.blender not in application.name:

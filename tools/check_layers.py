@@ -1,10 +1,11 @@
 """Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core touches neither Python
-nor what it is judged by, the pen's C files touch nothing but each other, and addon/core never touches Blender. And a
-source includes its own header first, which shows that the header stands alone. Prints every line that breaks a rule and
-exits 1."""
+nor what it is judged by, the pen's C files touch nothing but each other, a feature of the add-on imports none after it,
+and the add-on's pure modules import no Blender. And a source includes its own header first, which shows that the header
+stands alone. Prints every line that breaks a rule and exits 1."""
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
 from pathlib import Path
@@ -25,7 +26,12 @@ BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
 USES_DEVICE = {"pen"}
 # What the pen's C files may include of the standard library: all of it is there without an operating system.
 FREESTANDING = {"stddef.h", "stdint.h", "string.h"}
-IMPORTS_BLENDER = re.compile(r"^\s*(?:import|from)\s+(?:bpy|bmesh|gpu|mathutils|blf|bl_\w+)\b")
+# What only Blender has.
+OF_BLENDER = re.compile(r"bpy\w*|bmesh|gpu\w*|mathutils|blf|bl_\w+|rna_\w+|freestyle|idprop")
+# Folders of the add-on below every feature, in their order, and those whose modules know no Blender, wherever they are:
+# plain Python imports and tests them.
+BELOW = ("common", "translations", "blender")
+PURE = {"common", "pure", "brushes", "strategies"}
 
 
 def topics() -> list[str]:
@@ -105,14 +111,76 @@ def header_problems() -> list[str]:
     return problems
 
 
-def addon_problems() -> list[str]:
-    core = ROOT / "addon" / "core"
-    return [f"{place}: addon/core imports Blender" for place, line in lines(core, ".py") if IMPORTS_BLENDER.match(line)]
+def sections(addon: Path) -> list[str]:
+    """The add-on's features in the order in which registration.py registers them."""
+    found: list[str] = []
+    for node in ast.parse((addon / "registration.py").read_text()).body:
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "SECTIONS":
+            found = [section.args[0].value for section in node.value.elts]
+    if not found:
+        raise StepError("addon/registration.py has no SECTIONS")
+    return [folder for folder in dict.fromkeys(found) if folder and folder not in BELOW]
+
+
+def imports(addon: Path, path: Path):
+    """(line, module) of all that a module imports, also within functions: parts of a path of the add-on, below its
+    root, or the name of another package."""
+    package = path.relative_to(addon).parent.parts
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from ((node.lineno, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield node.lineno, node.module
+        elif isinstance(node, ast.ImportFrom):
+            base = (*package[: len(package) - node.level + 1], *(node.module or "").split("."))
+            base = tuple(filter(None, base))
+            for alias in node.names:
+                whole = addon.joinpath(*base, alias.name)
+                is_module = whole.is_dir() or whole.with_suffix(".py").exists()
+                yield node.lineno, (*base, alias.name) if is_module else base
+
+
+def is_there(addon: Path, module: tuple[str, ...]) -> bool:
+    path = addon.joinpath(*module)
+    return path.is_dir() or path.with_suffix(".py").exists()
+
+
+def is_pure(parts: tuple[str, ...]) -> bool:
+    return not PURE.isdisjoint(parts[:-1])
+
+
+def addon_problems(addon: Path = ROOT / "addon") -> list[str]:
+    """Modules in the add-on's root may import all others; no folder imports them. `()` is the package itself, which has
+    the version."""
+    order = [*BELOW, *sections(addon)]
+    problems = [
+        f"{addon.name}/{folder.name} is no section of registration.py"
+        for folder in sorted(addon.iterdir())
+        if folder.is_dir() and any(folder.rglob("*.py")) and folder.name not in [*order, "_vendor"]
+    ]
+    for path in sorted(p for folder in order for p in (addon / folder).rglob("*.py")):
+        own = path.relative_to(addon).with_suffix("").parts
+        rank = order.index(own[0])
+        for line, module in imports(addon, path):
+            place = f"{addon.name}/{path.relative_to(addon)}:{line}"
+            if isinstance(module, str):
+                if is_pure(own) and OF_BLENDER.fullmatch(module.partition(".")[0]):
+                    problems.append(f"{place}: a pure module imports {module}, which only Blender has")
+            elif not is_there(addon, module):
+                problems.append(f"{place}: {'.'.join(module)} is not there")
+            elif module and module[0] not in order[: rank + 1]:
+                problems.append(f"{place}: {own[0]} imports {'.'.join(module)}, which is not before it")
+            elif module and is_pure(own) and PURE.isdisjoint(module):
+                problems.append(f"{place}: a pure module imports {'.'.join(module)}, which is not pure")
+    return problems
 
 
 def entry() -> None:
     problems = core_problems() + beside_problems() + device_problems() + header_problems() + addon_problems()
-    print("\n".join(problems) or "layers: every include points upwards, every source includes its own header first")
+    print(
+        "\n".join(problems)
+        or "layers: every include and import points upwards, every source includes its own header first"
+    )
     sys.exit(bool(problems))
 
 

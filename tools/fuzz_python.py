@@ -60,18 +60,18 @@ def read_plan(data: bytes) -> None:
 def seed_record() -> bytes:
     import numpy as np
 
-    from addon.core import record
-    from addon.core.job import Cut
+    from addon.common.job import Cut
+    from addon.sculpt.pure import sculpt_payload
 
     poses = np.arange(12.0).reshape(2, 6)
     cuts = [Cut({"kind": "ball", "name": "a"}, poses), Cut({"kind": "flat"}, poses, 0.001, "add")]
-    return record.encode(b"volume", cuts, b"mask")
+    return sculpt_payload.encode(b"volume", cuts, b"mask")
 
 
 def read_record(data: bytes) -> None:
-    from addon.core import record
+    from addon.sculpt.pure import sculpt_payload
 
-    _, cuts, _, _ = record.decode(data)
+    _, cuts, _, _ = sculpt_payload.decode(data)
     if not all(isinstance(cut.tool, dict) and cut.poses.shape[1] == 6 for cut in cuts):
         raise BrokenError("a cut that is none")
 
@@ -90,14 +90,14 @@ def seed_tools() -> bytes:
 def read_tools(data: bytes) -> None:
     import riffler
 
-    from addon.core import library
+    from addon.plan.pure import tool_library
 
     for suffix in (".json", ".toml"):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"fuzz{suffix}"
             path.write_bytes(data)
             try:
-                library.read(path, riffler.Tool.from_dict)
+                tool_library.read(path, riffler.Tool.from_dict)
             except ValueError:
                 continue
 

@@ -9,10 +9,14 @@ then for each corner four bytes of colour.
 from __future__ import annotations
 
 import struct
+import sys
 
 import numpy as np
 
 from shell import ROOT, main
+
+sys.path.insert(0, str(ROOT))
+from addon.sculpt import brushes
 
 FOLDER = ROOT / "addon" / "icons"
 TOOL, SHADE, STOCK, EDGE = (232, 232, 232, 255), (186, 186, 186, 255), (120, 120, 120, 255), (160, 160, 160, 255)
@@ -70,29 +74,47 @@ def dome(x, size, way):
     return way * max(0.0, y + np.sqrt(max(rest, 0.0))) if rest > 0 else 0.0
 
 
-def icons():
-    groove = surface(lambda x: FLOOR + 6 + dome(x, 40, -1))
-    bead = surface(lambda x: FLOOR - 30)
-    put = convex(arc(CENTRE, FLOOR - 30, RADIUS, 0, 180, 20), ON)
+def groove():
+    return surface(lambda x: FLOOR + 6 + dome(x, 40, -1))
+
+
+def chip():
+    return convex(arc(206, FLOOR + 34, 18, 0, 360, 18), AWAY)
+
+
+def bead():
+    """Stock, and what was put on it."""
+    return surface(lambda x: FLOOR - 30) + convex(arc(CENTRE, FLOOR - 30, RADIUS, 0, 180, 20), ON)
+
+
+def wave():
+    """Stock that is rough on one side and smooth on the other."""
     x = np.linspace(14, 241, 60)
     rough = FLOOR + 22 * np.sin((x - 14) / 12) * np.clip((150 - x) / 80, 0, 1)
-    wave = band([(a, 20) for a in x], list(zip(x, rough, strict=True)), STOCK)
-    wave += band(list(zip(x, rough - 12, strict=True)), list(zip(x, rough, strict=True)), SOFT)
-    kept = surface(lambda x: FLOOR + 6)
-    kept += band([(a, 20) for a in (128, 241)], [(a, FLOOR + 6) for a in (128, 241)], SAFE)
-    chip = convex(arc(206, FLOOR + 34, 18, 0, 360, 18), AWAY)
+    top = list(zip(x, rough, strict=True))
+    return band([(a, 20) for a in x], top, STOCK) + band(list(zip(x, rough - 12, strict=True)), top, SOFT)
+
+
+def kept():
+    """Stock, half of which is protected."""
+    parts = surface(lambda x: FLOOR + 6)
+    return parts + band([(a, 20) for a in (128, 241)], [(a, FLOOR + 6) for a in (128, 241)], SAFE)
+
+
+def plan():
+    """A slim cutter that leans in a valley, and the ring that turns it."""
     low, slim = 30, [((np.array(t) - (CENTRE, 0)) * (0.62, 0.8) + (CENTRE, 0), c) for t, c in cutter(0)]
     stand = [(np.add(t, (0, low + 26)), c) for t, c in slim]
     valley = band([(14, 14), (CENTRE, 14), (241, 14)], [(14, 118), (CENTRE, low), (241, 118)], STOCK)
     valley += band([(14, 104), (CENTRE, low - 14), (241, 104)], [(14, 118), (CENTRE, low), (241, 118)], EDGE)
     ring = band(arc(CENTRE, low + 54, 150, 55, 105, 40), arc(CENTRE, low + 54, 168, 55, 105, 40), ON)
-    return {
-        "riffler.plan": valley + turned(stand, 18, CENTRE, low + 54) + ring,
-        "riffler.carve": groove + cutter(FLOOR - 34) + chip,
-        "riffler.add": bead + put + cutter(FLOOR + 24),
-        "riffler.smooth": wave + cutter(FLOOR + 4),
-        "riffler.mask": kept + cutter(FLOOR + 10),
-    }
+    return valley + turned(stand, 18, CENTRE, low + 54) + ring
+
+
+def icons():
+    """{name: triangles}: the plan's, and those of the brushes, which draw their own with the functions above."""
+    draw = sys.modules[__name__]
+    return {"riffler.plan": plan(), **{brush.tool: brush.picture(draw) for brush in brushes.with_tool()}}
 
 
 def encode(triangles) -> bytes:

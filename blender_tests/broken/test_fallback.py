@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 
-import support
+from support import common
 
 
 def enable_with(source):
@@ -20,8 +20,8 @@ def enable_with(source):
     try:
         scripts = Path(bpy.utils.user_resource("SCRIPTS", path="addons", create=True))
         if not (scripts / "riffler_addon").exists():
-            (scripts / "riffler_addon").symlink_to(Path(support.JOB["repo"]) / "addon", target_is_directory=True)
-        support.MODULE = "riffler_addon"
+            (scripts / "riffler_addon").symlink_to(Path(common.JOB["repo"]) / "addon", target_is_directory=True)
+        common.MODULE = "riffler_addon"
         bpy.ops.preferences.addon_enable(module="riffler_addon")
         assert "riffler_addon" in bpy.context.preferences.addons
         return {n for n in dir(bpy.types) if n.startswith("RIFFLER_")}
@@ -37,7 +37,7 @@ def disable():
 def check(source, *words):
     assert enable_with(source) == {"RIFFLER_PT_fallback", "RIFFLER_OT_copy_report"}
     assert not hasattr(bpy.types.Scene, "riffler")
-    text = support.part("ui.fallback").text()
+    text = common.part("blender.fallback").text()
     for word in (*words, bpy.app.version_string, sys.version.split()[0], "How to mend it"):
         assert word in text, (word, text)
     assert bpy.ops.riffler.copy_report() == {"FINISHED"}

@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(HERE))
 import run  # noqa: E402
 
-import environments  # noqa: E402 (the path first)
+from support import environments  # noqa: E402 (the path first)
 
 # What differs between Blender's versions: whatever uses it runs in all of them.
 DIFFERS = ("bpy.ops.ed.", "open_mainfile", "frame_set", "attributes", "insert(")
@@ -21,10 +21,10 @@ DIFFERS = ("bpy.ops.ed.", "open_mainfile", "frame_set", "attributes", "insert(")
 
 def marked():
     """(file, name, source) of each test that is marked."""
-    for path in sorted((HERE / "headless").glob("test_*.py")):
+    for path in sorted((HERE / "headless").rglob("test_*.py")):
         text = path.read_text()
         for node in ast.parse(text).body:
-            if isinstance(node, ast.FunctionDef) and "support.core_bound" in map(ast.unparse, node.decorator_list):
+            if isinstance(node, ast.FunctionDef) and "common.core_bound" in map(ast.unparse, node.decorator_list):
                 yield path.name, node.name, ast.get_source_segment(text, node)
 
 

@@ -25,7 +25,7 @@ def test_the_extension_carries_wheels_and_a_manifest_that_names_them(tmp_path):
         manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
     assert manifest["wheels"] == [f"./wheels/{w.name}" for w in wheels]
     assert manifest["platforms"] == ["linux-x64", "windows-x64"]
-    assert {f"wheels/{w.name}" for w in wheels} | {"__init__.py", "core/presets.json", "LICENSE"} <= names
+    assert {f"wheels/{w.name}" for w in wheels} | {"__init__.py", "common/presets.json", "LICENSE"} <= names
     assert not names & {"package.py", "ruff.toml"} and not any("pycache" in n for n in names)
     with zipfile.ZipFile(legacy) as archive:
         names = set(archive.namelist())

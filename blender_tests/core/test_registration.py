@@ -11,12 +11,12 @@ import addon
 from addon import registration
 
 ADDON = Path(addon.__file__).parent
-LISTED = (*registration.MODULES, registration.FALLBACK)
+LISTED = (*(path for section in registration.SECTIONS for path in section.paths()), registration.FALLBACK)
 
 
 def path_of(name):
     path = ADDON.joinpath(*name.split("."))
-    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return path.with_suffix(".py") if path.with_suffix(".py").exists() else path / "__init__.py"
 
 
 def top_level(path):

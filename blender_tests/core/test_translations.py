@@ -9,22 +9,23 @@ from pathlib import Path
 import riffler
 
 import addon
-from addon.core import machine_fields
+from addon.plan.pure import machine_fields
 
 ADDON = Path(addon.__file__).parent
 TABLE = json.loads((ADDON / "translations" / "de.json").read_text(encoding="utf-8"))
-# Functions of ours that make a field, a tool or a line of a panel: which of their arguments are shown.
-FIELDS_OF = {"length": (0, 2), "_folder": (1, 2), "_tool": (1, 2)}
+# Functions of ours that make a field or a line of a panel: which of their arguments are shown.
+FIELDS_OF = {"length": (0, 2), "_folder": (1, 2)}
 MESSAGES = {"wrapped": (1,), "deny": (1,), "poll_message_set": (0,), "local": (0,), "ValueError": (0,), "report": (1,)}
 SHOWN = {**FIELDS_OF, **MESSAGES}
 NOT_SHOWN = {
     "package.py",  # makes the zips
-    "ui/fallback.py",  # what is said where the core does not load, and no table either
+    "blender/fallback.py",  # what is said where the core does not load, and no table either
 }
 FIELDS = {"name", "description"}
 TABLES = {"STATES", "KINDS", "LOOK"}  # of words, by the name of what has them
 DRAWN = {"text", "heading"}
-SAID_BY = {"description", "unfit", "missing"}  # functions that return what is shown
+OF_BRUSH = ("label", "description", "tip")  # fields of a brush
+SAID_BY = {"description", "unfit", "missing", "refusal"}  # functions that return what is shown
 ENTRY = re.compile(r"[A-Z][A-Z0-9_]*")  # what Blender knows an entry of a list by
 
 
@@ -73,9 +74,17 @@ def name_of(call):
     return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
 
 
+def assigned(node):
+    """(name, expression) of an assignment, and of each place of one of several."""
+    for target in node.targets if isinstance(node, ast.Assign) else ():
+        several = isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple)
+        pairs = zip(target.elts, node.value.elts, strict=True) if several else [(target, node.value)]
+        yield from ((name.id, value) for name, value in pairs if isinstance(name, ast.Name))
+
+
 def of_class(cls):
-    own = {t.id: n.value for n in cls.body if isinstance(n, ast.Assign) for t in n.targets if isinstance(t, ast.Name)}
-    for key in ("bl_label", "bl_description", "doing", "cancelled"):
+    own = {name: value for node in cls.body for name, value in assigned(node)}
+    for key in ("bl_label", "bl_description", "doing", "cancelled", *(OF_BRUSH if "label" in own else ())):
         if key in own:
             yield from texts(own[key])
     is_operator = any(getattr(base, "attr", "") == "Operator" for base in cls.bases)
@@ -169,6 +178,12 @@ class RIFFLER_OT_a(Mixin, bpy.types.Operator):
         said, icon = ("Eight", "NONE") if context else ("Nine", "NONE")
         self.layout.label(text=said, icon=icon)
         raise ValueError("Ten")
+
+class Carve(Brush):
+    id, label, tip = "carve", "Eleven", "Twelve"
+
+    def refusal(self, volume):
+        return "Thirteen"
 """
     said = {text for _, text in shown(ast.parse(example))}
     words = {
@@ -183,7 +198,7 @@ class RIFFLER_OT_a(Mixin, bpy.types.Operator):
         "One",
         "Two",
     }
-    assert said == words | {"Three", "Five", "Six", "Seven", "Eight", "Nine", "Ten"}
+    assert said == words | {"Three", "Five", "Six", "Seven", "Eight", "Nine", "Ten", "Eleven", "Twelve", "Thirteen"}
 
 
 def test_every_fixed_text_has_its_german():

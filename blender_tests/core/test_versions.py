@@ -8,7 +8,7 @@ import pytest
 import addon
 
 ADDON = Path(addon.__file__).parent
-PLACE = ADDON / "bl" / "versions.py"
+PLACE = ADDON / "blender" / "versions.py"
 NAMES = {"version", "version_cycle", "version_file"}
 
 

@@ -8,13 +8,11 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-import plans
-import programs
 import riffler
 
-import support
+from support import common, plans, programs
 
-DOCS = Path(support.__file__).resolve().parent.parent / "docs"
+DOCS = Path(common.__file__).resolve().parents[2] / "docs"
 MARK = "<!-- not run: it runs in Blender's tests -->"  # what tools/check_docs.py says of them
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
@@ -74,48 +72,48 @@ def saved(folder):
 
 def engrave(folder):
     """The name is cut along another tool's recording, on a stock like its own."""
-    support.scale(1)
+    common.scale(1)
     saved(folder)
-    support.stock(pitch=0.25)
-    line = support.curve("Text", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    common.stock(pitch=0.25)
+    line = common.curve("Text", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
     bpy.ops.riffler.tool_preset(name="Engraver 60°, ball R0.1")
     bpy.ops.riffler.cut_curve(curve=line.name, depth=0.6)
     bpy.ops.riffler.export_recording(filepath=str(folder / "name.rjournal"))
-    (first,) = support.content(bpy.context.object).cuts
-    ob = support.stock(pitch=0.25)
+    (first,) = common.content(bpy.context.object).cuts
+    ob = common.stock(pitch=0.25)
     bpy.ops.riffler.tool_preset(name="Ball 3 mm")
     run("engrave.md")
-    (cut,) = support.content(ob).cuts
+    (cut,) = common.content(ob).cuts
     assert cut.tool["diameter"] == 3 != first.tool["diameter"] and np.array_equal(cut.poses, first.poses)
 
 
 def planning(folder):
     """The step, and a stock with half a millimetre on it: verifying finds that what no pencil cut takes is left."""
-    support.scale(1)
+    common.scale(1)
     plans.part_object().name = "Part"
     programs.stock()
     saved(folder)
     run("planning.md")
-    (ob,) = support.part("bl.plan_store").in_scene(bpy.context.scene)
+    (ob,) = common.part("plan.plan_store").in_scene(bpy.context.scene)
     plan = programs.content(ob)
     assert {72, 100} <= set(plan.paths[0].keys)
     table = {"rot_point": [0, 0, -40]}
     read = riffler.Program.read(folder / "step.ngc", machine="linuxcnc-xyzac", options=table)
     assert max(np.linalg.norm(read.poses - row, axis=1).min() for row in plan.cl[0]) < 2e-4
-    assert support.part("bl.simulating").active() is None
+    assert common.part("program.simulation").active() is None
     settings = programs.settings()
     assert "step.ngc" in settings.said and settings.index == 0 and settings.findings[0].kind == "rest"
 
 
 def sessions(folder):
     """The hand that is simulated presses its button for four seconds of eight; a busy machine takes the force away."""
-    support.scale(1)
-    ob = support.stock(size=(60, 60, 20))
+    common.scale(1)
+    ob = common.stock(size=(60, 60, 20))
     saved(folder)
     for _ in range(3):
         run("sessions.md")
-        support.part("bl.live").end_all()
-        if cuts := support.content(ob).cuts:
+        common.part("sculpt.live_registry").end_all()
+        if cuts := common.content(ob).cuts:
             break
     path = min(folder.glob("Stock *.rjournal"))
     assert len(riffler.Journal.read(path).strokes) == len(cuts) > 0
@@ -143,6 +141,6 @@ def test_the_examples_of_planning_run():
     in_its_scene("planning.md")
 
 
-@support.core_bound
+@common.core_bound
 def test_the_example_of_sessions_runs():
     in_its_scene("sessions.md")

@@ -4,13 +4,12 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
-import plans
 
-import support
+from support import common, plans
 
 
 def force():
-    return support.part("drawing.force")
+    return common.part("sculpt.force_view")
 
 
 def shown(size, moment):
@@ -48,9 +47,9 @@ def test_gauges_tell_force_and_torque_and_mark_both_limits():
 
 def test_the_contact_at_a_device_s_tool_is_the_nearest_within_its_diameter():
     ob = plans.on_timeline(mm_per_unit=10.0)
-    drawing, sessions = support.part("drawing.paths"), support.part("bl.pen_session")
-    contacts = [path.contacts.reshape(-1, 3) for path in support.part("bl.plan_store").plan(ob).paths]
-    mm = support.part("bl.units").mm_per_unit(bpy.context.scene)
+    drawing, sessions = common.part("plan.path_view"), common.part("pen.session")
+    contacts = [path.contacts.reshape(-1, 3) for path in common.part("plan.plan_store").plan(ob).paths]
+    mm = common.part("blender.scene_units").mm_per_unit(bpy.context.scene)
     to_world = np.diag([1 / mm] * 3 + [1.0])  # a sculpt that stands in the origin
     assert drawing.at_tool(bpy.context) is None  # no device sculpts
     rng = np.random.default_rng(3)

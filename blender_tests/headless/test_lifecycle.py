@@ -4,14 +4,13 @@ import importlib
 import sys
 
 import bpy
-import leftovers
 
-import support
+from support import common, leak_check
 
 
 def listed():
     """Every class that the add-on's modules say they register."""
-    return [cls for module in support.part("registration").modules() for cls in module.CLASSES]
+    return [cls for module in common.part("registration").modules() for cls in module.CLASSES]
 
 
 def operators():
@@ -19,11 +18,11 @@ def operators():
 
 
 def disable():
-    bpy.ops.preferences.addon_disable(module=support.MODULE)
+    bpy.ops.preferences.addon_disable(module=common.MODULE)
 
 
 def enable():
-    bpy.ops.preferences.addon_enable(module=support.MODULE)
+    bpy.ops.preferences.addon_enable(module=common.MODULE)
 
 
 def test_the_native_core_is_the_one_that_was_installed():
@@ -32,11 +31,11 @@ def test_the_native_core_is_the_one_that_was_installed():
     import riffler
 
     inside = riffler.__file__.startswith(os.path.realpath(os.environ["BLENDER_USER_RESOURCES"]))
-    assert inside == (support.JOB["mode"] != "source"), riffler.__file__
+    assert inside == (common.JOB["mode"] != "source"), riffler.__file__
 
 
 def test_everything_is_registered():
-    assert set(leftovers.classes(support.MODULE)) == {f"class {cls.__name__}" for cls in listed()}
+    assert set(leak_check.classes(common.MODULE)) == {f"class {cls.__name__}" for cls in listed()}
     assert len(operators()) > 10 and set(dir(bpy.ops.riffler)) == operators()
     for cls in listed():
         assert not issubclass(cls, bpy.types.Operator) or (cls.bl_label and cls.__doc__), f"{cls}: no tooltip"
@@ -44,17 +43,19 @@ def test_everything_is_registered():
 
 def test_no_class_was_forgotten():
     """A class that Blender could register, in one of the add-on's modules, is in a list of CLASSES."""
-    made = {c for c in leftovers.subclasses(bpy.types.bpy_struct) if leftovers.of(support.MODULE, c)}
+    made = {c for c in leak_check.subclasses(bpy.types.bpy_struct) if leak_check.of(common.MODULE, c)}
     current = {c for c in made if getattr(sys.modules.get(c.__module__), c.__name__, None) is c}
-    fallback = set(support.part("ui.fallback").CLASSES) if f"{support.MODULE}.ui.fallback" in sys.modules else set()
+    fallback = (
+        set(common.part("blender.fallback").CLASSES) if f"{common.MODULE}.blender.fallback" in sys.modules else set()
+    )
     tools = {c for c in current if issubclass(c, bpy.types.WorkSpaceTool)}  # bpy.utils.register_tool has these
     assert current - fallback - tools == set(listed())
 
 
 def test_three_cycles_leave_nothing():
-    support.stock()
+    common.stock()
     disable()
-    with leftovers.Watch(support.MODULE) as watch:
+    with leak_check.Watch(common.MODULE) as watch:
         assert watch.left() == []
         enable()
         first = watch.left()
@@ -78,8 +79,8 @@ def test_whatever_is_left_behind_is_noticed():
     class Tool(bpy.types.WorkSpaceTool):
         bl_space_type, bl_context_mode, bl_idname, bl_label = "VIEW_3D", "OBJECT", "riffler.careless", "Careless"
 
-    callback.__module__ = RifflerCareless.__module__ = f"{support.MODULE}.careless"
-    with leftovers.Watch(support.MODULE) as watch:
+    callback.__module__ = RifflerCareless.__module__ = f"{common.MODULE}.careless"
+    with leak_check.Watch(common.MODULE) as watch:
         before = watch.left()
         drawn = bpy.types.SpaceView3D.draw_handler_add(callback, (), "WINDOW", "POST_VIEW")
         bpy.app.timers.register(callback, first_interval=1e6)
@@ -131,7 +132,7 @@ def fails_to(call):
 
 def test_what_fails_in_the_middle_of_being_registered_leaves_nothing():
     disable()
-    with leftovers.Watch(support.MODULE) as watch:
+    with leak_check.Watch(common.MODULE) as watch:
         for name, at in (("register_tool", 3), ("register_class", 50)):
             put_back = failing(bpy.utils, name, at)
             try:
@@ -144,11 +145,11 @@ def test_what_fails_in_the_middle_of_being_registered_leaves_nothing():
 
 
 def test_what_fails_in_the_middle_of_being_unregistered_leaves_nothing_else():
-    support.stock()
-    live = support.part("bl.live")
+    common.stock()
+    live = common.part("sculpt.live_registry")
     run = live.begin(bpy.context, bpy.context.object)
-    with leftovers.Watch(support.MODULE) as watch:
-        put_back = failing(live.Live, "end", 1)
+    with leak_check.Watch(common.MODULE) as watch:
+        put_back = failing(live.LiveSculpt, "end", 1)
         try:
             fails_to(disable)
         finally:
@@ -162,7 +163,7 @@ def test_what_fails_in_the_middle_of_being_unregistered_leaves_nothing_else():
 def test_what_is_not_there_is_taken_back_without_a_word():
     """As after an attach() that failed at once."""
     disable()
-    for module in support.part("registration").modules():
+    for module in common.part("registration").modules():
         if hasattr(module, "detach"):
             module.detach()
     enable()
@@ -172,16 +173,16 @@ def test_what_is_not_there_is_taken_back_without_a_word():
 def test_what_is_reloaded_is_other_code():
     """After an update, and for Reload Scripts, Blender reads the add-on's __init__ anew: the rest has to be, too."""
     disable()
-    with leftovers.Watch(support.MODULE) as watch:
+    with leak_check.Watch(common.MODULE) as watch:
         enable()
         first = watch.left()
-        seen = [support.part("operators.doctor").RIFFLER_OT_doctor]
+        seen = [common.part("blender.doctor").RIFFLER_OT_doctor]
         for _ in range(3):
             disable()
-            importlib.reload(sys.modules[support.MODULE])
+            importlib.reload(sys.modules[common.MODULE])
             enable()
-            seen.append(support.part("operators.doctor").RIFFLER_OT_doctor)
-            assert support.part("registration") is sys.modules[support.MODULE].registration
+            seen.append(common.part("blender.doctor").RIFFLER_OT_doctor)
+            assert common.part("registration") is sys.modules[common.MODULE].registration
             assert watch.left() == first and set(dir(bpy.ops.riffler)) == operators()
         assert len(set(seen)) == 4
         test_everything_is_registered()
@@ -197,7 +198,7 @@ def test_an_update_that_finds_the_old_core_at_work_says_so():
     version, riffler.__version__ = riffler.__version__, "0.0.9"
     try:
         enable()
-        fallback = support.part("ui.fallback")
+        fallback = common.part("blender.fallback")
         assert {n for n in dir(bpy.types) if n.startswith("RIFFLER_")} == {c.__name__ for c in fallback.CLASSES[:2]}
         for words in (f"riffler 0.0.9 is in use, this add-on is {version}", "Restart Blender: it holds the core"):
             assert words in fallback.text(), fallback.text()
@@ -211,17 +212,17 @@ def test_an_update_that_finds_the_old_core_at_work_says_so():
 
 def test_it_is_installed_over_itself():
     """As an update is, while the core is in use: whoever writes into its file lets Blender crash in the next call."""
-    import harness
+    from support import harness
 
     for _ in range(2):
-        assert harness.install() == support.MODULE
-        support.content(support.stock()).volume.to_bytes()
+        assert harness.install() == common.MODULE
+        common.content(common.stock()).volume.to_bytes()
 
 
 def test_a_sculpt_outlives_a_disabled_addon():
-    ob = support.stock()
-    name, before = ob.name, support.shape(support.content(ob).volume)
+    ob = common.stock()
+    name, before = ob.name, common.shape(common.content(ob).volume)
     disable()
     enable()
     ob = bpy.data.objects[name]
-    assert support.same(before, support.shape(support.content(ob).volume))
+    assert common.same(before, common.shape(common.content(ob).volume))

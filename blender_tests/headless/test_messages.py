@@ -7,10 +7,8 @@ from pathlib import Path
 import bmesh
 import bpy
 import numpy as np
-import plans
-import programs
 
-import support
+from support import common, plans, programs
 
 # ---------------------------------------------------------------------- why a button is grey
 
@@ -22,7 +20,7 @@ OF_SCULPTS = {
 
 
 def operators():
-    for module in support.part("registration").modules():
+    for module in common.part("registration").modules():
         for cls in module.CLASSES:
             if issubclass(cls, bpy.types.Operator):
                 yield cls.bl_idname.partition(".")[2]
@@ -42,23 +40,23 @@ def refusals():
 
 
 def nothing_selected():
-    support.stock()
+    common.stock()
     bpy.ops.object.select_all(action="DESELECT")
     bpy.context.view_layer.objects.active = None
 
 
 def wrong_type():
-    support.select(bpy.data.objects["Camera"])
+    common.select(bpy.data.objects["Camera"])
 
 
 def edit_mode():
-    support.stock()
+    common.stock()
     bpy.ops.object.mode_set(mode="EDIT")
 
 
 def linked():
-    name = support.stock().name
-    path = support.out("messages.blend")
+    name = common.stock().name
+    path = common.out("messages.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.read_homefile()
     with bpy.data.libraries.load(path, link=True) as (_, into):
@@ -68,12 +66,12 @@ def linked():
 
 
 def work_running():
-    support.stock()
+    common.stock()
     bpy.context.window_manager.riffler.running = "Cutting"
 
 
 def pen_elsewhere():
-    support.stock()
+    common.stock()
     bpy.context.window_manager.riffler.sculpting = True
 
 
@@ -91,7 +89,7 @@ def test_no_button_is_grey_without_saying_why():
     progress = bpy.context.window_manager.riffler
     for state, remedy in STATES.items():
         bpy.ops.wm.read_homefile(use_empty=False)
-        support.scale(1)
+        common.scale(1)
         state()
         try:
             found = refusals()
@@ -109,30 +107,30 @@ def test_no_button_is_grey_without_saying_why():
 
 def test_work_at_another_sculpt_is_parked_not_lost():
     """Somebody works at one sculpt, and another is cut: the first keeps what was carved."""
-    import sculpting
+    from support import sculpting
 
     first, second = sculpting.sculpt("First"), sculpting.sculpt("Second")
     sculpting.stroke(first, 1)
     carved = sculpting.live().of(bpy.data.objects[first]).volume.to_bytes()
-    support.select(bpy.data.objects[second])
+    common.select(bpy.data.objects[second])
     assert not refusals().keys() & OF_SCULPTS
     assert bpy.ops.riffler.mask_invert() == {"FINISHED"}
-    assert support.content(bpy.data.objects[first]).volume.to_bytes() == carved
+    assert common.content(bpy.data.objects[first]).volume.to_bytes() == carved
     sculpting.matches_its_volume(first)
 
 
 def test_a_scene_that_becomes_millimetres_keeps_live_work():
-    import sculpting
+    from support import sculpting
 
     name = sculpting.sculpt()
-    support.scale(10)
+    common.scale(10)
     bpy.ops.riffler.rebuild()
     sculpting.stroke(name, 1)
     carved = sculpting.live().of(bpy.data.objects[name]).volume.to_bytes()
     bpy.ops.riffler.millimetres()
     sculpting.nothing_is_left()
     ob = bpy.data.objects[name]
-    assert support.content(ob).volume.to_bytes() == carved
+    assert common.content(ob).volume.to_bytes() == carved
     assert np.allclose(ob.dimensions[:2], sculpting.SIZE[:2])
     sculpting.matches_its_volume(name)
 
@@ -148,7 +146,7 @@ def cube(size=20.0, **more):
 def refused(call, *words):
     """With all the words, and nothing is there afterwards that was not before."""
     before = [len(x) for x in (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.curves)]
-    text = support.refused(call, *words)
+    text = common.refused(call, *words)
     assert [len(x) for x in (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.curves)] == before, text
 
 
@@ -157,14 +155,14 @@ def from_object(**more):
 
 
 def test_objects_without_volume():
-    support.scale(1)
+    common.scale(1)
     bpy.ops.mesh.primitive_plane_add(size=20)
     refused(from_object, "Plane is flat", "Solidify")
     empty = bpy.data.objects.new("Nothing", bpy.data.meshes.new("Nothing"))
     bpy.context.collection.objects.link(empty)
-    support.select(empty)
+    common.select(empty)
     refused(from_object, "Nothing has no faces", "choose another")
-    support.select(bpy.data.objects["Camera"])
+    common.select(bpy.data.objects["Camera"])
     refused(from_object, "select the object", "mesh")
 
 
@@ -178,30 +176,30 @@ def opened(ob):
 
 
 def test_an_open_object_is_closed_and_that_is_said():
-    support.scale(1)
+    common.scale(1)
     opened(cube())
-    assert "is not closed: 4 open edges" in support.printed(from_object)
-    assert abs(support.content(bpy.context.object).volume.volume - 8000) < 1
+    assert "is not closed: 4 open edges" in common.printed(from_object)
+    assert abs(common.content(bpy.context.object).volume.volume - 8000) < 1
     cube(location=(50, 0, 0))
-    assert "closed" not in support.printed(from_object)
+    assert "closed" not in common.printed(from_object)
 
 
 def test_metres_taken_for_millimetres_are_refused_at_once():
     """Blender's own cube, 2 m, at 0.5 mm would be 192 million triangles: more than its arrays hold."""
-    support.scale(1000)
+    common.scale(1000)
     cube(2.0)
     refused(from_object, "2000 × 2000 × 2000 mm", "coarser pitch", "Scene in Millimetres")
     bpy.context.view_layer.objects.active = None
-    refused(lambda: support.stock(size=(2000, 2000, 2000), pitch=0.5), "coarser pitch", "Scene in Millimetres")
+    refused(lambda: common.stock(size=(2000, 2000, 2000), pitch=0.5), "coarser pitch", "Scene in Millimetres")
     bpy.ops.riffler.millimetres()
-    support.select(cube(20.0))
+    common.select(cube(20.0))
     assert from_object() == {"FINISHED"}
 
 
 def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
-    support.scale(1)
-    ob = support.stock()
-    distorted = support.part("bl.refusals").scaled
+    common.scale(1)
+    ob = common.stock()
+    distorted = common.part("blender.refusals").scaled
     assert distorted(ob) == ""
     ob.rotation_euler, ob.location = (0.3, 0.2, 0.1), (5, 6, 7)
     bpy.context.view_layer.update()
@@ -209,8 +207,8 @@ def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
     ob.scale = (1, 1, 2)
     bpy.context.view_layer.update()
     assert "Clear > Scale" in distorted(ob)
-    line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
-    assert "Clear > Scale" in support.printed(lambda: bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT))
+    line = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    assert "Clear > Scale" in common.printed(lambda: bpy.ops.riffler.cut_curve(curve=line.name, tool=common.FLAT))
     above = bpy.data.objects.new("Above", None)
     bpy.context.collection.objects.link(above)
     ob.scale, ob.parent, above.scale = (1, 1, 1), above, (1, 3, 1)
@@ -219,10 +217,10 @@ def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
 
 
 def test_a_part_that_is_sheared_or_gone():
-    support.scale(1)
+    common.scale(1)
     part = plans.part_object()
     settings = bpy.context.scene.riffler.plan
-    support.select(part)
+    common.select(part)
     bpy.ops.riffler.plan_part()
     above = bpy.data.objects.new("Above", None)
     bpy.context.collection.objects.link(above)
@@ -239,14 +237,14 @@ def test_a_part_that_is_sheared_or_gone():
 
 
 def test_files_that_are_missing():
-    support.scale(1)
-    ob = support.stock()
+    common.scale(1)
+    ob = common.stock()
     before = bpy.context.scene.riffler.plan.tool
     for call in (bpy.ops.riffler.plan_tool_open, bpy.ops.riffler.cut_recording):
         refused(lambda call=call: call(filepath="/nowhere/x.rjournal"), "/nowhere", "choose")
     refused(lambda: bpy.ops.riffler.plan_tool(path="/nowhere/x.json"), "x.json", "choose a tool file")
     refused(lambda: bpy.ops.riffler.new_stock(source="RECORDING", recording="/nowhere/x.rjournal"), "choose another")
-    support.select(ob)
+    common.select(ob)
     recording = {"device": "recording", "recording": "/nowhere/x.rjournal", "seconds": 1.0}
     refused(lambda: bpy.ops.riffler.pen_sculpt(**recording), "/nowhere/x.rjournal", "choose another")
     assert bpy.context.scene.riffler.plan.tool == before
@@ -258,7 +256,7 @@ def exports():
 
 def writes_only_where_it_may(name, call):
     """An export: what folders it refuses, with which words; and that it writes where it may."""
-    folder = Path(support.out("locked"))
+    folder = Path(common.out("locked"))
     folder.mkdir(exist_ok=True)
     path, access = folder / f"x.{name}", os.access
     path.unlink(missing_ok=True)
@@ -274,13 +272,13 @@ def writes_only_where_it_may(name, call):
 
 
 def test_folders_that_are_missing_or_may_not_be_written():
-    support.scale(1)
-    ob = support.stock()
-    line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
-    bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT)
+    common.scale(1)
+    ob = common.stock()
+    line = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    bpy.ops.riffler.cut_curve(curve=line.name, tool=common.FLAT)
     for name, call in exports().items():
         writes_only_where_it_may(name, call)
-    assert support.content(ob).cuts
+    assert common.content(ob).cuts
     pen = {"device": "simulated", "record": True, "folder": "/nowhere", "seconds": 1.0}
     refused(lambda: bpy.ops.riffler.pen_sculpt(**pen), "no folder /nowhere", "choose another")
     refused(lambda: bpy.ops.riffler.plan_tool_save(folder="/proc/x"), "/proc/x", "choose a folder that can be written")
@@ -289,22 +287,22 @@ def test_folders_that_are_missing_or_may_not_be_written():
 
 
 def test_a_sculpt_of_a_newer_version_is_kept_and_named():
-    support.scale(1)
-    ob = support.stock()
-    packed, store = support.part("bl.packed"), support.part("bl.store")
+    common.scale(1)
+    ob = common.stock()
+    packed, store = common.part("blender.packed_images"), common.part("sculpt.sculpt_store")
     image = ob.data.riffler.store
     block = bytearray(packed.read(image, "the sculpt"))
     block[8:12] = struct.pack("<I", 99)
-    packed.write(image, bytes(block), support.part("core.record").content_id(bytes(block)))
+    packed.write(image, bytes(block), common.part("sculpt.pure.sculpt_payload").content_id(bytes(block)))
     store.clear_cache()
-    for call in (bpy.ops.riffler.mask_invert, lambda: bpy.ops.riffler.export_stl(filepath=support.out("newer.stl"))):
+    for call in (bpy.ops.riffler.mask_invert, lambda: bpy.ops.riffler.export_stl(filepath=common.out("newer.stl"))):
         refused(call, "format 99", "install a newer one")
     assert packed.read(image, "the sculpt") == bytes(block) and len(ob.data.polygons) > 0
 
 
 def test_a_plan_of_a_newer_version_is_kept_and_named():
-    support.scale(1)
-    packed, store = support.part("bl.packed"), support.part("bl.plan_store")
+    common.scale(1)
+    packed, store = common.part("blender.packed_images"), common.part("plan.plan_store")
     import riffler
 
     ob = store.new(bpy.context, riffler.plan.Plan(plans.paths()[:1], plans.TOOL, tolerance=0.01))
@@ -312,9 +310,9 @@ def test_a_plan_of_a_newer_version_is_kept_and_named():
     block = packed.read(image, "the plan")
     newer = block.replace(b'"version": 1', b'"version": 99', 1).replace(b'"version":1', b'"version":99', 1)
     assert newer != block
-    packed.write(image, newer, support.part("core.record").content_id(newer))
+    packed.write(image, newer, common.part("sculpt.pure.sculpt_payload").content_id(newer))
     store.clear_cache()
-    support.select(ob)
+    common.select(ob)
     refused(bpy.ops.riffler.plan_show, "newer Riffler")
     assert packed.read(image, "the plan") == newer
 
@@ -330,34 +328,35 @@ def listing(root):
 
 def test_nothing_is_written_into_the_addons_own_folder():
     import riffler
-    import sculpting
 
-    roots = [Path(support.part("registration").__file__).resolve().parent, Path(riffler.__file__).resolve().parent]
+    from support import sculpting
+
+    roots = [Path(common.part("registration").__file__).resolve().parent, Path(riffler.__file__).resolve().parent]
     before = [listing(root) for root in roots]
     assert all(len(found) > 20 for found in before)
     name = sculpting.sculpt()
     sculpting.stroke(name, 1)
-    support.part("bl.live").end_all()
-    line = support.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
-    support.select(bpy.data.objects[name])
-    bpy.ops.riffler.cut_curve(curve=line.name, tool=support.FLAT)
+    common.part("sculpt.live_registry").end_all()
+    line = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
+    common.select(bpy.data.objects[name])
+    bpy.ops.riffler.cut_curve(curve=line.name, tool=common.FLAT)
     for kind, call in exports().items():
-        call(filepath=support.out(f"own.{kind}"), check_existing=False)
+        call(filepath=common.out(f"own.{kind}"), check_existing=False)
     bpy.ops.riffler.pen_sculpt(device="simulated", seconds=0.5, gap=500.0)
     bpy.ops.riffler.to_mesh()
-    bpy.ops.riffler.plan_tool(name=support.part("core.presets").presets()[0]["name"])
+    bpy.ops.riffler.plan_tool(name=common.part("common.presets").presets()[0]["name"])
     bpy.ops.riffler.plan_tool_save(name="Own folder")
     bpy.ops.riffler.doctor()
-    support.select(plans.part_object())
+    common.select(plans.part_object())
     bpy.ops.riffler.plan_part()
     bpy.ops.riffler.plan_find()
     bpy.ops.riffler.plan_to_timeline()
     assert [listing(root) for root in roots] == before
-    bpy.ops.preferences.addon_disable(module=support.MODULE)
-    bpy.ops.preferences.addon_enable(module=support.MODULE)
+    bpy.ops.preferences.addon_disable(module=common.MODULE)
+    bpy.ops.preferences.addon_enable(module=common.MODULE)
     # Blender itself unpacks an extension's wheels again.
     now = [listing(root) for root in roots]
     assert now[0] == before[0] and now[1].keys() == before[1].keys()
-    saved = support.part("bl.libraries").target() / "Own folder.json"
+    saved = common.part("plan.tool_libraries").target() / "Own folder.json"
     assert saved.is_file()
     saved.unlink()

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import bpy
 
-import support
+from support import common
 
 
 def tool():
     """tools/operators.py, which writes the page."""
-    folder = str(Path(support.JOB["repo"]) / "tools")
+    folder = str(Path(common.JOB["repo"]) / "tools")
     if folder not in sys.path:
         sys.path.append(folder)
     return importlib.import_module("operators")

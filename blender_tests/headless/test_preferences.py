@@ -6,17 +6,16 @@ import shutil
 from pathlib import Path
 
 import bpy
-import leftovers
 import numpy as np
 import riffler
 
-import support
+from support import common, leak_check
 
 
 @contextlib.contextmanager
 def preferred(**chosen):
     """Preferences outlast a file: given back afterwards."""
-    preferences = support.part("bl.chosen").preferences  # others after the add-on was disabled
+    preferences = common.part("blender.preferences_access").preferences  # others after the add-on was disabled
     before = {name: getattr(preferences(), name) for name in chosen}
     try:
         for name, value in chosen.items():
@@ -28,7 +27,7 @@ def preferred(**chosen):
 
 
 def folder(name):
-    path = Path(support.out(name))
+    path = Path(common.out(name))
     shutil.rmtree(path, ignore_errors=True)
     path.mkdir()
     return path
@@ -40,29 +39,34 @@ def other(device):
 
 
 def test_the_preferences_are_the_addons_in_whatever_way_it_was_installed():
-    found = bpy.context.preferences.addons[support.MODULE].preferences
-    assert found == support.part("bl.chosen").preferences() and type(found).__name__ == "RifflerPreferences"
+    found = bpy.context.preferences.addons[common.MODULE].preferences
+    assert (
+        found == common.part("blender.preferences_access").preferences()
+        and type(found).__name__ == "RifflerPreferences"
+    )
 
 
 def test_limits_come_as_they_are_in_the_core():
     """The defaults of the native core (native/haptics/limits.hpp): 5 N, 300 N·mm, 2 W."""
-    given = support.part("bl.chosen").limits()
+    given = common.part("blender.preferences_access").limits()
     assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (5, 300, 2000))
 
 
 def test_no_session_lets_more_force_through_than_was_allowed():
     """By its journal, which has every step: 0.2 N of the 5 that are let through otherwise."""
-    support.scale(1)
-    ob = support.stock(size=(60, 60, 20), pitch=0.5, directions="z")
+    common.scale(1)
+    ob = common.stock(size=(60, 60, 20), pitch=0.5, directions="z")
     place = folder("limited")
     with preferred(force=0.2, torque=30.0, power=0.5):
         settings = bpy.context.scene.riffler.pen
-        given = support.part("operators.pen").session_options(bpy.context, ob, settings)
+        given = common.part("pen.operators").session_options(
+            bpy.context, ob, settings, common.part("sculpt.brushes").of("remove")
+        )
         assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (0.2, 30, 500))
         device = {"device": "simulated", "gap": 0.0, "removal_constant": 0.5}
         forces = []
         for seconds in (4.0, 8.0, 16.0, 32.0):  # a busy machine takes the force away now and then
-            bpy.ops.riffler.pen_sculpt(seconds=seconds, tool=support.BALL, record=True, folder=str(place), **device)
+            bpy.ops.riffler.pen_sculpt(seconds=seconds, tool=common.BALL, record=True, folder=str(place), **device)
             strokes = [s for p in place.glob("*.rjournal") for s in riffler.Journal.read(p).strokes]
             forces = [np.linalg.norm(s.forces[:, :3], axis=1).max() for s in strokes if s.forces is not None and len(s)]
             if forces:
@@ -72,12 +76,12 @@ def test_no_session_lets_more_force_through_than_was_allowed():
 
 
 def test_the_device_is_the_one_of_the_preferences_unless_the_scene_has_another():
-    support.scale(1)
-    support.stock(size=(10, 10, 5), pitch=0.5)
+    common.scale(1)
+    common.stock(size=(10, 10, 5), pitch=0.5)
     assert bpy.context.scene.riffler.pen.device == "preferred"
     kind = other("simulated")
     with preferred(device=kind):
-        support.refused(lambda: bpy.ops.riffler.pen_sculpt(seconds=0.1))  # nothing of it is plugged in
+        common.refused(lambda: bpy.ops.riffler.pen_sculpt(seconds=0.1))  # nothing of it is plugged in
         assert bpy.ops.riffler.pen_sculpt(seconds=0.1, device="simulated", gap=500.0) == {"CANCELLED"}
 
 
@@ -85,32 +89,32 @@ def test_threads():
     automatic = riffler.threads()
     with preferred(threads=3):
         assert riffler.threads() == 3
-        bpy.ops.preferences.addon_disable(module=support.MODULE)
+        bpy.ops.preferences.addon_disable(module=common.MODULE)
         assert riffler.threads() == automatic
-        bpy.ops.preferences.addon_enable(module=support.MODULE)
+        bpy.ops.preferences.addon_enable(module=common.MODULE)
     assert riffler.threads() == automatic
 
 
 def test_saved_threads_are_used_again_when_the_addon_is_enabled():
     with preferred(threads=3):
         riffler.set_threads(None)
-        support.part("preferences").attach()
+        common.part("preferences").attach()
         assert riffler.threads() == 3
 
 
 def test_journals_are_written_into_the_folder_that_was_chosen():
-    import sculpting
+    from support import sculpting
 
     place = folder("journals")
     with preferred(journals=str(place)):
         sculpting.stroke(sculpting.sculpt(), 1)
         assert len([p for p in place.iterdir() if p.is_dir()]) == 1
-        support.part("bl.live").end_all()
-        support.part("bl.keeping").leave()
+        common.part("sculpt.live_registry").end_all()
+        common.part("sculpt.persistence").leave()
 
 
 def test_journals_are_found_in_the_old_folder_too():
-    keeping, chosen = support.part("bl.keeping"), support.part("bl.chosen")
+    keeping, chosen = common.part("sculpt.persistence"), common.part("blender.preferences_access")
     own = chosen.target("journals")
     own.mkdir(parents=True, exist_ok=True)
     with preferred(journals=str(folder("new journals"))) as found:
@@ -126,12 +130,12 @@ def test_journals_are_found_in_the_old_folder_too():
 
 def left_in(place):
     """The folder of a journal with one stroke."""
-    import sculpting
+    from support import sculpting
 
     with preferred(journals=""):
         name = sculpting.sculpt()
         sculpting.stroke(name, 1)
-        journal = support.part("bl.live").of(bpy.data.objects[name]).keeping.journal
+        journal = common.part("sculpt.live_registry").of(bpy.data.objects[name]).persistence.journal
         while not journal.settled():  # the stock that it begins with is written meanwhile
             pass
         assert journal.folder.parent == place
@@ -139,37 +143,37 @@ def left_in(place):
 
 
 def test_a_folder_that_is_gone_is_named_and_work_goes_on():
-    import sculpting
+    from support import sculpting
 
-    gone = str(Path(support.out("")) / "gone")
-    libraries = support.part("bl.libraries")
+    gone = str(Path(common.out("")) / "gone")
+    libraries = common.part("plan.tool_libraries")
     with preferred(journals=gone, tools=gone):
         name = sculpting.sculpt()
-        before = support.content(bpy.data.objects[name]).volume.volume
+        before = common.content(bpy.data.objects[name]).volume.volume
         sculpting.stroke(name, 1)
-        run = support.part("bl.live").of(bpy.data.objects[name])
+        run = common.part("sculpt.live_registry").of(bpy.data.objects[name])
         assert run.volume.volume < before
-        assert gone in run.keeping.problem and "preferences" in run.keeping.problem
-        support.part("bl.live").end_all()
+        assert gone in run.persistence.problem and "preferences" in run.persistence.problem
+        common.part("sculpt.live_registry").end_all()
         _, problems = libraries.files()
         assert any(gone in line for line in problems)
-        support.refused(lambda: bpy.ops.riffler.plan_tool_save(name="Mine"), gone, "preferences")
+        common.refused(lambda: bpy.ops.riffler.plan_tool_save(name="Mine"), gone, "preferences")
     assert not Path(gone).exists()
 
 
 def test_tools_of_both_folders_are_offered():
     place = folder("shared tools")
-    bpy.ops.riffler.plan_tool(name=support.part("core.presets").presets()[0]["name"])
+    bpy.ops.riffler.plan_tool(name=common.part("common.presets").presets()[0]["name"])
     with preferred(tools=str(place)):
         bpy.ops.riffler.plan_tool_save(name="Everybody's")
         assert len(list(place.iterdir())) == 1
-        assert "Everybody's" in [e.name for e in support.part("bl.libraries").files()[0]]
+        assert "Everybody's" in [e.name for e in common.part("plan.tool_libraries").files()[0]]
 
 
 def test_a_folder_beside_the_file_becomes_one_for_all_files():
-    bpy.ops.wm.save_as_mainfile(filepath=support.out("beside.blend"))
+    bpy.ops.wm.save_as_mainfile(filepath=common.out("beside.blend"))
     with preferred(tools="//") as found:
-        assert Path(found.tools) == Path(support.out("beside.blend")).parent
+        assert Path(found.tools) == Path(common.out("beside.blend")).parent
 
 
 def test_the_doctor_writes_what_it_finds_into_a_text():
@@ -177,8 +181,8 @@ def test_the_doctor_writes_what_it_finds_into_a_text():
     text = bpy.data.texts["Riffler Doctor"].as_string()
     import numpy
 
-    words = ("riffler", riffler.__version__, numpy.__version__, bpy.app.version_string, support.MODULE, "threads")
-    for word in (*words, str(support.part("bl.chosen").target("tools"))):
+    words = ("riffler", riffler.__version__, numpy.__version__, bpy.app.version_string, common.MODULE, "threads")
+    for word in (*words, str(common.part("blender.preferences_access").target("tools"))):
         assert word in text, (word, text)
     assert text.count("\nBlender ") == 1
     bpy.ops.riffler.doctor()
@@ -201,9 +205,9 @@ def blenders_keys():
 
 
 def test_the_keys_are_in_the_addons_configuration_and_take_none_of_blenders():
-    keymaps = support.part("ui.keymaps")
+    keymaps = common.part("keymaps")
     assert len(list(keymaps.users())) == len(keymaps.KEYS)
-    ours = [line for line in leftovers.keymaps() if "wm.call_menu" in line or "simulate_stop" in line]
+    ours = [line for line in leak_check.keymaps() if "wm.call_menu" in line or "simulate_stop" in line]
     assert len(ours) >= len(keymaps.KEYS)
     taken = set(blenders_keys())
     assert ("Object Mode", "D", False, True, False) in taken  # duplicate
@@ -217,13 +221,13 @@ def test_the_keys_are_in_the_addons_configuration_and_take_none_of_blenders():
 
 
 def test_menus_are_drawn_into_blenders():
-    drawn = leftovers.menus(support.MODULE)
+    drawn = leak_check.menus(common.MODULE)
     assert len(drawn) == 4 and any("VIEW3D_MT_mesh_add" in line for line in drawn), drawn
 
 
 def shown():
     """(where, property) of all that a person can set, and (where, None) of operators."""
-    for module in support.part("registration").modules():
+    for module in common.part("registration").modules():
         for cls in module.CLASSES:
             if issubclass(cls, bpy.types.Operator):
                 rna = getattr(bpy.ops.riffler, cls.bl_idname.partition(".")[2]).get_rna_type()
@@ -243,7 +247,7 @@ def shown():
 
 def groups():
     """Of the scene's settings: what objects, meshes and the window manager have is shown nowhere."""
-    own = support.part("properties")
+    own = common.part("properties")
     return {
         p.fixed_type.identifier
         for group in (own.RifflerScene, own.RifflerMachines)
@@ -270,11 +274,11 @@ def test_every_text_of_the_translations_is_one_of_the_addons():
         known |= {(p or rna).name, (p or rna).description}
         if p is not None and p.type == "ENUM":
             known |= {t for item in p.enum_items for t in (item.name, item.description)}
-    root = Path(support.part("registration").__file__).parent
+    root = Path(common.part("registration").__file__).parent
     for path in root.rglob("*.py"):
         if "_vendor" not in path.parts:
             known |= {n.value for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if is_text(n)}
-    table = support.part("translations").table()
+    table = common.part("translations").table()
     assert set(table) >= {"de"}
     for language, texts in table.items():
         unknown = {text for _, text in texts} - known
@@ -283,8 +287,8 @@ def test_every_text_of_the_translations_is_one_of_the_addons():
 
 
 def test_all_that_is_shown_is_looked_up_in_the_addons_own_words():
-    own = support.part("translations").CONTEXT
-    for cls in (c for m in support.part("registration").modules() for c in m.CLASSES if hasattr(c, "bl_label")):
+    own = common.part("translations").CONTEXT
+    for cls in (c for m in common.part("registration").modules() for c in m.CLASSES if hasattr(c, "bl_label")):
         assert cls.bl_translation_context == own, cls
     if "translation_context" not in bpy.props.FloatProperty.__doc__:
         return  # Blender 3.4: fields have none
@@ -301,15 +305,15 @@ def is_text(node):
 def test_a_blender_in_german_speaks_german():
     view = bpy.context.preferences.view
     if "de_DE" not in bpy.app.translations.locales:
-        raise support.Skip("this Blender was built without languages")
-    support.stock(size=(10, 10, 5), pitch=0.5)
+        raise common.Skip("this Blender was built without languages")
+    common.stock(size=(10, 10, 5), pitch=0.5)
     before = view.language
     try:
         view.language = "de_DE"
         view.use_translate_interface = True
         assert bpy.app.translations.pgettext_iface("New Stock", "Operator") == "Neues Rohteil"
-        own = support.part("translations").CONTEXT  # in Blender's own words a pitch is a slope
+        own = common.part("translations").CONTEXT  # in Blender's own words a pitch is a slope
         assert bpy.app.translations.pgettext_iface("Pitch", own) == "Raster"
-        support.refused(bpy.ops.riffler.relief, "Ein Bild wählen")  # reports, which Blender does not look up
+        common.refused(bpy.ops.riffler.relief, "Ein Bild wählen")  # reports, which Blender does not look up
     finally:
         view.language = before

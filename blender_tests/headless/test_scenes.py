@@ -4,15 +4,11 @@ objects. What cannot be done is said, nothing is left half done, and nothing is 
 from types import SimpleNamespace
 
 import bpy
-import keyed
 import numpy as np
-import plans
-import programs
 import riffler
-import sculpting
-from sculpting import live
 
-import support
+from support import common, keyframed_plan, plans, programs, sculpting
+from support.sculpting import live
 
 
 def datablocks():
@@ -35,7 +31,7 @@ def exclude(ob):
 
 def linked(name="Elsewhere"):
     """A collection of another file, with a cube, in this scene."""
-    path = support.out("elsewhere.blend")
+    path = common.out("elsewhere.blend")
     bpy.ops.wm.read_homefile(use_empty=False)
     home = bpy.data.collections.new(name)
     home.objects.link(bpy.data.objects.new("Far Cube", bpy.data.objects["Cube"].data))
@@ -60,8 +56,8 @@ def test_a_stock_in_an_excluded_collection_is_not_simulated_and_nothing_is_left(
     stock = programs.stock()
     exclude(stock)
     before = datablocks()
-    support.refused(lambda: bpy.ops.riffler.simulate(source="PLAN"), "Stock is disabled", "Outliner")
-    assert support.part("bl.simulating").active() is None and datablocks() == before
+    common.refused(lambda: bpy.ops.riffler.simulate(source="PLAN"), "Stock is disabled", "Outliner")
+    assert common.part("program.simulation").active() is None and datablocks() == before
 
 
 def test_a_stock_in_an_excluded_collection_is_verified_once_it_is_enabled():
@@ -69,7 +65,7 @@ def test_a_stock_in_an_excluded_collection_is_verified_once_it_is_enabled():
     programs.resolved()
     stock = programs.stock()
     home = exclude(stock)
-    support.refused(lambda: bpy.ops.riffler.verify(source="PLAN"), "Stock is disabled", "Outliner")
+    common.refused(lambda: bpy.ops.riffler.verify(source="PLAN"), "Stock is disabled", "Outliner")
     home.exclude = False
     for coloured in ("PART", "LEFT"):
         assert bpy.ops.riffler.verify(source="PLAN", coloured=coloured) == {"FINISHED"}
@@ -80,11 +76,11 @@ def test_a_stock_in_an_excluded_collection_is_verified_once_it_is_enabled():
 def test_new_stock_is_seen_whatever_collection_is_active():
     linked()
     activate("Elsewhere")
-    assert support.stock().users_collection == (bpy.context.scene.collection,)
+    assert common.stock().users_collection == (bpy.context.scene.collection,)
     home = bpy.data.collections.new("Excluded")
     bpy.context.scene.collection.children.link(home)
     activate("Excluded").exclude = True
-    ob = support.stock()
+    ob = common.stock()
     bpy.context.view_layer.update()
     assert bpy.context.object == ob and ob.visible_get()
 
@@ -92,21 +88,21 @@ def test_new_stock_is_seen_whatever_collection_is_active():
 def test_fixtures_of_another_file_are_not_changed():
     bpy.context.scene.riffler.plan.fixtures = linked()
     for name, operator in (("Cube", "plan_fixtures_add"), ("Far Cube", "plan_fixtures_remove")):
-        support.select(bpy.data.objects[name])
-        support.refused(getattr(bpy.ops.riffler, operator), "Elsewhere is linked", "choose another collection")
+        common.select(bpy.data.objects[name])
+        common.refused(getattr(bpy.ops.riffler, operator), "Elsewhere is linked", "choose another collection")
 
 
 def test_a_mesh_of_another_file_is_not_coloured():
     linked()
-    support.select(bpy.data.objects["Far Cube"])
-    support.refused(lambda: bpy.ops.riffler.show_deviation(reference="Cube"), "Far Cube is linked", "Make Local")
+    common.select(bpy.data.objects["Far Cube"])
+    common.refused(lambda: bpy.ops.riffler.show_deviation(reference="Cube"), "Far Cube is linked", "Make Local")
 
 
 # ------------------------------------------------------------------ objects
 def test_a_sculpt_that_is_scaled_to_nothing_says_what_helps():
     ob = bpy.data.objects[sculpting.sculpt()]
-    support.curve("Line", [(-15, 0, 8), (15, 0, 8)], mm_per_unit=1.0)
-    before = support.content(ob).volume.to_bytes()
+    common.curve("Line", [(-15, 0, 8), (15, 0, 8)], mm_per_unit=1.0)
+    before = common.content(ob).volume.to_bytes()
     calls = {
         "cut_curve": {"curve": "Line"},
         "crop": {"normal": (0, 0, 1)},
@@ -116,24 +112,25 @@ def test_a_sculpt_that_is_scaled_to_nothing_says_what_helps():
     }
     for scale in ((0, 0, 0), (1, 1, 0)):
         ob.scale = scale
-        support.select(ob)
+        common.select(ob)
         bpy.context.view_layer.update()
         for name, settings in calls.items():
             call = getattr(bpy.ops.riffler, name)
-            support.refused(lambda c=call, s=settings: c(**s), "scaled to nothing", "Clear > Scale")
-    assert support.content(ob).volume.to_bytes() == before and not live().lives
+            common.refused(lambda c=call, s=settings: c(**s), "scaled to nothing", "Clear > Scale")
+    assert common.content(ob).volume.to_bytes() == before and not live().lives
 
 
 def test_the_cursor_over_a_live_sculpt_that_is_scaled_to_nothing_is_quiet():
     name = sculpting.sculpt()
     run = sculpting.work(name)
-    pointer, tool = support.part("drawing.pointer"), bpy.context.scene.riffler.tool.dictionary()
+    pointer, tool = common.part("sculpt.pointer"), bpy.context.scene.riffler.tool.dictionary()
+    carve = common.part("sculpt.brushes").of("remove")
     space = SimpleNamespace(perspective_matrix=np.diag([1 / 60, 1 / 60, -1 / 60, 1]))
     context = SimpleNamespace(region=SimpleNamespace(width=600, height=600), region_data=space, scene=bpy.context.scene)
-    assert pointer._on_surface(context, "remove", run, tool, (500, 500))  # from above, over the stock
+    assert pointer._on_surface(context, carve, run, tool, (500, 500))  # from above, over the stock
     bpy.data.objects[name].scale = (1, 1, 0)
     bpy.context.view_layer.update()
-    assert pointer._on_surface(context, "remove", run, tool, (500, 500)) is None
+    assert pointer._on_surface(context, carve, run, tool, (500, 500)) is None
     live().end_all()
 
 
@@ -147,44 +144,44 @@ def test_a_plane_that_is_flat_crops_and_one_that_is_a_line_is_refused():
         plane.location.z = ob.matrix_world.translation.z + 12
         plane.scale = scale
         bpy.context.view_layer.update()
-        support.select(ob)
-        support.push("crop")
+        common.select(ob)
+        common.push("crop")
         assert bpy.ops.riffler.crop("EXEC_DEFAULT", True, plane="Plane") == {"FINISHED"}
-        volumes.append(support.content(ob).volume.volume)
+        volumes.append(common.content(ob).volume.volume)
         bpy.ops.ed.undo()
         ob, plane = bpy.data.objects[ob.name], bpy.data.objects["Plane"]
     assert np.ptp(volumes) < 1e-9 * volumes[0]
     plane.scale = (0, 1, 1)
     bpy.context.view_layer.update()
-    support.select(ob)
-    support.refused(lambda: bpy.ops.riffler.crop(plane="Plane"), "Plane is scaled to nothing", "Clear > Scale")
+    common.select(ob)
+    common.refused(lambda: bpy.ops.riffler.crop(plane="Plane"), "Plane is scaled to nothing", "Clear > Scale")
     bpy.data.images.new("Picture", 8, 8)
     call = lambda: bpy.ops.riffler.relief(image="Picture", place="Plane")  # noqa: E731
-    support.refused(call, "Plane is scaled to nothing")
+    common.refused(call, "Plane is scaled to nothing")
 
 
 def test_shape_keys_go_with_the_vertices_that_they_were_of():
     ob = bpy.data.objects[sculpting.sculpt()]
-    support.curve("Line", [(-15, 0, 18), (15, 0, 18)], mm_per_unit=1.0)
-    support.select(ob)
+    common.curve("Line", [(-15, 0, 18), (15, 0, 18)], mm_per_unit=1.0)
+    common.select(ob)
     ob.shape_key_add(name="Basis")
     ob.shape_key_add(name="Key").value = 1.0
-    edited = support.part("bl.sculpts").edited
+    edited = common.part("sculpt.sculpts").edited
     assert edited(ob.data)  # so the panel offers to take them over, or to drop them
-    support.refused(lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=support.FLAT, depth=2.0), "Take Edits")
+    common.refused(lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0), "Take Edits")
     assert ob.data.shape_keys is not None and bpy.ops.riffler.rebuild() == {"FINISHED"}
-    assert bpy.ops.riffler.cut_curve(curve="Line", tool=support.FLAT, depth=2.0) == {"FINISHED"}
+    assert bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0) == {"FINISHED"}
     bpy.context.view_layer.update()
     seen = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    assert np.array_equal(support.coordinates(seen), support.coordinates(ob.data))
+    assert np.array_equal(common.coordinates(seen), common.coordinates(ob.data))
     assert not edited(ob.data)
     sculpting.matches_its_volume(ob.name)
 
 
 def test_shape_keys_are_taken_over_as_edits():
     ob = bpy.data.objects[sculpting.sculpt()]
-    volume = support.content(ob).volume.volume
-    support.select(ob)
+    volume = common.content(ob).volume.volume
+    common.select(ob)
     ob.shape_key_add(name="Basis")
     key = ob.shape_key_add(name="Longer")
     co = np.empty((len(key.data), 3), np.float32)
@@ -194,7 +191,7 @@ def test_shape_keys_are_taken_over_as_edits():
     key.value = 1.0
     bpy.context.view_layer.update()
     assert bpy.ops.riffler.take_edits() == {"FINISHED"}
-    assert abs(support.content(ob).volume.volume - 1.5 * volume) < 1e-3 * volume
+    assert abs(common.content(ob).volume.volume - 1.5 * volume) < 1e-3 * volume
     sculpting.matches_its_volume(ob.name)
 
 
@@ -211,15 +208,15 @@ def test_one_sculpt_that_cannot_be_ended_keeps_no_other_from_being_saved():
 
     run.end = end
     try:
-        bpy.ops.wm.save_as_mainfile(filepath=support.out("one.blend"), copy=True)
-        assert support.content(bpy.data.objects[second]).volume.to_bytes() == made
+        bpy.ops.wm.save_as_mainfile(filepath=common.out("one.blend"), copy=True)
+        assert common.content(bpy.data.objects[second]).volume.to_bytes() == made
         assert "First: there is not enough memory" in bpy.context.window_manager.riffler.notice
         assert [r.name for r in live().awake()] == [first]
         bpy.context.window_manager.riffler.notice = ""
-        bpy.ops.wm.save_as_mainfile(filepath=support.out("one.blend"), copy=True)
+        bpy.ops.wm.save_as_mainfile(filepath=common.out("one.blend"), copy=True)
         assert not bpy.context.window_manager.riffler.notice  # the same again is not told again
-        support.select(bpy.data.objects[second])
-        support.refused(bpy.ops.riffler.rebuild, "not enough memory")
+        common.select(bpy.data.objects[second])
+        common.refused(bpy.ops.riffler.rebuild, "not enough memory")
     finally:
         run.end = original
         live().end_all()
@@ -227,14 +224,14 @@ def test_one_sculpt_that_cannot_be_ended_keeps_no_other_from_being_saved():
 
 
 def test_pieces_are_not_lost_where_one_of_them_cannot_be_made():
-    support.scale(1)
-    ob = support.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
-    volume = support.content(ob).volume.copy()
+    common.scale(1)
+    ob = common.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
+    volume = common.content(ob).volume.copy()
     for x in (13.0, 26.0):  # two slots through the block: three pieces
         volume.carve(riffler.Tool.flat(4, 40), np.array([[x, -4, -1, 0, 0, 1], [x, 34, -1, 0, 0, 1]]))
-    sculpts = support.part("bl.sculpts")
-    sculpts.commit(ob.data, support.part("core.cache").Content(volume, []), 1.0)
-    before, count, commit, calls = support.content(ob).volume.to_bytes(), datablocks(), sculpts.commit, []
+    sculpts = common.part("sculpt.sculpts")
+    sculpts.commit(ob.data, common.part("common.contents").Content(volume, []), 1.0)
+    before, count, commit, calls = common.content(ob).volume.to_bytes(), datablocks(), sculpts.commit, []
 
     def failing(*arguments, **more):
         calls.append(arguments)
@@ -244,10 +241,10 @@ def test_pieces_are_not_lost_where_one_of_them_cannot_be_made():
 
     sculpts.commit = failing
     try:
-        support.refused(bpy.ops.riffler.split, "not enough memory")
+        common.refused(bpy.ops.riffler.split, "not enough memory")
     finally:
         sculpts.commit = commit
-    assert support.content(ob).volume.to_bytes() == before and len(calls) == 2
+    assert common.content(ob).volume.to_bytes() == before and len(calls) == 2
     assert datablocks()[:2] == count[:2]
     assert bpy.ops.riffler.split() == {"FINISHED"} and len(bpy.data.objects) == count[0] + 2
 
@@ -256,7 +253,7 @@ def test_a_linked_duplicate_of_what_is_left_is_kept():
     programs.resolved()
     programs.stock()
     bpy.ops.riffler.verify(source="PLAN", coloured="LEFT")
-    support.select(programs.settings().left)
+    common.select(programs.settings().left)
     bpy.ops.object.duplicate(linked=True)
     name = bpy.context.object.name
     bpy.ops.riffler.verify_clear()
@@ -266,17 +263,17 @@ def test_a_linked_duplicate_of_what_is_left_is_kept():
 # ------------------------------------------------------------------ many objects
 def test_plans_are_looked_for_once_among_many_objects():
     ob = plans.on_timeline()
-    store = support.part("bl.plan_store")
+    store = common.part("plan.plan_store")
     for _ in range(200):
         bpy.context.scene.collection.objects.link(bpy.data.objects.new("Other", None))
     bpy.context.view_layer.objects.active = bpy.data.objects["Other"]
-    keyed.update()
+    keyframed_plan.update()
     before = store.searches
     for _ in range(50):
         assert store.active(bpy.context) == ob and bpy.ops.riffler.plan_resolve.poll() is False
     assert store.searches == before + 1
     bpy.data.objects["Other"].location.x = 1
-    keyed.update()
+    keyframed_plan.update()
     assert store.active(bpy.context) == ob and store.searches == before + 1
     # whatever makes it another list is seen at once
     twin = store.new(bpy.context, store.plan(ob), "Twin")
@@ -288,33 +285,33 @@ def test_plans_are_looked_for_once_among_many_objects():
     assert store.in_scene(bpy.data.scenes.new("Empty")) == []
     (home,) = ob.users_collection
     home.objects.unlink(ob)  # no more and no fewer objects
-    keyed.update()
+    keyframed_plan.update()
     assert store.in_scene(bpy.context.scene) == []
     home.objects.link(ob)
-    keyed.update()
+    keyframed_plan.update()
     assert store.in_scene(bpy.context.scene) == [ob]
 
 
 def overridden(name):
     """The library override of an object of this file, in a new one; active, and the only one selected."""
-    path = support.out("overridden.blend")
+    path = common.out("overridden.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.read_homefile()
     with bpy.data.libraries.load(path, link=True) as (_, into):
         into.objects = [name]
     ob = into.objects[0].override_create()
     bpy.context.collection.objects.link(ob)
-    support.select(ob)
+    common.select(ob)
     return ob
 
 
 def test_an_overridden_plan_is_changed_only_once_it_is_local():
     """The plan's data is not what an override keeps: edits would be lost when the file is opened again."""
-    store = support.part("bl.plan_store")
+    store = common.part("plan.plan_store")
     ob = overridden(plans.on_timeline().name)
     plan = store.plan(ob)
     for call in ("plan_to_timeline", "plan_key", "plan_resolve"):
-        support.refused(getattr(bpy.ops.riffler, call), "overrides", "Make Local")
+        common.refused(getattr(bpy.ops.riffler, call), "overrides", "Make Local")
     try:
         store.write(ob, plan)
     except ValueError as error:
@@ -324,7 +321,7 @@ def test_an_overridden_plan_is_changed_only_once_it_is_local():
     bpy.ops.object.make_local(type="SELECT_OBJECT")
     ob = bpy.context.object
     assert bpy.ops.riffler.plan_to_timeline() == {"FINISHED"}
-    path, name = support.out("local.blend"), ob.name
+    path, name = common.out("local.blend"), ob.name
     store.write(ob, riffler.plan.Plan(plan.paths[:1], plan.tool))
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
@@ -332,5 +329,5 @@ def test_an_overridden_plan_is_changed_only_once_it_is_local():
 
 
 def test_an_overridden_sculpt_is_not_cut():
-    overridden(support.stock().name)
-    support.refused(bpy.ops.riffler.cut_curve, "overrides", "Make Local")
+    overridden(common.stock().name)
+    common.refused(bpy.ops.riffler.cut_curve, "overrides", "Make Local")

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import bpy
 
-import support
+from support import common
 
-PAGE = Path(support.__file__).resolve().parent.parent / "docs" / "sculpting.md"
+PAGE = Path(common.__file__).resolve().parents[2] / "docs" / "sculpting.md"
 TABLE = re.compile(r"^\| setting \| default \| \|\n\|---.*\n((?:\|.*\n)+)", re.MULTILINE)
 ROW = re.compile(r"^\| \*([^*]+)\* \| ([^|]+?) \| .+ \|$", re.MULTILINE)
 
@@ -55,9 +55,9 @@ def test_settings_have_the_names_and_defaults_of_the_tables():
 def test_buttons_are_called_as_they_are_there():
     """Bold in the first cell of a line: a button, or a tool. What the add-on writes in fixed words has its German, but
     for what a number follows."""
-    addon = Path(support.part("registration").__file__).parent
+    addon = Path(common.part("registration").__file__).parent
     texts = set(json.loads((addon / "translations" / "de.json").read_text(encoding="utf-8")))
-    panels = "".join(path.read_text(encoding="utf-8") for path in (addon / "ui").glob("*.py"))
+    panels = "".join(path.read_text(encoding="utf-8") for path in addon.rglob("*panel*.py"))
     cells = re.findall(r"^\| (\*\*.+?\*\*) \|", PAGE.read_text(), re.MULTILINE)
     named = [name for cell in cells for name in re.findall(r"\*\*([^*]+)\*\*", cell) if name != "key"]
     assert len(named) > 12

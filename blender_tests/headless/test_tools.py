@@ -4,22 +4,21 @@ import json
 from pathlib import Path
 
 import bpy
-import leftovers
 import numpy as np
 import riffler
 
-import support
+from support import common, leak_check
 
 SIZE = (400, 300)
 PIXEL = 0.1  # mm
 
 
 def tools():
-    return support.part("ui.tools").TOOLS
+    return common.part("sculpt.tools").TOOLS
 
 
 def volume_of(ob):
-    return support.part("bl.live").content(ob).volume
+    return common.part("sculpt.live_registry").content(ob).volume
 
 
 def view(middle):
@@ -33,7 +32,7 @@ def stroke(*places, middle=(20, 15), **more):
     """A stroke through places on the top (mm), as a script makes one."""
     rows = [[0.5 * SIZE[0] + (x - middle[0]) / PIXEL, 0.5 * SIZE[1] + (y - middle[1]) / PIXEL] for x, y in places]
     text = json.dumps({"view": view(middle), "rows": rows})
-    return bpy.ops.riffler.stroke(stroke=text, tool=more.pop("tool", support.BALL), **more)
+    return bpy.ops.riffler.stroke(stroke=text, tool=more.pop("tool", common.BALL), **more)
 
 
 def groove(length, depth, radius=3.0):
@@ -61,7 +60,7 @@ def test_the_toolbar_has_the_tools_in_one_group_with_icons_that_are_there():
         data = Path(tool.icon + ".dat").read_bytes()
         assert data[:4] == b"VCO\0" and len(data) > 500 and (len(data) - 8) % 18 == 0
         assert tool.draw_cursor and tool.draw_settings and tool.widget
-    keys = [line for line in leftovers.keymaps() if "riffler.stroke" in line]
+    keys = [line for line in leak_check.keymaps() if "riffler.stroke" in line]
     assert len(keys) == 6 * len(tools())  # each on the active sculpt, and elsewhere
 
 
@@ -84,9 +83,9 @@ def test_fields_of_the_panels_are_the_scenes_but_make_no_undo_steps():
 
 
 def test_undo_takes_back_strokes_and_leaves_the_brush_as_it_is():
-    support.scale(1)
-    name = support.stock(pitch=0.5).name
-    support.push("stock")
+    common.scale(1)
+    name = common.stock(pitch=0.5).name
+    common.push("stock")
     before = volume_of(bpy.data.objects[name]).volume
     settings(radius=3.0, depth=0.5, mirror=set())
     bpy.ops.riffler.stroke(
@@ -117,15 +116,15 @@ def test_sizes_go_in_steps_as_in_sculpt_mode_and_no_key_leaves_an_undo_step():
         for key in (("riffler.resize", "F", False), ("riffler.resize", "F", True)):
             assert key in sizes
         assert {e for n, e, _ in sizes if n == "riffler.size_step"} == {"LEFT_BRACKET", "RIGHT_BRACKET"}
-    for cls in (*support.part("operators.resize").CLASSES, support.part("operators.scene").RIFFLER_OT_tool_preset):
+    for cls in (*common.part("sculpt.resize").CLASSES, common.part("sculpt.tool_panel").RIFFLER_OT_tool_preset):
         assert "UNDO" not in cls.bl_options
 
 
 def test_a_stroke_from_a_script_is_the_groove_of_the_formula_in_any_scene():
     for unit in (1000.0, 1.0):
         bpy.ops.wm.read_homefile()
-        support.scale(unit)
-        ob = support.stock(pitch=0.25, directions="xyz")
+        common.scale(unit)
+        ob = common.stock(pitch=0.25, directions="xyz")
         settings(depth=0.8)
         before = volume_of(ob).volume
         assert stroke((10, 15), (30, 15)) == {"FINISHED"}
@@ -134,8 +133,8 @@ def test_a_stroke_from_a_script_is_the_groove_of_the_formula_in_any_scene():
 
 
 def test_material_is_put_on_within_the_stocks_box():
-    support.scale(1)
-    ob = support.stock(pitch=0.25, directions="xyz")
+    common.scale(1)
+    ob = common.stock(pitch=0.25, directions="xyz")
     settings(depth=2.0)
     stroke((10, 15), (30, 15))
     hollow = volume_of(ob).volume
@@ -145,26 +144,26 @@ def test_material_is_put_on_within_the_stocks_box():
 
 
 def test_material_that_the_box_cuts_off_is_said_at_once():
-    support.scale(1)
-    ob = support.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
+    common.scale(1)
+    ob = common.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
     settings(depth=1.0)
     stroke((10, 15), (30, 15))
     add = lambda: stroke((14, 15), (26, 15), mode="ADD")  # noqa: E731
     settings(depth=0.5)
-    assert "cut off" not in support.printed(add)  # it ends half a millimetre below the box
+    assert "cut off" not in common.printed(add)  # it ends half a millimetre below the box
     settings(depth=1.5)
-    assert "cut off at the stock's box: Make Room" in support.printed(add)
-    support.part("bl.live").end_all()
-    top = support.coordinates(ob.data)[:, 2].max()
+    assert "cut off at the stock's box: Make Room" in common.printed(add)
+    common.part("sculpt.live_registry").end_all()
+    top = common.coordinates(ob.data)[:, 2].max()
     assert top <= 20 + 1e-4
     assert bpy.ops.riffler.room(room=3.0) == {"FINISHED"}
-    assert "cut off" not in support.printed(add)
-    support.part("bl.live").end_all()
-    assert support.coordinates(ob.data)[:, 2].max() > top + 0.5
-    assert "cut off" not in support.printed(lambda: stroke((10, 8), (30, 8)))  # of what was added before
-    path = support.out("added.rjournal")
+    assert "cut off" not in common.printed(add)
+    common.part("sculpt.live_registry").end_all()
+    assert common.coordinates(ob.data)[:, 2].max() > top + 0.5
+    assert "cut off" not in common.printed(lambda: stroke((10, 8), (30, 8)))  # of what was added before
+    path = common.out("added.rjournal")
     recorded(path, ob)
-    assert "cut off at the stock's box" in support.printed(lambda: bpy.ops.riffler.cut_recording(filepath=path))
+    assert "cut off at the stock's box" in common.printed(lambda: bpy.ops.riffler.cut_recording(filepath=path))
 
 
 def recorded(path, ob):
@@ -177,10 +176,10 @@ def recorded(path, ob):
     journal.write(path)
 
 
-@support.core_bound
+@common.core_bound
 def test_every_copy_of_a_stroke_is_made():
-    support.scale(1)
-    ob = support.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
+    common.scale(1)
+    ob = common.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
     for chosen, count in (({"mirror": {"X", "Y"}}, 4), ({"radial": 3, "radial_axis": "Z"}, 3), ({}, 1)):
         settings(**{"mirror": set(), "radial": 1, "depth": 0.8, **chosen})
         before = volume_of(ob).volume
@@ -188,13 +187,13 @@ def test_every_copy_of_a_stroke_is_made():
         removed = before - volume_of(ob).volume
         assert abs(removed / (count * groove(4, 0.8)) - 1) < 0.02, (chosen, removed)
         bpy.ops.wm.read_homefile()
-        support.scale(1)
-        ob = support.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
+        common.scale(1)
+        ob = common.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
 
 
 def test_a_mask_keeps_what_it_covers():
-    support.scale(1)
-    ob = support.stock(pitch=0.25, directions="xyz")
+    common.scale(1)
+    ob = common.stock(pitch=0.25, directions="xyz")
     settings(depth=2.0)
     assert stroke((20, 15), mode="MASK") == {"FINISHED"}
     whole = volume_of(ob).volume
@@ -207,8 +206,8 @@ def test_a_mask_keeps_what_it_covers():
 
 
 def test_fixtures_keep_the_tool_out():
-    support.scale(1)
-    ob = support.stock(pitch=0.25, directions="xyz")
+    common.scale(1)
+    ob = common.stock(pitch=0.25, directions="xyz")
     clamps = bpy.data.collections.new("Clamps")
     bpy.context.scene.collection.children.link(clamps)
     bpy.ops.mesh.primitive_cube_add(size=4, location=(25, 15, 20))  # up to 2 mm above the stock's top
@@ -243,9 +242,9 @@ def clamp(ob, place, size=4):
 
 def least_clearance(ob, clamps):
     """Of all that was cut, between the poses too, from the fixtures."""
-    solid = support.part("bl.fixtures").collider(bpy.context, clamps, support.part("bl.sculpts").from_world(ob))
+    solid = common.part("sculpt.fixtures").collider(bpy.context, clamps, common.part("sculpt.sculpts").from_world(ob))
     found = []
-    for cut in support.part("bl.live").content(ob).cuts:
+    for cut in common.part("sculpt.live_registry").content(ob).cuts:
         a, b = np.asarray(cut.poses)[:-1], np.asarray(cut.poses)[1:]
         way = np.concatenate([a + share * (b - a) for share in np.linspace(0, 1, 41)])
         found.append(solid.clearance(riffler.Tool.from_dict(cut.tool), way).min())
@@ -253,27 +252,27 @@ def least_clearance(ob, clamps):
 
 
 def test_no_tool_passes_through_a_fixture_on_its_way_up_nor_do_copies_by_symmetry():
-    support.scale(1)
-    ob = support.stock(pitch=0.5, directions="z")
+    common.scale(1)
+    ob = common.stock(pitch=0.5, directions="z")
     clamps = clamp(ob, (30, 15, 20))
     settings(depth=1.0, fixtures=clamps, axis="UP")
     stroke((22, 15), (38, 15))
     assert least_clearance(ob, clamps) > -0.02
     settings(mirror={"X"})  # about x = 20: the clamp stands on the copy's side
     stroke((4, 15), (16, 15))
-    copies = support.part("bl.live").content(ob).cuts[1:]
+    copies = common.part("sculpt.live_registry").content(ob).cuts[1:]
     assert len(copies) == 2 and least_clearance(ob, clamps) > -0.02
     heights = [np.asarray(c.poses)[:, 2].max() for c in copies]
     assert heights[0] < 20.01 and heights[1] > 21.9, heights
 
 
 def test_a_stroke_goes_around_what_no_lift_frees_it_from():
-    support.scale(1)
-    ob = support.stock(pitch=0.5, directions="z")
+    common.scale(1)
+    ob = common.stock(pitch=0.5, directions="z")
     clamps = clamp(ob, (20, 15, 20), size=8)
     settings(depth=1.0, fixtures=clamps, axis="UP")
-    run = support.part("bl.live").begin(bpy.context, ob)
-    run.maps = support.part("core.symmetry").maps("X")
+    run = common.part("sculpt.live_registry").begin(bpy.context, ob)
+    run.maps = common.part("sculpt.pure.symmetry").maps("X")
     run.keep_out = lambda poses, dt: None if (np.abs(poses[:, 0] - 35) < 2).any() else (poses, dt)
     run.begin_stroke()
     for k in range(4):
@@ -289,8 +288,8 @@ def test_a_stroke_goes_around_what_no_lift_frees_it_from():
 
 def test_a_mirrored_fixture_is_as_solid_as_any():
     """The tool is wholly inside it, and touches none of its faces."""
-    support.scale(1)
-    ob = support.stock(pitch=0.5)
+    common.scale(1)
+    ob = common.stock(pitch=0.5)
     jaws = bpy.data.collections.new("Jaws")
     bpy.context.scene.collection.children.link(jaws)
     bpy.ops.mesh.primitive_cube_add(size=120, location=(30, 15, 20))
@@ -301,15 +300,15 @@ def test_a_mirrored_fixture_is_as_solid_as_any():
     for scale in ((1, 1, 1), (-1, 1, 1), (-1, -1, -1)):
         jaw.scale = scale
         bpy.context.view_layer.update()
-        solid = support.part("bl.fixtures").collider(bpy.context, jaws, support.part("bl.sculpts").from_world(ob))
+        solid = common.part("sculpt.fixtures").collider(bpy.context, jaws, common.part("sculpt.sculpts").from_world(ob))
         _, report = riffler.plan.lift(riffler.Tool.ball(6, 30), pose, solid, tolerance=0.001)
         assert not report["free"].any() or np.all(report["lift"] > 60), scale
 
 
 def test_handles_of_a_mirrored_sculpt_are_as_large_as_of_any():
-    support.scale(1)
-    ob = support.stock(pitch=0.5)
-    place = support.part("gizmos.size")._place
+    common.scale(1)
+    ob = common.stock(pitch=0.5)
+    place = common.part("sculpt.size_gizmo")._place
     for scale, expected in (((1, 1, 1), 1), ((-1, 1, 1), 1), ((-2, -2, -2), 2), ((1, 1, 0), 0)):
         ob.scale = scale
         bpy.context.view_layer.update()
@@ -317,14 +316,14 @@ def test_handles_of_a_mirrored_sculpt_are_as_large_as_of_any():
 
 
 def test_undo_takes_a_stroke_back():
-    support.scale(1)
-    name = support.stock(pitch=0.5).name
-    support.push("stock")
+    common.scale(1)
+    name = common.stock(pitch=0.5).name
+    common.push("stock")
     before = volume_of(bpy.data.objects[name]).volume
     shown = []
     for x in (10, 20, 30):
         stroke((x, 15), mode="REMOVE")
-        support.push("stroke")
+        common.push("stroke")
         shown.append(volume_of(bpy.data.objects[name]).volume)
     assert before > shown[0] > shown[1] > shown[2]
     bpy.ops.ed.undo()
@@ -334,15 +333,15 @@ def test_undo_takes_a_stroke_back():
 
 
 def test_what_cannot_be_stroked_is_refused_and_nothing_changes():
-    support.scale(1)
-    ob = support.stock()
+    common.scale(1)
+    ob = common.stock()
     before = volume_of(ob).volume
     good = json.dumps({"view": view((20, 15)), "rows": [[200, 150]]})
-    support.refused(lambda: bpy.ops.riffler.stroke(), "stroke", "no pointer")
-    support.refused(lambda: bpy.ops.riffler.stroke(stroke="{"), "JSON")
-    support.refused(lambda: bpy.ops.riffler.stroke(stroke=json.dumps({"view": view((0, 0)), "rows": [[1]]})), "row 0")
-    support.refused(lambda: bpy.ops.riffler.stroke(stroke=good, tool='{"kind": "ball"}'), "")
-    support.refused(lambda: stroke((20, 15), mode="SOFTEN"), "three directions", "Change Pitch")
+    common.refused(lambda: bpy.ops.riffler.stroke(), "stroke", "no pointer")
+    common.refused(lambda: bpy.ops.riffler.stroke(stroke="{"), "JSON")
+    common.refused(lambda: bpy.ops.riffler.stroke(stroke=json.dumps({"view": view((0, 0)), "rows": [[1]]})), "row 0")
+    common.refused(lambda: bpy.ops.riffler.stroke(stroke=good, tool='{"kind": "ball"}'), "")
+    common.refused(lambda: stroke((20, 15), mode="SOFTEN"), "three directions", "Change Pitch")
     assert stroke((200, 200)) == {"CANCELLED"}
     assert volume_of(ob).volume == before
     bpy.ops.object.select_all(action="DESELECT")
@@ -353,7 +352,7 @@ def test_what_cannot_be_stroked_is_refused_and_nothing_changes():
 def test_an_events_pressure_and_tilt_count_only_where_a_tablet_made_it():
     from types import SimpleNamespace as Names
 
-    sample = support.part("operators.stroke").sample
+    sample = common.part("sculpt.stroke_operator").sample
     pen = Names(mouse_x=130, mouse_y=90, is_tablet=True, pressure=0.25, tilt=(0.5, -0.125))
     assert sample(pen, (100, 50))[:5] == (30, 40, 0.25, 0.5, 0.125)
     pen.is_tablet = False
@@ -364,7 +363,7 @@ def test_a_view_of_blenders_own_gives_the_rays_that_blender_gives():
     from bpy_extras import view3d_utils
     from mathutils import Matrix
 
-    sight = support.part("core.sight").Sight
+    sight = common.part("sculpt.pure.view_rays").ViewRays
     for perspective in (True, False):
         size = (640, 480)
         camera = bpy.data.objects["Camera"]

@@ -10,7 +10,7 @@ import math
 import bpy
 from hypothesis import strategies as st
 
-import support
+from support import common
 
 WRONG = (math.nan, math.inf, -math.inf, -1.0, 0.0, 1e-30, 1e30)
 # What of a number is drawn, and which wrong ones: others would be honest work for hours, or for days.
@@ -65,7 +65,7 @@ def names():
 
 def paths():
     """Nothing of the user's is written over: all are in the folder of the tests."""
-    return [support.out(n) for n in ("fuzz.stl", "fuzz.ngc", "fuzz.rjournal", "missing/fuzz", ".")]
+    return [common.out(n) for n in ("fuzz.stl", "fuzz.ngc", "fuzz.rjournal", "missing/fuzz", ".")]
 
 
 def value(of):

@@ -5,7 +5,7 @@ import os
 
 import bpy
 
-import support
+from support import common
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
 
@@ -19,7 +19,7 @@ def resident():
 def held():
     """Numbers that stay where they are, however long one works: by name."""
     gc.collect()
-    keeping, working = support.part("bl.keeping"), support.part("bl.working")
+    keeping, working = common.part("sculpt.persistence"), common.part("sculpt.live_sculpt")
     folder = keeping.folder()
     data = {name: len(found) for name, found in datablocks()}
     return {

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule, run_state_machine_as_test
 from soak import arguments, world
 
-import support
+from support import common
 
 STEPS = 30  # of an example; fewer than Blender's undo steps
 LONGEST = 30.0  # s for one step: beyond, it hangs
@@ -29,7 +29,7 @@ INDEX = st.integers(0, 1000)
 
 def operators():
     """Of all modules that the add-on registers, in a fixed order."""
-    found = {c for module in support.part("registration").modules() for c in module.CLASSES}
+    found = {c for module in common.part("registration").modules() for c in module.CLASSES}
     found = [c for c in found if issubclass(c, bpy.types.Operator)]
     return sorted(found, key=lambda c: c.bl_idname)
 
@@ -58,7 +58,7 @@ class Fuzz(RuleBasedStateMachine):
         self.at = -1
         self.log("a new example")
         bpy.ops.wm.read_homefile(use_empty=False)
-        support.scale(1)
+        common.scale(1)
         furnish()
         self.history, self.at = [], -1
         self.push()
@@ -66,7 +66,7 @@ class Fuzz(RuleBasedStateMachine):
     def log(self, what):
         """For who looks after a crash: the last line is what it died of. What takes too long is ended there."""
         faulthandler.dump_traceback_later(LONGEST, exit=True, file=sys.__stderr__)
-        with open(support.out("fuzz.log"), "a") as file:
+        with open(common.out("fuzz.log"), "a") as file:
             file.write(f"{time.perf_counter():.2f} {self.at} {what}\n")
 
     # ------------------------------------------------------------------ the model
@@ -243,7 +243,7 @@ class Fuzz(RuleBasedStateMachine):
     @rule(mm=st.sampled_from((1.0, 1000.0, 25.4)))
     def units(self, mm):
         self.log(f"units {mm}")
-        support.scale(mm)
+        common.scale(mm)
         self.push()
 
     # ------------------------------------------------------------------ time and files
@@ -259,7 +259,7 @@ class Fuzz(RuleBasedStateMachine):
     @rule()
     def save_and_reopen(self):
         self.log("save and reopen")
-        path = support.out("fuzz.blend")
+        path = common.out("fuzz.blend")
         bpy.ops.wm.save_as_mainfile(filepath=path)
         assert world.look().volumes() == self.known.volumes(), "saving has changed it"
         bpy.ops.wm.open_mainfile(filepath=path)
@@ -271,25 +271,25 @@ class Fuzz(RuleBasedStateMachine):
     def end(self):
         """As when another tool is taken up."""
         self.log("end")
-        support.part("bl.live").end_all()
+        common.part("sculpt.live_registry").end_all()
 
     def chosen(self, which):
         found = [ob for ob in sorted(bpy.data.objects, key=lambda ob: ob.name) if not world.ours(ob)]
         return found[which % len(found)] if found else None
 
     def teardown(self):
-        support.part("bl.live").end_all()
+        common.part("sculpt.live_registry").end_all()
         self.nothing_is_lost()
-        assert not support.part("bl.chunks").shown()
+        assert not common.part("sculpt.chunks").shown()
 
 
 def furnish():
     """A sculpt, and one of each thing that operators ask for by name."""
-    support.part("core.packing").FAST = 60.0  # a busy machine decides nothing
+    common.part("common.packing").FAST = 60.0  # a busy machine decides nothing
     bpy.data.images.new("Picture", 8, 8)
-    support.curve("Line", [(-4, 0, 4), (4, 1, 4)], mm_per_unit=1)
+    common.curve("Line", [(-4, 0, 4), (4, 1, 4)], mm_per_unit=1)
     bpy.ops.mesh.primitive_cone_add(radius1=3, radius2=1, depth=6)
-    support.stock(size=(12, 10, 8), pitch=1.0, directions="xyz", origin="CENTRE")
+    common.stock(size=(12, 10, 8), pitch=1.0, directions="xyz", origin="CENTRE")
 
 
 @contextmanager
@@ -303,7 +303,7 @@ def heard():
 
 
 def test_no_operator_loses_a_volume():
-    chosen = support.JOB["soak"]
+    chosen = common.JOB["soak"]
     phases = (Phase.generate, Phase.shrink) if chosen["long"] else (Phase.generate,)  # a short run says it at once
     options = settings(
         max_examples=chosen["examples"],

@@ -10,12 +10,11 @@ import json
 from dataclasses import dataclass, field
 
 import bpy
-import harness
 import numpy as np
 import riffler
 from soak import footprint
 
-import support
+from support import common, report
 
 BLOCKS = 10  # the first is to warm up
 SIZE = (24.0, 20.0, 10.0)
@@ -47,7 +46,7 @@ class Recorder:
     carves: list = field(default_factory=list)
 
     def __enter__(self):
-        self._live = support.part("bl.working").Live
+        self._live = common.part("sculpt.live_sculpt").LiveSculpt
         self._carve = self._live.carve
 
         def carve(run, tool, poses, dt=None, mode="remove", new=True):
@@ -104,15 +103,15 @@ class Block:
 
     def __init__(self, rng, recorder):
         self.rng, self.recorder = rng, recorder
-        support.scale(1)
-        self.name = support.stock(size=SIZE, pitch=PITCH, directions="xyz", origin="CENTRE").name
-        support.push("stock")
+        common.scale(1)
+        self.name = common.stock(size=SIZE, pitch=PITCH, directions="xyz", origin="CENTRE").name
+        common.push("stock")
         lower = -0.5 * np.array(SIZE)
         whole = riffler.Volume.block(lower, -lower, PITCH, "xyz")
         self.states, self.at = [State(self.digest(), [], (whole, None))], 0
 
     def content(self):
-        return support.part("bl.live").content(bpy.data.objects[self.name])
+        return common.part("sculpt.live_registry").content(bpy.data.objects[self.name])
 
     def digest(self):
         content = self.content()
@@ -171,7 +170,7 @@ class Block:
             assert self.digest() == self.states[self.at].digest, f"{'undo' if back else 'redo'} to {self.at}"
 
     def rest(self):
-        run = support.part("bl.live").of(bpy.data.objects[self.name])
+        run = common.part("sculpt.live_registry").of(bpy.data.objects[self.name])
         if run is not None:
             run.rest(run.object)
 
@@ -201,20 +200,20 @@ def carved(rng, recorder, strokes, walks):
             block.rest()
             memory.append(footprint.resident())
     held = {f"{name}, at work": count for name, count in footprint.held().items()}
-    bpy.ops.wm.save_as_mainfile(filepath=support.out("soak.blend"))
+    bpy.ops.wm.save_as_mainfile(filepath=common.out("soak.blend"))
     block.check()
-    bpy.ops.wm.open_mainfile(filepath=support.out("soak.blend"))
-    assert same(support.content(bpy.data.objects[block.name]), block._replayed()), "not what was saved"
+    bpy.ops.wm.open_mainfile(filepath=common.out("soak.blend"))
+    assert same(common.content(bpy.data.objects[block.name]), block._replayed()), "not what was saved"
     return float(np.median(memory)), {**held, **footprint.held()}
 
 
 def test_strokes_and_undos_leave_nothing_behind():
-    chosen = support.JOB["soak"]
+    chosen = common.JOB["soak"]
     rng = np.random.default_rng(chosen["seed"])
     with Recorder() as recorder:
         blocks = [carved(rng, recorder, chosen["strokes"] // BLOCKS, chosen["undos"] // BLOCKS) for _ in range(BLOCKS)]
     memory, held = zip(*blocks, strict=True)
-    harness.say(note=f"memory of the blocks, MB: {', '.join(f'{m:.0f}' for m in memory)}")
+    report.say(note=f"memory of the blocks, MB: {', '.join(f'{m:.0f}' for m in memory)}")
     # Where a block is a hundred strokes, allocators settle within the first ones: 327, 341, 348, 352, … MB.
     settled = memory[1] if chosen["long"] else max(memory[1:4])
     assert memory[-1] <= GROWTH * settled + ROOM, memory

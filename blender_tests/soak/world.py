@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import bpy
 
-import support
+from support import common
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class World:
 
 def ours(thing):
     """True of what stands for a live sculpt only."""
-    chunks = support.part("bl.chunks")
+    chunks = common.part("sculpt.chunks")
     return chunks.MARK in thing or (getattr(thing, "data", None) is not None and chunks.MARK in thing.data)
 
 
 def look():
-    live, chunks, sculpts = (support.part(f"bl.{name}") for name in ("live", "chunks", "sculpts"))
+    live, chunks, sculpts = (common.part(f"sculpt.{name}") for name in ("live_registry", "chunks", "sculpts"))
     selected = {ob.name for ob in bpy.context.view_layer.objects if ob.select_get() and not ours(ob)}
     for ob in bpy.data.objects:  # hidden while it is worked at, and given back after it
         if live.of(ob) is not None and chunks.collection_of(ob.riffler.mark)["selected"]:

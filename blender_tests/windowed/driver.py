@@ -13,10 +13,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import bpy
-import harness
 import pictures
 
-import support
+from support import common, harness, report
 
 VERSION = "{}.{}".format(*bpy.app.version)
 PATIENCE = 300  # s for one condition; a software renderer on a busy machine is slow
@@ -76,7 +75,7 @@ class Screen:
             self.area.tag_redraw()  # panels glide with each drawing
             yield pause
         if complaint is None:
-            harness.say(note=f"{self.script}/{name}.png: there are no references for Blender {VERSION}")
+            report.say(note=f"{self.script}/{name}.png: there are no references for Blender {VERSION}")
         elif complaint:
             accept = f"windowed/pictures.py <its folder's>/pictures-{VERSION}.json {self.script}/{name}"
             self.unlike.append(
@@ -181,7 +180,7 @@ class Play:
 
     def end(self, outcome, message):
         seconds = time.perf_counter() - self.begin
-        harness.say(name=self.name, outcome=outcome, seconds=seconds, message=message)
+        report.say(name=self.name, outcome=outcome, seconds=seconds, message=message)
         sys.stdout.flush()
         os._exit(0 if outcome == "passed" else 1)
 
@@ -194,14 +193,14 @@ def rest():
 
 
 def main():
-    support.JOB, support.Skip = harness.job, harness.Skip
+    common.JOB, common.Skip = harness.job, harness.Skip
     bpy.context.preferences.view.show_splash = False
     bpy.context.preferences.view.smooth_view = 0
     script = Path(harness.job["files"][0])
     if "\nINSTALL = False\n" not in script.read_text():  # before the script, which may import riffler
-        support.MODULE = harness.install()
+        common.MODULE = harness.install()
     module = harness.load(script)
-    harness.say(start=module.__name__)
+    report.say(start=module.__name__)
     screen = Screen(harness.job["out"], module.__name__)
     screen.draw_smoothly(False)
     play = Play(module.__name__, module.steps, screen)
@@ -213,6 +212,6 @@ def main():
 try:
     main()
 except BaseException:
-    harness.say(name="driver", outcome="failed", seconds=0, message=traceback.format_exc())
+    report.say(name="driver", outcome="failed", seconds=0, message=traceback.format_exc())
     sys.stdout.flush()
     os._exit(1)

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-import harness
 import numpy as np
 import riffler
 
-import support
+from support import common, harness, report
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
@@ -24,7 +23,7 @@ STEP = 12  # pixels from one look at a panel's buttons to the next: less than a 
 
 
 def module(name):
-    return support.part(name)
+    return common.part(name)
 
 
 def messages(screen):
@@ -218,7 +217,7 @@ def pixel(screen, ob, place):
     """In the window, of a place (mm) in an object's frame."""
     region, space = screen.region(), screen.area.spaces.active.region_3d
     matrix = np.array(space.perspective_matrix) @ np.array(ob.matrix_world)
-    sight = module("core.sight").Sight(matrix, (region.width, region.height))
+    sight = module("sculpt.pure.view_rays").ViewRays(matrix, (region.width, region.height))
     return (sight.project([place])[0] + (region.x, region.y)).round().astype(int)
 
 
@@ -243,12 +242,12 @@ def brushed(screen, ob, places, steps=6, hold="", together=1, **modifiers):
         yield 1.0
         yield from picture(screen, hold, view_box(screen))
     event(screen, "LEFTMOUSE", "RELEASE", way[-1], **modifiers)
-    yield lambda: module("drawing.pointer").held is None
+    yield lambda: module("sculpt.pointer").held is None
     yield 0.1
 
 
 def volume(ob):
-    return module("bl.live").content(ob).volume
+    return module("sculpt.live_registry").content(ob).volume
 
 
 def only_open(*names):
@@ -286,7 +285,7 @@ def aside(screen):
     """Steps: what was in the middle of the view is in the middle of what the sidebar leaves of it."""
     yield 0.5  # the matrix is of the last drawing
     region, view = screen.region(), screen.area.spaces.active.region_3d
-    sight = module("core.sight").Sight(np.array(view.perspective_matrix), (region.width, region.height))
+    sight = module("sculpt.pure.view_rays").ViewRays(np.array(view.perspective_matrix), (region.width, region.height))
     pixels = screen.region("UI").width / 2 / sight.pixels_per_unit(np.array(view.view_location))
     view.view_location += pixels * view.view_rotation.to_matrix().col[0]
     yield 0.3
@@ -316,10 +315,10 @@ def hidden(screen, ob):
 def interpreted(path, rows):
     """LinuxCNC's interpreter accepts the program and finds so many feed moves at least; where there is none, that is a
     test that was skipped."""
-    judge = harness.load(HERE.parent / "headless" / "test_plan_nc.py")
+    judge = harness.load(HERE.parent / "headless" / "program" / "test_plan_nc.py")
     try:
         feeds = judge.interpreted(Path(path))
-    except support.Skip as reason:
-        harness.say(name=f"{Path(path).name}, interpreted", outcome="skipped", seconds=0, message=str(reason))
+    except common.Skip as reason:
+        report.say(name=f"{Path(path).name}, interpreted", outcome="skipped", seconds=0, message=str(reason))
         return
     assert len(feeds) >= rows, (len(feeds), rows)

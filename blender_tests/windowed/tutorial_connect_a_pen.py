@@ -4,10 +4,9 @@ import time
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 SIZE = (60.0, 60.0, 20.0)
@@ -24,7 +23,7 @@ def steps(screen):
     with screen.override():
         bpy.ops.ed.undo_push(message="Stock")
     yield from session(screen, name)
-    path = support.out("pen.stl")
+    path = common.out("pen.stl")
     with screen.override():
         assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
     lessons.closed(path, lessons.volume(bpy.data.objects[name]).volume, within=2e-3)
@@ -37,7 +36,7 @@ def preferences(screen):
     bpy.context.window_manager.addon_search = "Riffler"
     area.type = "PREFERENCES"
     yield 1.0  # it has to be drawn once
-    bpy.ops.preferences.addon_expand(module=support.MODULE)
+    bpy.ops.preferences.addon_expand(module=common.MODULE)
     area.tag_redraw()
     yield 1.0
     region = next(r for r in area.regions if r.type == "WINDOW")
@@ -55,10 +54,10 @@ def preferences(screen):
 
 def cutting():
     """Steps: until the hand is in a stroke and feels it; a machine that keeps no time gets any stroke in the end."""
-    force, begin = support.part("drawing.force"), time.perf_counter()
+    force, begin = common.part("sculpt.force_view"), time.perf_counter()
 
     def cuts():
-        session = support.part("bl.pen_session").running
+        session = common.part("pen.session").running
         if session is None:
             return True
         run, waited = session.run, time.perf_counter() - begin
@@ -76,7 +75,7 @@ def session(screen, name):
     yield lambda: state.sculpting
     screen.to_view()
     yield from cutting()
-    session = support.part("bl.pen_session").running
+    session = common.part("pen.session").running
     assert state.sculpting and state.force, "the session was over before it could be looked at"
     look, session.look = session.look, lambda: True  # the picture is of this moment
     yield from lessons.picture(screen, "connect-a-pen-2", lessons.view_box(screen))

@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 SIZE = (90.0, 34.0, 10.0)
@@ -19,11 +18,11 @@ def steps(screen):
     first = lessons.block(screen, SIZE)
     curve = yield from written(screen)
     yield from engraved(screen, first, curve)
-    recording = support.out("name.rjournal")
+    recording = common.out("name.rjournal")
     with screen.override():
         assert bpy.ops.riffler.export_recording(filepath=recording) == {"FINISHED"}
-        assert bpy.ops.riffler.export_nc(filepath=support.out("name.ngc"), post="3-axis") == {"FINISHED"}
-    lessons.interpreted(support.out("name.ngc"), sum(len(cut.poses) - 1 for cut in support.content(first).cuts))
+        assert bpy.ops.riffler.export_nc(filepath=common.out("name.ngc"), post="3-axis") == {"FINISHED"}
+    lessons.interpreted(common.out("name.ngc"), sum(len(cut.poses) - 1 for cut in common.content(first).cuts))
     yield from replayed(screen, first, curve, recording)
 
 
@@ -88,9 +87,9 @@ def replayed(screen, first, curve, recording):
         done = bpy.ops.riffler.cut_recording("INVOKE_DEFAULT", True, filepath=recording, other=True)
         assert done == {"RUNNING_MODAL"}
     yield lambda: lessons.idle() and lessons.volume(second).volume < np.prod(SIZE)
-    cuts = support.content(second).cuts
+    cuts = common.content(second).cuts
     assert {c.tool["name"] for c in cuts} == {"Ball 3 mm"}
-    before = support.content(first).cuts
+    before = common.content(first).cuts
     assert all(np.array_equal(a.poses, b.poses) for a, b in zip(before, cuts, strict=True))
     removed = [np.prod(SIZE) - lessons.volume(ob).volume for ob in (first, second)]
     assert removed[1] > 2 * removed[0]  # the ball's groove is 2.4 mm wide, the engraver's 0.8
@@ -103,7 +102,7 @@ def replayed(screen, first, curve, recording):
     yield from lessons.aside(screen)
     screen.to_view()
     yield from lessons.picture(screen, "engrave-3", lessons.view_box(screen))
-    path = support.out("name.stl")
+    path = common.out("name.stl")
     with screen.override():
         assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
     surface = lessons.closed(path, lessons.volume(second).volume, within=2e-3)

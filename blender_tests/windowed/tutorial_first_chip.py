@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness, report
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 HALF = (20.0, 20.0, 27.0)  # of the egg, mm
@@ -123,7 +122,7 @@ def owl(screen):
         yield from carved(screen, ob, curve((x, -20.4), (1.05 * x, -22.6)), 1.3, 1.2, ctrl=True)
     after = lessons.volume(ob)
     taken, put_on = before.copy().subtract(after).volume, after.copy().subtract(before).volume
-    harness.say(note=f"owl: {taken:.0f} mm³ taken, {put_on:.0f} mm³ put on")
+    report.say(note=f"owl: {taken:.0f} mm³ taken, {put_on:.0f} mm³ put on")
     # Grooves and caps as on a plane: of sockets, pupils, beak, wings and feathers 470 mm³, less the eyes; brows, ears
     # and toes come on top, with their round ends, and follow what they have put on.
     assert 250 < taken < 500 and 250 < put_on < 900, (taken, put_on)
@@ -138,7 +137,7 @@ def owl(screen):
 
 def exported(screen):
     ob = bpy.context.object
-    path = Path(support.out("owl.stl"))
+    path = Path(common.out("owl.stl"))
     path.unlink(missing_ok=True)
     screen.click(46, screen.window.height - 13)
     yield 0.6

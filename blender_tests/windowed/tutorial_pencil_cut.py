@@ -4,10 +4,9 @@ verified."""
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 HERE = Path(__file__)
 lessons = harness.load(HERE.with_name("lessons.py"))
@@ -104,8 +103,8 @@ def set_up(screen, part, clamp):
 
 def searched(screen):
     yield from lessons.press(screen, "riffler.plan_find")
-    yield lambda: lessons.idle() and len(lessons.module("bl.plan_store").in_scene(bpy.context.scene)) == 1
-    (ob,) = lessons.module("bl.plan_store").in_scene(bpy.context.scene)
+    yield lambda: lessons.idle() and len(lessons.module("plan.plan_store").in_scene(bpy.context.scene)) == 1
+    (ob,) = lessons.module("plan.plan_store").in_scene(bpy.context.scene)
     paths = line.paths()
     inner = min(paths, key=lambda p: np.abs(p.centres[:, 1:] - CENTRES).max())
     assert np.abs(inner.centres[:, 1:] - CENTRES).max() < 0.01 and 55 < inner.length < 62, inner.length
@@ -121,7 +120,7 @@ def keyed(screen, ob):
     latter."""
     bpy.context.scene.riffler.plan.feed = 600
     yield from lessons.press(screen, "riffler.plan_to_timeline")
-    yield lambda: lessons.module("bl.timeline").pair(ob) is not None
+    yield lambda: lessons.module("plan.timeline").pair(ob) is not None
     lessons.activate(bpy.data.objects["Riffler Tool"])  # the timeline has the keys of what is selected
     yield from lessons.tool(screen, "riffler.plan")
     last = len(line.paths()[0]) - 1
@@ -163,7 +162,7 @@ def turned(screen):
     scene.frame_set(round((frames[0] + frames[-1]) / 2))
     yield gizmo.quiet
     yield 0.5
-    keys, before, turn = len(line.indices()), gizmo.lean(), gizmo.module("core.turn")
+    keys, before, turn = len(line.indices()), gizmo.lean(), gizmo.module("plan.pure.tool_rotation")
     begin = gizmo.facing(screen, turn.TILT, 0.85)
     way = gizmo.on_dial(screen, turn.TILT, begin + np.radians(np.linspace(0, 15, 3)), 0.85)
     yield from gizmo.drag(screen, way, release=False)
@@ -177,8 +176,8 @@ def turned(screen):
 
 def by_resolve(screen, ob):
     yield from lessons.press(screen, "riffler.plan_resolve")
-    yield lambda: lessons.idle() and len(lessons.module("bl.plan_store").plan(ob).cl) > 0
-    assert lessons.module("bl.plan_store").plan(ob).cl[0] is not None, "the paths still collide"
+    yield lambda: lessons.idle() and len(lessons.module("plan.plan_store").plan(ob).cl) > 0
+    assert lessons.module("plan.plan_store").plan(ob).cl[0] is not None, "the paths still collide"
 
 
 def resolved(screen, ob):
@@ -214,7 +213,7 @@ def turned_again(screen, frame):
 
 def in_map(screen, angles):
     """A click on the cell of an inclination and a tilt (degrees) turns the key."""
-    looking, drawn = gizmo.module("bl.looking"), gizmo.module("drawing.cspace")
+    looking, drawn = gizmo.module("plan.orientation_probe"), gizmo.module("plan.orientation_map_view")
     found, count = looking._known.map, len(line.indices())
     steps = (np.degrees(found.inclinations), np.degrees(found.tilts))
     cell = tuple(np.abs(s - angle).argmin() for s, angle in zip(steps, angles, strict=True))
@@ -237,12 +236,12 @@ def to_code(screen, ob):
     screen.to_view()
     yield 0.5
     yield from lessons.picture(screen, "pencil-cut-6", (0, 0, *lessons.view_box(screen)[2:]))
-    path = support.out("pencil.ngc")
+    path = common.out("pencil.ngc")
     bpy.context.scene.riffler.plan.post = "linuxcnc-xyzac"
     bpy.context.scene.riffler.machines.of("linuxcnc-xyzac").rot_point = (0, 0, -40)
     with screen.override():
         assert bpy.ops.riffler.plan_nc(filepath=path) == {"FINISHED"}
-    lessons.interpreted(path, len(lessons.module("bl.plan_store").plan(ob).cl[0]))
+    lessons.interpreted(path, len(lessons.module("plan.plan_store").plan(ob).cl[0]))
 
 
 def simulated(screen, stock):
@@ -251,11 +250,11 @@ def simulated(screen, stock):
         bpy.data.objects[name].hide_set(True)
     yield from lessons.tool(screen, "builtin.select_box")
     yield from lessons.press(screen, "riffler.simulate")
-    now = lessons.module("bl.simulating").active()
+    now = lessons.module("program.simulation").active()
     assert now is not None
     frames = line.key_frames()
     bpy.context.scene.frame_set(round(0.35 * frames[0] + 0.65 * frames[-1]))
-    yield lambda: not bpy.app.timers.is_registered(lessons.module("bl.simulating")._tick)
+    yield lambda: not bpy.app.timers.is_registered(lessons.module("program.simulation")._tick)
     whole = lessons.volume(stock).volume
     assert 5 < whole - now.prefix.volume.volume < 200
     look(screen, (-0.9, -0.9, 0.9), (33, 10, 22))  # the tool does not hide what it has cut
@@ -263,7 +262,7 @@ def simulated(screen, stock):
     yield 1.0
     yield from lessons.picture(screen, "pencil-cut-7", (0, 0, *lessons.view_box(screen)[2:]))
     screen.key("ESC")
-    yield lambda: lessons.module("bl.simulating").active() is None
+    yield lambda: lessons.module("program.simulation").active() is None
 
 
 def verified(screen, stock):

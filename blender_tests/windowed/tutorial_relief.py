@@ -4,10 +4,9 @@ import subprocess
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
 SIDE, DEEP, WIDTH, DEPTH = 70.0, 12.0, 60.0, 3.0  # block and relief, mm
@@ -46,8 +45,8 @@ def steps(screen):
     yield from embossed(screen, ob)
     yield from smoothed(screen, ob)
     yield from masked(screen, ob)
-    assert 0 < len(support.content(ob).cuts) <= 64  # the dimples: all that NC code would have
-    path = support.out("relief.stl")
+    assert 0 < len(common.content(ob).cuts) <= 64  # the dimples: all that NC code would have
+    path = common.out("relief.stl")
     with screen.override():
         assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
     lessons.closed(path, lessons.volume(ob).volume, within=2e-3)
@@ -104,10 +103,10 @@ def masked(screen, ob):
     yield from lessons.tool(screen, "builtin.select_box")
     yield lambda: ob.visible_get()
     yield from lessons.press(screen, "riffler.mask_form", share=0.25)
-    yield lambda: lessons.module("bl.store").content(ob.data).mask is not None
+    yield lambda: lessons.module("sculpt.sculpt_store").content(ob.data).mask is not None
     yield from lessons.hidden(screen, circle)
     yield 0.5
-    mask = lessons.module("bl.store").content(ob.data).mask
+    mask = lessons.module("sculpt.sculpt_store").content(ob.data).mask
     assert mask is not None and abs(mask.volume / (np.pi * 25**2 * DEEP) - 1) < 0.02
     before = lessons.volume(ob).copy()
     screen.to_view()

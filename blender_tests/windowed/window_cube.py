@@ -7,11 +7,10 @@ import time
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 from mathutils import Euler
 
-import support
+from support import common, harness
 
 stroke = harness.load(Path(__file__).with_name("window_stroke.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
@@ -56,7 +55,7 @@ def steps(screen):
     begin = time.perf_counter()
     yield from answered(screen)
     yield lambda: "Cube Stock" in bpy.data.objects and volume() < 1e6
-    support.figure("click to first chip, default cube, s", round(time.perf_counter() - begin, 2))
+    common.figure("click to first chip, default cube, s", round(time.perf_counter() - begin, 2))
     assert cube().matrix_world == place and cube().hide_get()
     yield 1.0
     carved = volume()
@@ -66,7 +65,7 @@ def steps(screen):
 
     # the next one is a stroke like any other
     yield from drag(screen, (-0.6, 0.2, 1), (0.5, -0.5, 1))
-    yield lambda: volume() < carved and support.part("drawing.pointer").held is None
+    yield lambda: volume() < carved and common.part("sculpt.pointer").held is None
     yield from sized(screen, 7, 3)
     screen.to_view()
     for expected in (carved, 1e6):  # no step of the sizes, which stay
@@ -86,7 +85,7 @@ def steps(screen):
 
 
 def volume():
-    return support.part("bl.live").content(bpy.data.objects["Cube Stock"]).volume.volume
+    return common.part("sculpt.live_registry").content(bpy.data.objects["Cube Stock"]).volume.volume
 
 
 def off_everything(screen, place):
@@ -117,8 +116,8 @@ def from_the_menu(screen):
     yield from answered(screen)
     yield lambda: "Sphere" in bpy.data.objects
     ball = bpy.context.object
-    content, mm = support.content(ball), ball.data.riffler.mm_per_unit  # the radius is a unit
-    off = np.linalg.norm(support.coordinates(ball.data).astype(float) * mm, axis=1) - mm
+    content, mm = common.content(ball), ball.data.riffler.mm_per_unit  # the radius is a unit
+    off = np.linalg.norm(common.coordinates(ball.data).astype(float) * mm, axis=1) - mm
     assert ball.name == "Sphere" and np.abs(off).max() < 0.01 * content.volume.pitch, np.abs(off).max()
     assert abs(content.volume.volume / (4 / 3 * np.pi * mm**3) - 1) < 1e-4
     screen.to_view()
@@ -138,7 +137,7 @@ def over_another_sculpt(screen):
     whole = volume()
     yield 0.5
     yield from drag(screen, (-0.6, -0.4, 1), (0.6, 0.3, 1))
-    yield lambda: volume() < whole and support.part("drawing.pointer").held is None
+    yield lambda: volume() < whole and common.part("sculpt.pointer").held is None
     assert bpy.context.object.name == "Cube Stock"
     screen.to_view()
     screen.key("Z", ctrl=True)
@@ -205,7 +204,7 @@ def bear(screen):
     yield from carved(screen, (-4, -h, -8), (4, -h, -8))  # the nose
     after = volume()
     assert 0.6 * whole < after < 0.97 * whole, (whole, after)
-    body = support.part("bl.live").content(bpy.data.objects["Cube Stock"]).volume
+    body = common.part("sculpt.live_registry").content(bpy.data.objects["Cube Stock"]).volume
     places = np.random.default_rng(2).uniform(-49, 49, (4000, 3))
     inside, other = body.contains(places), body.contains(places * (-1, 1, 1))
     assert (inside != other).mean() < 5e-3, (inside != other).mean()
@@ -215,5 +214,5 @@ def bear(screen):
     screen.move(screen.region().x + 60, screen.area.y + screen.area.height + 40)  # off the view: no cursor, no planes
     yield 1.0
     yield from lessons.picture(screen, "cube-3", lessons.view_box(screen))
-    support.part("bl.live").end_all()
+    common.part("sculpt.live_registry").end_all()
     yield 0.5

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-import support
+from support import common
 
 
 def open_tab(screen, panel="RIFFLER_PT_sculpt"):
@@ -46,14 +46,14 @@ def running():
 
 def state():
     ob = bpy.data.objects["Stock"]
-    return support.content(ob).volume.volume, support.coordinates(ob.data)
+    return common.content(ob).volume.volume, common.coordinates(ob.data)
 
 
 def spiral(turns, rows, name):
     a = np.linspace(0, 1, rows)
     r = 4 + 22 * a
     xyz = np.c_[50 + r * np.cos(2 * np.pi * turns * a), 30 + r * np.sin(2 * np.pi * turns * a), 30 - 6 * (1 - a)]
-    return support.curve(name, xyz, mm_per_unit=1).name
+    return common.curve(name, xyz, mm_per_unit=1).name
 
 
 def steps(screen):

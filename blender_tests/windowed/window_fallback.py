@@ -6,9 +6,8 @@ import tempfile
 from pathlib import Path
 
 import bpy
-import harness
 
-import support
+from support import common, harness
 
 INSTALL = False
 
@@ -21,7 +20,7 @@ def steps(screen):
     sys.path.insert(0, str(folder))
     if harness.job["mode"] == "legacy":  # that zip has a core in it, which loads
         harness.job["mode"] = "source"
-    support.MODULE = harness.install()
+    common.MODULE = harness.install()
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     cut = harness.load(Path(__file__).with_name("window_cut.py"))
     yield from cut.open_tab(screen, "RIFFLER_PT_fallback")
@@ -36,14 +35,14 @@ def steps(screen):
 
 def without_numpy(screen, core):
     """Debian's Blender without python3-numpy: the panel names that one package."""
-    bpy.ops.preferences.addon_disable(module=support.MODULE)
+    bpy.ops.preferences.addon_disable(module=common.MODULE)
     core.write_text("import numpy")
     for name in [n for n in sys.modules if n.partition(".")[0] == "riffler"]:
         del sys.modules[name]
     numpy = {name: sys.modules.pop(name) for name in list(sys.modules) if name.partition(".")[0] == "numpy"}
     sys.modules["numpy"] = None
     try:
-        bpy.ops.preferences.addon_enable(module=support.MODULE)
+        bpy.ops.preferences.addon_enable(module=common.MODULE)
         yield 1.0
     finally:
         del sys.modules["numpy"]

@@ -4,9 +4,8 @@ the selector opens, the work goes on behind the window, Esc leaves no file."""
 from pathlib import Path
 
 import bpy
-import harness
 
-import support
+from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
@@ -66,7 +65,7 @@ def of_few_rays(screen):
         bpy.ops.mesh.primitive_monkey_add("EXEC_DEFAULT", True, size=2)
         bpy.ops.view3d.view_selected()
         bpy.ops.ed.undo_push(message="Suzanne")
-    with lessons.Recorded("ui.panels", "lines") as panel:
+    with lessons.Recorded("stock.panel", "lines") as panel:
         screen.to_view()
         yield 1.0
     said = " ".join(panel.texts())
@@ -128,7 +127,7 @@ def without_a_name(screen):
     with screen.override():
         bpy.ops.riffler.new_stock(source="BLOCK", size=(20, 20, 20), pitch=1.0, directions="z")
     log = len(lessons.messages(screen))
-    yield from choose(screen, bpy.ops.riffler.export_stl, f"{support.out('')}/", name="")
+    yield from choose(screen, bpy.ops.riffler.export_stl, f"{common.out('')}/", name="")
     yield 0.5
     said = "\n".join(lessons.messages(screen)[log:])
     assert "is a folder: give the file a name" in said and not said.startswith(". "), said
@@ -140,7 +139,7 @@ def without_a_name(screen):
 def written(screen):
     """Both formats, by the selector."""
     for operator in (bpy.ops.riffler.export_stl, bpy.ops.riffler.export_3mf):
-        path = Path(support.out(f"chosen.{operator.idname()[-3:]}"))
+        path = Path(common.out(f"chosen.{operator.idname()[-3:]}"))
         path.unlink(missing_ok=True)
         yield from choose(screen, operator, path)
         yield path.exists
@@ -150,7 +149,7 @@ def written(screen):
 
 def cancelled(screen):
     """Esc: no file, and nothing beside it; what was there stays."""
-    path = Path(support.out("chosen.3mf"))
+    path = Path(common.out("chosen.3mf"))
     # Other windows write into the same folder.
     before, beside = path.read_bytes(), set(path.parent.glob("*chosen*"))
     yield from choose(screen, bpy.ops.riffler.export_3mf, path, check_existing=False)
@@ -163,11 +162,11 @@ def cancelled(screen):
 
 def no_recording(screen):
     """A file that is none is said in the words of whoever finds it, and nothing runs."""
-    shared, said = support.part("operators.shared"), []
+    shared, said = common.part("blender.operator_parts"), []
     fail = shared.fail
     shared.fail = lambda operator, error: said.append(str(error)) or fail(operator, error)
     try:
-        yield from choose(screen, bpy.ops.riffler.cut_recording, support.out("chosen.stl"))
+        yield from choose(screen, bpy.ops.riffler.cut_recording, common.out("chosen.stl"))
         yield lambda: said
         yield 0.5
     finally:
@@ -179,7 +178,7 @@ def no_recording(screen):
 def recording(screen):
     """Strokes from a file: behind the window, and one step of undo."""
     name = cut.spiral(2, 6_000, "Spiral")
-    path = Path(support.out("chosen.rjournal"))
+    path = Path(common.out("chosen.rjournal"))
     with screen.override():
         bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
         assert bpy.ops.riffler.cut_curve(curve=name, depth=2) == {"FINISHED"}

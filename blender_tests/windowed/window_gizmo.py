@@ -5,23 +5,21 @@ import math
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
-import plans
 from mathutils import Vector
 
-import support
+from support import common, harness, plans
 
 HERE = Path(__file__)
 line = harness.load(HERE.with_name("window_timeline.py"))
 
 
 def module(name):
-    return support.part(name)
+    return common.part(name)
 
 
 def spot():
-    return module("bl.turning").spot(bpy.context.scene, line.plan_object())
+    return module("plan.current_pose").spot(bpy.context.scene, line.plan_object())
 
 
 def axis():
@@ -31,7 +29,9 @@ def axis():
 def view(screen):
     region = screen.region()
     matrix = np.array(screen.area.spaces.active.region_3d.perspective_matrix)
-    return module("core.sight").Sight(matrix, (region.width, region.height))  # a unit is a millimetre here
+    return module("sculpt.pure.view_rays").ViewRays(
+        matrix, (region.width, region.height)
+    )  # a unit is a millimetre here
 
 
 def pixel(screen, place):
@@ -66,9 +66,9 @@ def drag(screen, way, release=True):
 def on_dial(screen, handle, angles, size):
     """Pixels of a dial at angles (rad) about its axis; `size`: of that of Blender's gizmos."""
     at = spot()
-    turn = module("core.turn")
+    turn = module("plan.pure.tool_rotation")
     frame = at.line.frames[at.index]
-    first, second, _ = module("core.glyphs").frame(turn.dial_axis(frame, math.radians(lean()[0]), handle))
+    first, second, _ = module("common.glyphs").frame(turn.dial_axis(frame, math.radians(lean()[0]), handle))
     preferences = bpy.context.preferences
     pixels = size * preferences.view.gizmo_size * preferences.system.ui_scale
     radius = pixels / view(screen).pixels_per_unit(at.centre)
@@ -79,15 +79,15 @@ def facing(screen, handle, size):
     """The angle of the dial's nearest place, which no other handle hides."""
     at = spot()
     _, away = view(screen).ray(400, 300)
-    turn = module("core.turn")
-    first, second, _ = module("core.glyphs").frame(
+    turn = module("plan.pure.tool_rotation")
+    first, second, _ = module("common.glyphs").frame(
         turn.dial_axis(at.line.frames[at.index], math.radians(lean()[0]), handle)
     )
     return math.atan2(-(away @ second), -(away @ first))
 
 
 def quiet():
-    return line.settled() and not bpy.app.timers.is_registered(module("bl.looking")._look)
+    return line.settled() and not bpy.app.timers.is_registered(module("plan.orientation_probe")._look)
 
 
 def steps(screen):
@@ -120,12 +120,12 @@ def steps(screen):
 
 def dial(screen):
     """40° along the dial of the inclination are 40° of it; one Ctrl Z takes them back."""
-    turn = module("core.turn")
+    turn = module("plan.pure.tool_rotation")
     before = lean()
     begin = facing(screen, turn.INCLINATION, 1.0)
     way = on_dial(screen, turn.INCLINATION, begin + np.radians(np.linspace(0, 40, 3)), 1.0)
     yield from drag(screen, way, release=False)
-    assert module("bl.turning").held is not None, "the dial was not taken"
+    assert module("plan.current_pose").held is not None, "the dial was not taken"
     assert line.indices() == [0, 144], "a key before the button was let go"
     yield from screen.picture("orient-02-turning")
     press(screen, way[-1], "RELEASE")
@@ -133,7 +133,7 @@ def dial(screen):
     yield quiet
     turned = lean() - before
     assert abs(turned[0] - 40) < 1 and abs(turned[1]) < 1e-3, turned
-    assert module("bl.turning").held is None and not len(module("drawing.force")._in_views)
+    assert module("plan.current_pose").held is None and not len(module("sculpt.force_view")._in_views)
     yield 0.5
     tip, shown = line.shown()[0] - 3 * line.shown()[1], line.shown()[1]
     assert np.abs(shown - axis()).max() < 1e-4 and np.abs(tip + 3 * shown - spot().centre).max() < 1e-3
@@ -145,12 +145,12 @@ def dial(screen):
 
 def numbers(screen):
     """-20 and Enter, on the dial of the tilt."""
-    turn = module("core.turn")
+    turn = module("plan.pure.tool_rotation")
     before = lean()
     begin = facing(screen, turn.TILT, 0.85)
     way = on_dial(screen, turn.TILT, begin + np.radians([0, 3]), 0.85)
     yield from drag(screen, way, release=False)
-    assert module("bl.turning").held is not None, "the dial was not taken"
+    assert module("plan.current_pose").held is not None, "the dial was not taken"
     yield from line.number(screen, "VIEW_3D", "-20")
     yield lambda: line.indices() == [0, 72, 144]
     press(screen, way[-1], "RELEASE")
@@ -159,7 +159,7 @@ def numbers(screen):
 
 
 def escape(screen):
-    turn = module("core.turn")
+    turn = module("plan.pure.tool_rotation")
     before, shown = axis(), line.shown()
     begin = facing(screen, turn.INCLINATION, 1.0)
     way = on_dial(screen, turn.INCLINATION, begin + np.radians(np.linspace(0, -30, 3)), 1.0)
@@ -175,19 +175,19 @@ def escape(screen):
 
 def hold_still(screen):
     """A click on a dial turns nothing, and is no step."""
-    before, turn = line.key_frames(), module("core.turn")
+    before, turn = line.key_frames(), module("plan.pure.tool_rotation")
     (at,) = on_dial(screen, turn.INCLINATION, [facing(screen, turn.INCLINATION, 1.0)], 1.0)
     yield from line.press(screen, "VIEW_3D", "Z", ctrl=True)  # the key that was typed
     yield lambda: line.settled() and line.indices() == [0, 144]
     yield from drag(screen, [at, at])
     yield 0.5
-    assert line.indices() == [0, 144] and len(before) == 3 and module("bl.turning").held is None
+    assert line.indices() == [0, 144] and len(before) == 3 and module("plan.current_pose").held is None
 
 
 def end(screen):
     """The tool's end goes where the pointer goes: here straight up over the point."""
     at = spot()
-    turning = module("bl.turning")
+    turning = module("plan.current_pose")
     reach = turning.reach(bpy.context, view(screen), at.centre)
     goal = np.array([0.0, -0.3, 1.0]) / np.linalg.norm((0, -0.3, 1))
     way = [pixel(screen, at.centre + reach * at.axis), pixel(screen, at.centre + reach * goal)]
@@ -199,7 +199,7 @@ def end(screen):
 
 def click_the_map(screen):
     """A cell that collides, and one that is free: the key has just its angles, and the map stays."""
-    looking, drawn = module("bl.looking"), module("drawing.cspace")
+    looking, drawn = module("plan.orientation_probe"), module("plan.orientation_map_view")
     maps = looking.maps
     found = looking._known.map
     assert found is not None and found.index == 72
@@ -227,7 +227,7 @@ def click_a_path(screen):
     yield 0.5
     at = spot()
     place = at.line.contacts[8, 0]  # no handle is over it
-    seen = module("drawing.paths").kept
+    seen = module("plan.path_view").kept
     seen.clear()
     screen.move(*map(int, pixel(screen, place)))
     yield lambda: "line 0" in seen._kept  # the ring about what is pointed at was drawn

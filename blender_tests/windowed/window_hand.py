@@ -6,11 +6,10 @@ import tempfile
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
-from sculpting import matches_its_volume, nothing_is_left
+from common.sculpting import matches_its_volume, nothing_is_left
 
-import support
+from support import common, harness
 
 REAL_EVENTS = True
 NAME = "Stock"
@@ -24,7 +23,7 @@ def content():
 
 
 def held():
-    return support.part("drawing.pointer").held is not None
+    return common.part("sculpt.pointer").held is not None
 
 
 def drag(screen, first, last, release=True):
@@ -42,7 +41,7 @@ def drag(screen, first, last, release=True):
     screen.button("RELEASE")
     yield lambda: not held()
     yield 0.5
-    _, samples, _ = support.part("core.brush").read(support.part("operators.stroke").last)
+    _, samples, _ = common.part("sculpt.pure.brush_stroke").read(common.part("sculpt.stroke_operator").last)
     region = screen.region()
     for sample, wanted in ((samples[0], a), (samples[-1], b)):
         assert (sample.x + region.x, sample.y + region.y) == tuple(wanted), (sample, wanted)
@@ -152,7 +151,7 @@ def without_ribs(screen):
     yield lambda: not held()
     yield 0.5
     ball, depth, ends = 4.0, 1.5, [on_top(screen, at) for at in (a, b)]
-    poses = strokes.module("bl.live").content(bpy.data.objects[NAME]).cuts[-1].poses
+    poses = strokes.module("sculpt.live_registry").content(bpy.data.objects[NAME]).cuts[-1].poses
     middles = poses[:, :3] + ball * poses[:, 3:]
     steps_ = np.diff(middles, axis=0)
     steps_ = steps_[np.linalg.norm(steps_, axis=1) > 1e-9]
@@ -168,7 +167,7 @@ def without_ribs(screen):
     rim = np.arccos((ball - depth) / ball)
     floor = (at > 2) & (at < length - 2) & (np.arccos(np.clip(-apart[:, 2] / size, -1, 1)) < 0.5 * rim)
     off = (size - ball)[floor & (np.abs(size - ball) < 1)]
-    support.figure(
+    common.figure(
         "floor of a slow mouse's groove, off the hand's own, pitches", round(float(np.abs(off).max() / 0.5), 3)
     )
     assert len(off) > 300 and np.abs(off).max() <= 0.1 * 0.5, np.abs(off).max()
@@ -178,7 +177,7 @@ def on_top(screen, at):
     """The place on the stock's top (mm) at a pixel of the window."""
     region = screen.region()
     matrix = np.array(screen.area.spaces.active.region_3d.perspective_matrix)
-    sight = strokes.module("core.sight").Sight(matrix, (region.width, region.height))
+    sight = strokes.module("sculpt.pure.view_rays").Sight(matrix, (region.width, region.height))
     origin, way = sight.ray(at[0] - region.x, at[1] - region.y)
     return origin + (20 - origin[2]) / way[2] * way
 

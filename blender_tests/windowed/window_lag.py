@@ -10,10 +10,9 @@ import time
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 REAL_EVENTS = True
 strokes = harness.load(Path(__file__).with_name("window_stroke.py"))
@@ -55,7 +54,7 @@ class Watch:
     """When each sample was carved and when what was carved was shown, whatever the stroke's loop is like."""
 
     def __init__(self):
-        self.brush = support.part("core.brush").Brush
+        self.brush = common.part("sculpt.pure.brush_stroke").BrushStroke
         self.added, self.shown = [], []  # (x, y); (time, how many samples were added)
         self.kept = self.brush.add, self.brush.look
         watch = self
@@ -93,7 +92,7 @@ def timed_stroke(screen, name, seconds):
     places = circles(screen, seconds)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "hand.json"
-        watch, operator = Watch(), support.part("operators.stroke")
+        watch, operator = Watch(), common.part("sculpt.stroke_operator")
         operator.last = ""
         hand = subprocess.Popen([sys.executable, "-c", HAND, json.dumps(places.tolist()), str(path)])
         yield lambda: operator.last  # a short one is over before anybody has seen it begin
@@ -109,12 +108,12 @@ def timed_stroke(screen, name, seconds):
         part = lags[(lags[:, 0] >= low) & (lags[:, 0] < low + 2), 1]
         table.append([low, *np.round(np.percentile(part, (50, 95)) if len(part) else (0, 0), 3).tolist(), len(part)])
     over = ended - told["end"]
-    support.figure(f"{name}: from s of hand: lag of a sample p50, p95 (s), samples", table)
+    common.figure(f"{name}: from s of hand: lag of a sample p50, p95 (s), samples", table)
     stages = strokes.run().stages
-    assert any(line.startswith("Lag: ") for line in support.part("ui.sculpt_panel").looks(stages))
+    assert any(line.startswith("Lag: ") for line in common.part("sculpt.panel").looks(stages))
     figures = [{k: round(v, 1) for k, v in stages.milliseconds().items()}, *np.round(stages.lag())]
-    support.figure(f"{name}: ms of a look by stage; behind the hand by the counters, median and longest", figures)
-    support.figure(f"{name}: looks; stroke over after the hand, s", [len(watch.shown), round(over, 2)])
+    common.figure(f"{name}: ms of a look by stage; behind the hand by the counters, median and longest", figures)
+    common.figure(f"{name}: looks; stroke over after the hand, s", [len(watch.shown), round(over, 2)])
     return lags, over
 
 
@@ -141,7 +140,7 @@ def steps(screen):
     yield 1.0
     yield from timed_stroke(screen, "the first stroke, which makes the chunks", 1)
     chunks = [o for o in bpy.data.objects if o.name.startswith("Riffler Chunk")]
-    support.figure("triangles", sum(len(o.data.polygons) for o in chunks))
+    common.figure("triangles", sum(len(o.data.polygons) for o in chunks))
     yield 1.0
     seconds = 10 if harness.job["measure"] else 5
     for drawn in ("TEXTURED", "BOUNDS"):

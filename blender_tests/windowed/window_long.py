@@ -3,10 +3,8 @@
 from pathlib import Path
 
 import bpy
-import harness
-import work
 
-import support
+from support import common, harness, operator_task
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
@@ -29,7 +27,7 @@ def ended():
 def steps(screen):
     yield from cut.open_tab(screen)
     screen.to_view()
-    with work.Stage() as stage:
+    with operator_task.Stage() as stage:
         yield from watched(screen, stage)
         yield from cancelled(screen, stage)
         yield from stock_of_a_mesh(screen)
@@ -59,7 +57,7 @@ def watched(screen, stage):
 
 
 def fresh(stage, **more):
-    stage.task, stage.log[:] = work.Task(**more), []
+    stage.task, stage.log[:] = operator_task.Task(**more), []
 
 
 def cancelled(screen, stage):
@@ -107,11 +105,11 @@ def stock_of_a_mesh(screen):
         bpy.ops.mesh.primitive_uv_sphere_add("EXEC_DEFAULT", True, radius=20, location=(200, 0, 0))
         bpy.context.object.name = "Ball"
         bpy.ops.ed.undo_push(message="Ball")
-    task = work.Task()
-    with work.meshes_taken_by(task):
+    task = operator_task.Task()
+    with operator_task.meshes_taken_by(task):
         begin_stock(screen)
         task.share = 0.4
-        with lessons.Recorded("ui.panels", "at_work") as panels:
+        with lessons.Recorded("stock.panel", "at_work") as panels:
             yield lambda: abs(progress().percent - 40) < 1e-3
             yield 0.5
         drawn = {cls.__name__ for arguments, draws in panels.calls if draws for cls in arguments[2:]}
@@ -127,8 +125,8 @@ def stock_of_a_mesh(screen):
     screen.key("Z", ctrl=True)
     yield lambda: "Ball Stock" not in bpy.data.objects
     assert not bpy.data.objects["Ball"].hide_get()
-    task = work.Task()
-    with work.meshes_taken_by(task):
+    task = operator_task.Task()
+    with operator_task.meshes_taken_by(task):
         begin_stock(screen)
         bpy.data.objects.remove(bpy.data.objects["Ball"])
         yield ended
@@ -154,9 +152,9 @@ def long_cut(screen):
 def disabled(screen):
     """The add-on is disabled in mid-cut: the cut is cancelled, the mesh shows the volume; enabled, it cuts again."""
     before = yield from long_cut(screen)
-    bpy.ops.preferences.addon_disable(module=support.MODULE)
+    bpy.ops.preferences.addon_disable(module=common.MODULE)
     yield 1.0
-    bpy.ops.preferences.addon_enable(module=support.MODULE)
+    bpy.ops.preferences.addon_enable(module=common.MODULE)
     yield 1.0
     assert ended() and cut.same(cut.state(), before)
     with screen.override():
@@ -173,7 +171,7 @@ def another_file(screen):
     with screen.override():
         bpy.ops.wm.read_homefile()
     yield 1.0
-    assert ended() and "Stock" not in bpy.data.objects and support.part("operators.long")._running is None
+    assert ended() and "Stock" not in bpy.data.objects and common.part("blender.long_work")._running is None
     yield from long_cut(screen)
     screen.key("ESC")
     yield ended

@@ -5,14 +5,12 @@ import re
 from pathlib import Path
 
 import bpy
-import harness
-import programs
 
-import support
+from support import common, harness, programs
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
-paths = harness.load(HERE.parent / "headless" / "test_plan_paths.py")
+paths = harness.load(HERE.parent / "headless" / "plan" / "test_plan_paths.py")
 ABOVE = ("RIFFLER_PT_plan_part", "RIFFLER_PT_plan_tool", "RIFFLER_PT_plan")
 
 
@@ -21,7 +19,7 @@ def settings():
 
 
 def lines():
-    return support.part("drawing.plan_lines")
+    return common.part("program.line_view")
 
 
 def steps(screen):
@@ -54,10 +52,10 @@ def asked(screen):
     with screen.override():
         assert bpy.ops.riffler.scene_unit("EXEC_DEFAULT", True, unit="MM") == {"FINISHED"}
     yield 0.5
-    assert support.part("bl.plan_fit").size_question(bpy.context.scene) == ""
+    assert common.part("plan.fit_check").size_question(bpy.context.scene) == ""
     bpy.context.scene.riffler.cutter.kind = "flat"
     with screen.override():
-        support.refused(lambda: bpy.ops.riffler.plan_find("INVOKE_DEFAULT", True), "tool", "ball")
+        common.refused(lambda: bpy.ops.riffler.plan_find("INVOKE_DEFAULT", True), "tool", "ball")
     assert not bpy.context.window_manager.riffler.running
     bpy.context.scene.riffler.cutter.kind = "ball"
     bpy.data.objects.remove(cube)
@@ -69,7 +67,7 @@ def listed(screen):
         bpy.utils.unregister_class(getattr(bpy.types, name))
     with screen.override():
         ob = paths.four()
-        support.part("bl.plan_curves").show(ob, programs.content(ob), 1.0)
+        common.part("plan.path_curves").show(ob, programs.content(ob), 1.0)
         bpy.context.view_layer.objects.active = ob
         bpy.ops.view3d.view_all()
         bpy.ops.ed.undo_push(message="Plan")
@@ -92,14 +90,14 @@ def chosen(screen):
         bpy.ops.riffler.plan_key("EXEC_DEFAULT", True, path=2, point=0, axis=(0, -0.6, 0.8))
         bpy.ops.riffler.plan_resolve("EXEC_DEFAULT", True, max_lift=1.0)
         bpy.ops.riffler.plan_switch("EXEC_DEFAULT", True, which="BLOCKED")
-        bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=support.out("window.ngc"))
+        bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=common.out("window.ngc"))
     yield 1.0
     assert set(lines()._drawn[1]) == {"cut", "off", "lead", "retract", "rapid"}
     ob.riffler.plan.row = 3
     yield 1.0
-    track = support.part("bl.replan").layout_of(ob, programs.content(ob)).tracks[3]
+    track = common.part("plan.replan").layout_of(ob, programs.content(ob)).tracks[3]
     assert bpy.context.scene.frame_current_final == track.first
-    assert bpy.context.object == support.part("bl.plan_curves").of(ob)[3]
+    assert bpy.context.object == common.part("plan.path_curves").of(ob)[3]
     screen.area.spaces.active.region_3d.view_distance = 150
     yield 1.0
     yield from screen.picture("42-program")
@@ -136,8 +134,8 @@ def machine(screen):
     yield 1.0
     yield from screen.picture("44-machine")
     with screen.override():
-        bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=support.out("window-xyzac.ngc"))
-    first_and_last(Path(support.out("window-xyzac.ngc")).read_text().splitlines())
+        bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=common.out("window-xyzac.ngc"))
+    first_and_last(Path(common.out("window-xyzac.ngc")).read_text().splitlines())
 
 
 def first_and_last(blocks):

@@ -7,16 +7,15 @@ import tempfile
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 HERE = Path(__file__).resolve().parent
 stroke = harness.load(HERE / "window_stroke.py")
 lessons = harness.load(HERE / "lessons.py")
-live_tests = harness.load(HERE.parent / "headless" / "test_live.py")
-refusals = harness.load(HERE.parent / "headless" / "test_refusals.py")
+live_tests = harness.load(HERE.parent / "headless" / "sculpt" / "test_live_sculpt.py")
+refusals = harness.load(HERE.parent / "headless" / "blender" / "test_refusals.py")
 LOWEST = 18.5  # mm: the bottom of a groove of 1.5 mm in the top at 20
 
 
@@ -56,14 +55,14 @@ def groove(screen, y, places=2, **more):
 
 def in_mesh(y):
     """Whether the sculpt's own mesh has the groove at `y` (mm)."""
-    co = support.coordinates(sculpt().data) * sculpt().data.riffler.mm_per_unit
+    co = common.coordinates(sculpt().data) * sculpt().data.riffler.mm_per_unit
     near = co[(np.abs(co[:, 1] - y) < 1) & (np.abs(co[:, 0] - 30) < 5) & (co[:, 2] > 10)]
     return abs(near[:, 2].min() - LOWEST) < 0.1
 
 
 def framed(screen):
     yield from groove(screen, 10)
-    assert stroke.run() is not None and support.is_hidden(sculpt())
+    assert stroke.run() is not None and common.is_hidden(sculpt())
     live_tests.shaded_as_the_whole(stroke.run())
     view = screen.area.spaces.active.region_3d
     view.view_location, view.view_distance = (1.0, 2.0, 3.0), 9.0
@@ -94,13 +93,13 @@ def in_modeling(screen):
     assert stroke.run() is not None
     before = screen.window.workspace
     screen.window.workspace = bpy.data.workspaces["Modeling"]
-    yield lambda: sculpt().mode == "EDIT" and not stroke.module("bl.working").lives
-    assert not support.is_hidden(sculpt())
+    yield lambda: sculpt().mode == "EDIT" and not stroke.module("sculpt.live_sculpt").lives
+    assert not common.is_hidden(sculpt())
     yield 1.0
     screen.window.workspace = before
     yield lambda: sculpt().mode == "OBJECT"
     yield 1.0
-    assert in_mesh(22) and not stroke.module("bl.sculpts").edited(sculpt().data)
+    assert in_mesh(22) and not stroke.module("sculpt.sculpts").edited(sculpt().data)
 
 
 def from_the_header(screen):
@@ -111,34 +110,34 @@ def from_the_header(screen):
     with screen.override():
         assert bpy.context.active_object == sculpt()  # whose modes the header's menu has
         bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
-    yield lambda: not stroke.module("bl.working").lives
-    assert sculpt().mode == "SCULPT" and not support.is_hidden(sculpt()) and in_mesh(32)
+    yield lambda: not stroke.module("sculpt.live_sculpt").lives
+    assert sculpt().mode == "SCULPT" and not common.is_hidden(sculpt()) and in_mesh(32)
     yield 1.0
-    before = support.coordinates(sculpt().data)
+    before = common.coordinates(sculpt().data)
     yield from screen.drag([tuple(map(int, stroke.pixel(screen, (x, 50, 20)))) for x in (20, 25, 30, 35, 40)], 0.1)
     yield 1.0
-    assert not np.array_equal(support.coordinates(sculpt().data), before), "the brush of Sculpt Mode did nothing"
+    assert not np.array_equal(common.coordinates(sculpt().data), before), "the brush of Sculpt Mode did nothing"
     with screen.override():
         bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="OBJECT")
     stroke.tool(screen, "riffler.carve")
     yield 0.5
-    assert stroke.module("bl.edits").noticed(sculpt())
-    edited = support.coordinates(sculpt().data)[:, 2].max()
+    assert stroke.module("sculpt.mesh_edits").noticed(sculpt())
+    edited = common.coordinates(sculpt().data)[:, 2].max()
     yield from groove(screen, 44)
     yield 0.5
     for value in ("PRESS", "RELEASE"):
         screen.window.event_simulate("RET", value, x=screen.at[0], y=screen.at[1])
-    yield lambda: stroke.run() is not None and stroke.module("drawing.pointer").held is None
-    stroke.module("bl.live").end_all()
+    yield lambda: stroke.run() is not None and stroke.module("sculpt.pointer").held is None
+    stroke.module("sculpt.live_registry").end_all()
     yield 0.5
     assert in_mesh(32) and in_mesh(44)
     mm = sculpt().data.riffler.mm_per_unit
-    assert abs(support.coordinates(sculpt().data)[:, 2].max() - edited) * mm < 0.1, "the edits were dropped"
+    assert abs(common.coordinates(sculpt().data)[:, 2].max() - edited) * mm < 0.1, "the edits were dropped"
 
 
 def in_local_view(screen):
     """Blender crashes where an object is put into the local view of a screen that no window shows."""
-    text = stroke.module("operators.stroke").last
+    text = stroke.module("sculpt.stroke_operator").last
     with screen.override():
         bpy.ops.view3d.localview()
     before = screen.window.workspace
@@ -146,7 +145,7 @@ def in_local_view(screen):
     yield 2.0
     with screen.override():
         assert bpy.ops.riffler.stroke(stroke=text, mode="ADD") == {"FINISHED"}
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
     screen.window.workspace = before
     yield 2.0
     with screen.override():
@@ -158,17 +157,17 @@ def saved_in_mid_stroke(screen):
     whole = stroke.volume().to_bytes()
     yield from groove(screen, 40, release=False)
     assert stroke.volume().to_bytes() != whole
-    assert stroke.module("drawing.force")._shown is None, "a mouse feels no force, and nobody has asked to see it"
+    assert stroke.module("sculpt.force_view")._shown is None, "a mouse feels no force, and nobody has asked to see it"
     with tempfile.TemporaryDirectory() as folder:
         with screen.override():
             bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "saved.blend"), copy=True)
         screen.move(*map(int, stroke.pixel(screen, (40, 44, 20))))
-        yield lambda: stroke.module("drawing.pointer").held is None
+        yield lambda: stroke.module("sculpt.pointer").held is None
         stroke.press(screen, *screen.at, "RELEASE")
         yield 0.5
     assert stroke.volume().to_bytes() == whole and stroke.run() is None and sculpt().visible_get()
     yield from groove(screen, 40)
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
     yield 0.5
     assert in_mesh(40)
 
@@ -180,7 +179,7 @@ def told(screen, before):
 
 def begun_again(screen):
     """A block whose box is its own: Take Edits has made the other's larger."""
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
     bpy.data.objects.remove(sculpt())
     stroke.cut.stock(screen, 0.5)
     with screen.override():
@@ -192,14 +191,14 @@ def begun_again(screen):
 
 def with_force(screen):
     """Where force is to be shown a mask has none, and a stroke that cuts has."""
-    stroke.settings().show_force, shown = True, stroke.module("drawing.force")
+    stroke.settings().show_force, shown = True, stroke.module("sculpt.force_view")
     for name, cuts in (("riffler.mask", False), ("riffler.carve", True)):
         stroke.tool(screen, name)
         yield 0.3
         yield from groove(screen, 27, release=False)
-        assert stroke.module("drawing.pointer").held is not None and (shown._shown is not None) == cuts, name
+        assert stroke.module("sculpt.pointer").held is not None and (shown._shown is not None) == cuts, name
         screen.key("ESC")
-        yield lambda: stroke.module("drawing.pointer").held is None
+        yield lambda: stroke.module("sculpt.pointer").held is None
         stroke.press(screen, *screen.at, "RELEASE")
         yield 0.3
     stroke.settings().show_force = False
@@ -218,24 +217,24 @@ def at_the_box(screen):
     screen.key("Z", ctrl=True)
     yield lambda: stroke.volume().to_bytes() == whole
     yield 0.5
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
     yield 0.3
     mesh, mm, wanted = sculpt().data, sculpt().data.riffler.mm_per_unit, box() + 6
-    inside = support.coordinates(mesh) * mm
+    inside = common.coordinates(mesh) * mm
     inside = inside[(inside[:, 2] > 1) & (inside[:, 2] < 19.4) & (np.abs(inside[:, :2] - 30) < 29).all(axis=1)]
     bpy.context.scene.riffler.clay.room, before = 3.0, len(lessons.messages(screen))
     screen.area.tag_redraw()
     yield 0.5
     yield from lessons.press(screen, "riffler.room")
     yield lambda: np.allclose(box(), wanted)
-    there = set(map(bytes, np.ascontiguousarray(support.coordinates(sculpt().data) * mm)))
+    there = set(map(bytes, np.ascontiguousarray(common.coordinates(sculpt().data) * mm)))
     assert len(inside) > 500 and all(bytes(v) in there for v in np.ascontiguousarray(inside))
-    size = stroke.module("core.units").format_size(wanted)
+    size = stroke.module("common.units").format_size(wanted)
     assert f"The box is {size}" in told(screen, before), told(screen, before)
     before, stroke.settings().depth = len(lessons.messages(screen)), 0.5
     yield from groove(screen, 4)
     assert told(screen, before) == ""
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
     yield 0.5
     screen.shot("bead")
     sharp = seam(sculpt().data, mm)
@@ -252,7 +251,7 @@ CUT_OFF = "What was put on is cut off at the stock's box: Make Room in Clay give
 
 def seam(mesh, mm):
     """Of each edge in which the bead at 4 meets the top at 20: whether it is drawn sharp."""
-    co, tri = (support.coordinates(mesh) * mm).astype(float), support.triangles(mesh)
+    co, tri = (common.coordinates(mesh) * mm).astype(float), common.triangles(mesh)
     normals = np.cross(co[tri[:, 1]] - co[tri[:, 0]], co[tri[:, 2]] - co[tri[:, 0]])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     ends = np.sort(np.concatenate([tri[:, [0, 1]], tri[:, [1, 2]], tri[:, [2, 0]]]), axis=1)
@@ -297,24 +296,24 @@ def in_odd_states(screen):
             sculpt().parent.scale = (0.9, 0.9, 0.9)
         yield 0.5
         before, whole, sentence = len(lessons.messages(screen)), content(), sentence[state].replace("Sculpt", "Stock")
-        with lessons.Recorded("operators.stroke", "summary") as status:
+        with lessons.Recorded("sculpt.stroke_operator", "summary") as status:
             yield from groove(screen, 27)
         assert sentence in told(screen, before), told(screen, before)
         assert stroke.volume().volume < whole and status.calls
-        stroke.module("bl.live").end_all()
-        path = support.out("modes.stl")
+        stroke.module("sculpt.live_registry").end_all()
+        path = common.out("modes.stl")
         with screen.override():
-            said = support.printed(lambda path=path: bpy.ops.riffler.export_stl(filepath=path, check_existing=False))
+            said = common.printed(lambda path=path: bpy.ops.riffler.export_stl(filepath=path, check_existing=False))
         assert sentence in said, said
         sculpt().modifiers.clear()
         sculpt().parent, sculpt().rotation_euler.z = None, 0
         yield 0.3
-    with lessons.Recorded("operators.stroke", "summary") as status:
+    with lessons.Recorded("sculpt.stroke_operator", "summary") as status:
         yield from groove(screen, 20, places=1, release=False)
         stroke.press(screen, *screen.at, "RELEASE")
-        yield lambda: stroke.module("drawing.pointer").held is None
+        yield lambda: stroke.module("sculpt.pointer").held is None
     assert [text for _, text in status.calls if text.endswith(" in 1 move")], status.calls
-    stroke.module("bl.live").end_all()
+    stroke.module("sculpt.live_registry").end_all()
 
 
 def content():

@@ -6,10 +6,9 @@ import time
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
@@ -24,11 +23,11 @@ def sculpting():
 
 
 def session():
-    return support.part("bl.pen_session").running
+    return common.part("pen.session").running
 
 
 def volume():
-    return support.part("bl.live").content(bpy.data.objects[NAME]).volume
+    return common.part("sculpt.live_registry").content(bpy.data.objects[NAME]).volume
 
 
 def begin(screen, **more):
@@ -36,13 +35,13 @@ def begin(screen, **more):
         settings = bpy.context.scene.riffler.pen
         for key, value in more.items():
             setattr(settings, key, value)
-        given = {k: getattr(settings, k) for k in support.part("properties").PenSettings.__annotations__}
+        given = {k: getattr(settings, k) for k in common.part("pen.properties").PenSettings.__annotations__}
         return bpy.ops.riffler.pen_sculpt("INVOKE_DEFAULT", True, **given)
 
 
 def only_open(*names):
     """The sidebar with these panels open, so that one picture has them."""
-    classes = [cls for module in support.part("registration").modules() for cls in module.CLASSES]
+    classes = [cls for module in common.part("registration").modules() for cls in module.CLASSES]
     for cls in classes:
         if issubclass(cls, bpy.types.Panel):
             bpy.utils.unregister_class(cls)
@@ -52,7 +51,7 @@ def only_open(*names):
 
 def autosaves():
     """The folder that Blender's autosave goes into, MINUTE from now."""
-    folder = Path(support.out("pen-autosave"))
+    folder = Path(common.out("pen-autosave"))
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     paths = bpy.context.preferences.filepaths
@@ -91,7 +90,7 @@ def counted(looks):
 def of_the_page(screen):
     """The picture of docs/sessions.md: deep in a stroke, with force on tool and hand. A machine that does not keep time
     for a minute gets one that says so, and later one of any stroke."""
-    force, begin = support.part("drawing.force"), time.perf_counter()
+    force, begin = common.part("sculpt.force_view"), time.perf_counter()
 
     def cuts():
         if session() is None:
@@ -121,10 +120,10 @@ def steps(screen):
     folder, since = autosaves(), time.perf_counter()
     assert begin(screen, removal_constant=0.005) == {"FINISHED"} and sculpting()
     tool = bpy.context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
-    assert tool.idname == "riffler.carve" and support.part("bl.chunks").is_hidden(bpy.data.objects[NAME])
+    assert tool.idname == "riffler.carve" and common.part("sculpt.chunks").is_hidden(bpy.data.objects[NAME])
     looks = []
     counted(looks)
-    force = support.part("drawing.force")
+    force = common.part("sculpt.force_view")
     yield lambda: session() is None or (session().run.in_stroke and force._shown.size > 0)
     assert sculpting(), "the session was over before it could be looked at"
     look, session().look = session().look, lambda: True  # nobody looks for a moment, and a picture has the arrows
@@ -135,7 +134,7 @@ def steps(screen):
     yield from screen.picture("08-pen", vary=["VIEW_3D"])
     yield from of_the_page(screen)
     times = np.array(looks)
-    support.figure(
+    common.figure(
         "a session's looks in the window",
         {
             "a second": round(float((len(times) - 1) / (times[-1, 0] - times[0, 0])), 1),
@@ -163,7 +162,7 @@ def steps(screen):
     device.wander()
     yield lambda: list(folder.glob("*.blend"))
     assert session() is mine and sculpting()
-    shutil.copy(next(folder.glob("*.blend")), support.out("pen-autosaved.blend"))
+    shutil.copy(next(folder.glob("*.blend")), common.out("pen-autosaved.blend"))
 
     screen.key("ESC")
     yield lambda: not sculpting()
@@ -173,10 +172,10 @@ def steps(screen):
     last = volume().to_bytes()
     with screen.override():
         bpy.ops.wm.tool_set_by_id(name="builtin.select_box")
-    yield lambda: support.part("bl.live").of(bpy.data.objects[NAME]) is None
+    yield lambda: common.part("sculpt.live_registry").of(bpy.data.objects[NAME]) is None
     assert volume().to_bytes() == last and volume().volume < whole
     after = cut.state()
-    assert after[0] < before[0] and not support.part("bl.chunks").is_hidden(bpy.data.objects[NAME])
+    assert after[0] < before[0] and not common.part("sculpt.chunks").is_hidden(bpy.data.objects[NAME])
     assert "Riffler Tool" not in bpy.data.objects and len(bpy.data.collections) == 1
 
     # called again, it ends; so it does with another tool, and with the object's end
@@ -200,9 +199,9 @@ def steps(screen):
     yield lambda: not sculpting()
     with screen.override():
         bpy.ops.wm.tool_set_by_id(name="riffler.mask")
-    support.refused(lambda: begin(screen), "take Carve or Add instead of Mask")
+    common.refused(lambda: begin(screen), "take Carve or Add instead of Mask")
     assert not sculpting() and volume().to_bytes() == last
     with screen.override():
-        bpy.ops.wm.open_mainfile(filepath=support.out("pen-autosaved.blend"))
+        bpy.ops.wm.open_mainfile(filepath=common.out("pen-autosaved.blend"))
     yield 1.0
     assert volume().volume < whole - 100

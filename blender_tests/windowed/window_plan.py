@@ -4,14 +4,13 @@ import time
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
-find = harness.load(HERE.parent / "headless" / "test_plan_find.py")
+find = harness.load(HERE.parent / "headless" / "plan" / "test_plan_find.py")
 
 
 def running():
@@ -24,7 +23,7 @@ def plans():
 
 def known():
     """What the panel says of the only plan."""
-    return support.part("operators.plan_watch")._known.get(plans()[0].name, (None, None))[1]
+    return common.part("plan.operators.watch")._known.get(plans()[0].name, (None, None))[1]
 
 
 def steps(screen):
@@ -106,7 +105,9 @@ def ripples(n=300):
     i = np.arange(n * n).reshape(n, n)
     a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
     mesh = bpy.data.meshes.new("Ripples")
-    support.part("bl.meshes").fill(mesh, np.stack([x, y, z], -1).reshape(-1, 3), np.r_[np.c_[a, b, c], np.c_[a, c, d]])
+    common.part("blender.meshes").fill(
+        mesh, np.stack([x, y, z], -1).reshape(-1, 3), np.r_[np.c_[a, b, c], np.c_[a, c, d]]
+    )
     ob = bpy.data.objects.new("Ripples", mesh)
     bpy.context.collection.objects.link(ob)
     return ob
@@ -122,7 +123,7 @@ def cancelled(screen):
     yield lambda: bpy.context.window_manager.riffler.percent > 1 or not running()
     assert running() == "Finding pencil cuts"
     yield from screen.picture("23-plan-searching")
-    shell, took = support.part("operators.long").LongWork, []
+    shell, took = common.part("blender.long_work").LongWork, []
     original = shell.cancel
 
     def cancel(self, context):
@@ -134,6 +135,6 @@ def cancelled(screen):
     screen.key("ESC")
     yield lambda: not running()
     shell.cancel = original
-    support.figure("ending a search, ms", took)  # without what drawing the window takes
+    common.figure("ending a search, ms", took)  # without what drawing the window takes
     assert (len(bpy.data.objects), [find.store().identity(ob) for ob in plans()]) == before
     yield 0.5

@@ -6,10 +6,9 @@ import time
 from pathlib import Path
 
 import bpy
-import harness
-from sculpting import live, matches_its_volume, nothing_is_left, stroke, work
+from common.sculpting import live, matches_its_volume, nothing_is_left, stroke, work
 
-import support
+from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 NAME = "Stock"
@@ -29,14 +28,14 @@ def running():
 
 
 def content():
-    return support.content(bpy.data.objects[NAME])
+    return common.content(bpy.data.objects[NAME])
 
 
 def steps(screen):
-    support.scale(1)
+    common.scale(1)
     bpy.utils.register_tool(Tool)
     yield from cut.open_tab(screen)
-    folder = Path(support.out("autosave"))
+    folder = Path(common.out("autosave"))
     folder.mkdir(exist_ok=True, parents=True)
     for old in folder.glob("*.blend"):
         old.unlink()
@@ -46,9 +45,9 @@ def steps(screen):
     paths.use_auto_save_temporary_files = True  # the minute begins now
     with screen.override():
         bpy.data.batch_remove(list(bpy.data.objects))
-        support.stock(size=(60, 60, 20), pitch=0.5, directions="xyz")
+        common.stock(size=(60, 60, 20), pitch=0.5, directions="xyz")
         bpy.ops.view3d.view_all()
-        support.push("stock")
+        common.push("stock")
     yield from rests(screen)
     yield from leaves(screen)
     yield from saved_meanwhile(screen, folder)
@@ -59,10 +58,10 @@ def rests(screen):
     """A large sculpt is packed when the hand rests, and stays live as long as the tool is at hand."""
     take_up(screen, "riffler.test")
     run = work(NAME)
-    run.keeping._packing.nbytes = 1e9
+    run.persistence._packing.nbytes = 1e9
     last = stroke(NAME, 1)
     assert content().volume.to_bytes() != last
-    yield lambda: run.keeping.packed == run.token
+    yield lambda: run.persistence.packed == run.token
     assert content().volume.to_bytes() == last and running() is run
     yield 2.0
     assert running() is run
@@ -97,10 +96,10 @@ def saved_meanwhile(screen, folder):
         assert time.monotonic() - begun < 150, "no autosave, which is made every minute"
         states.append(stroke(NAME, k, ("remove", "add")[k % 2], may_be_none=True))
         k += 1
-        yield lambda: running().keeping.packed == running().token  # at the stroke's end, or at rest
+        yield lambda: running().persistence.packed == running().token  # at the stroke's end, or at rest
         yield 0.5
     assert running() is not None
-    path = support.out("autosaved.blend")
+    path = common.out("autosaved.blend")
     shutil.copy(files[0], path)
     with screen.override():
         bpy.ops.wm.open_mainfile(filepath=path)
@@ -113,11 +112,11 @@ def saved_meanwhile(screen, folder):
 
 def cut_off(screen):
     """What a Blender that died has left is offered in the sidebar, and recovered by its button."""
-    keeping = support.part("bl.keeping")
+    keeping = common.part("sculpt.persistence")
     take_up(screen, "riffler.test")
     stroke(NAME, 8, may_be_none=True)  # as one of those before, where the autosave took long
     last = stroke(NAME, 8, "add")
-    begun = running().keeping.journal
+    begun = running().persistence.journal
     yield begun.settled
     kept = begun.folder.parent.parent / "kept"
     shutil.rmtree(kept, ignore_errors=True)
@@ -128,7 +127,7 @@ def cut_off(screen):
     assert not begun.folder.exists()
     shutil.move(kept, begun.folder)
     keeping.crashed(look=True)
-    support.scale(1)
+    common.scale(1)
     bpy.data.batch_remove(list(bpy.data.objects))
     yield from cut.open_tab(screen)
     yield 1.0

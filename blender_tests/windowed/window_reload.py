@@ -6,11 +6,8 @@ import subprocess
 from pathlib import Path
 
 import bpy
-import harness
-import leftovers
-import plans
 
-import support
+from support import common, harness, leak_check, plans
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 strokes = harness.load(Path(__file__).with_name("window_stroke.py"))
@@ -37,11 +34,11 @@ class RIFFLERTEST_OT_count(bpy.types.Operator):
 
 
 def disable():
-    bpy.ops.preferences.addon_disable(module=support.MODULE)
+    bpy.ops.preferences.addon_disable(module=common.MODULE)
 
 
 def enable():
-    bpy.ops.preferences.addon_enable(module=support.MODULE)
+    bpy.ops.preferences.addon_enable(module=common.MODULE)
 
 
 def whole(before):
@@ -70,7 +67,7 @@ def stroke_held(screen):
     yield 0.5
     before = cut.state()
     yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)], release=False)
-    assert support.part("drawing.pointer").held is not None
+    assert common.part("sculpt.pointer").held is not None
     assert strokes.volume().volume < before[0]
     return before
 
@@ -125,10 +122,10 @@ def scripts_reloaded(screen):
     strokes.tool(screen, "riffler.carve")
     yield from strokes.drag(screen, [(15, 20, 20), (45, 20, 20)])
     assert strokes.run() is not None
-    volume, before = strokes.volume().volume, support.part("bl.live")
+    volume, before = strokes.volume().volume, common.part("sculpt.live_registry")
     with screen.override():
         bpy.ops.script.reload()
-    yield lambda: support.part("bl.live") is not before
+    yield lambda: common.part("sculpt.live_registry") is not before
     yield 2.0
     carved = cut.state()
     assert carved[0] == volume
@@ -151,8 +148,8 @@ def tool_turned(screen):
         assert bpy.ops.riffler.plan_turn("INVOKE_DEFAULT", handle="FREE") == {"RUNNING_MODAL"}
     screen.move(region.x + region.width // 2 + 40, region.y + region.height // 2 + 40)
     yield 0.5
-    tool, _ = support.part("bl.timeline").pair(plan)
-    operator, turning = support.part("operators.plan_turn"), support.part("bl.turning")
+    tool, _ = common.part("plan.timeline").pair(plan)
+    operator, turning = common.part("plan.operators.turn"), common.part("plan.current_pose")
     assert turning.held is not None and {c.influence for c in tool.constraints} == {0}
     disable()
     assert {c.influence for c in tool.constraints} == {1}
@@ -170,7 +167,7 @@ def keys_of_others(screen):
     other = keymap.keymap_items.new("object.select_all", "F13", "PRESS")
     enable()
     yield 1.0  # for the user's configuration to have both
-    keys = support.part("ui.keymaps")
+    keys = common.part("keymaps")
     found = list(keys.users())
     assert [item and item.idname for _, item in found] == [key.operator for key in keys.KEYS], found
     found[0][0].keymap_items.remove(found[0][1])
@@ -191,7 +188,7 @@ def preferences(screen):
 
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "Riffler"
-    listed = next(m for m in addon_utils.modules() if m.__name__ == support.MODULE)
+    listed = next(m for m in addon_utils.modules() if m.__name__ == common.MODULE)
     addon_utils.module_bl_info(listed)["show_expanded"] = True
     with screen.override():
         bpy.ops.riffler.doctor()
@@ -208,7 +205,7 @@ def preferences(screen):
 def steps(screen):
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     disable()
-    with leftovers.Watch(support.MODULE) as watch:
+    with leak_check.Watch(common.MODULE) as watch:
         assert watch.left() == []
         enable()
         first = watch.left()

@@ -5,24 +5,23 @@ import itertools
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
 
-import support
+from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 
 
 def module(name):
-    return support.part(name)
+    return common.part(name)
 
 
 def run():
-    return module("bl.live").of(bpy.data.objects["Stock"])
+    return module("sculpt.live_registry").of(bpy.data.objects["Stock"])
 
 
 def volume():
-    return module("bl.live").content(bpy.data.objects["Stock"]).volume
+    return module("sculpt.live_registry").content(bpy.data.objects["Stock"]).volume
 
 
 def settings():
@@ -34,7 +33,7 @@ def pixel(screen, place):
     region = screen.region()
     space = screen.area.spaces.active.region_3d
     matrix = np.array(space.perspective_matrix) @ np.array(bpy.data.objects["Stock"].matrix_world)
-    sight = module("core.sight").Sight(matrix, (region.width, region.height))
+    sight = module("sculpt.pure.view_rays").ViewRays(matrix, (region.width, region.height))
     return (sight.project([place])[0] + (region.x, region.y)).round().astype(int)
 
 
@@ -55,7 +54,7 @@ def drag(screen, places, release=True, **modifiers):
             yield 0.02
     if release:
         press(screen, *way[-1], "RELEASE", **modifiers)
-        yield lambda: module("drawing.pointer").held is None
+        yield lambda: module("sculpt.pointer").held is None
     yield 0.5
 
 
@@ -93,8 +92,8 @@ def handles(screen):
 
 def at_the_limit(screen):
     """1 N where 1 N is the limit, in a picture; batches are made once for each state."""
-    force = module("drawing.force")
-    live = module("bl.live").begin(bpy.context, bpy.data.objects["Stock"])
+    force = module("sculpt.force_view")
+    live = module("sculpt.live_registry").begin(bpy.context, bpy.data.objects["Stock"])
     shown = force.begin(1.0, 8.0, live.to_world)
     shown.pose, shown.force = np.array([30.0, 30, 20, 0, 0, 1]), np.array([0.6, 0.0, 0.8])
     shown.torque = np.array([0.0, 0, 5])
@@ -122,7 +121,7 @@ def measure(side, name):
     """What a look costs that a hand waits for, event by event, without the drawing: a 60 Hz hand on a square block."""
     import time
 
-    with_live = module("bl.live")
+    with_live = module("sculpt.live_registry")
     bpy.ops.riffler.new_stock(source="BLOCK", origin="CENTRE", size=(side, side, 10), pitch=0.25, directions="xyz")
     ob = bpy.context.object
     begin = time.perf_counter()
@@ -130,9 +129,9 @@ def measure(side, name):
     bpy.context.view_layer.update()
     began = time.perf_counter() - begin
     matrix = np.diag([0.02, 0.02, -0.001, 1.0])
-    sight = module("core.sight").Sight(matrix, (1000, 1000))  # ten pixels a millimetre
-    brush, stroke = module("core.brush"), module("core.stroke")
-    made = brush.Brush(live, {"kind": "ball", "diameter": 6.0, "length": 30.0}, sight, brush.Choice(depth=0.8))
+    sight = module("sculpt.pure.view_rays").ViewRays(matrix, (1000, 1000))  # ten pixels a millimetre
+    brush, stroke = module("sculpt.pure.brush_stroke"), module("sculpt.pure.stroke_path")
+    made = brush.BrushStroke(live, {"kind": "ball", "diameter": 6.0, "length": 30.0}, sight, brush.Choice(depth=0.8))
     live.stages.take_counts()
     waits = []
     for k in range(150):
@@ -150,14 +149,14 @@ def measure(side, name):
     stages = {key: round(value, 2) for key, value in live.stages.milliseconds().items() if key != "draw"}
     per_look = {key: round(value / 150, 1) for key, value in counts.items()}
     triangles = sum(len(o.data.polygons) for o in bpy.data.objects if o.name.startswith("Riffler Chunk"))
-    support.figure(f"{name}: triangles; chunks made, s", [triangles, round(began, 2)])
-    support.figure(f"{name}: event to look, p50 / p95, {1000 / np.median(waits):.0f} looks a second", spread(waits))
-    support.figure(
+    common.figure(f"{name}: triangles; chunks made, s", [triangles, round(began, 2)])
+    common.figure(f"{name}: event to look, p50 / p95, {1000 / np.median(waits):.0f} looks a second", spread(waits))
+    common.figure(
         f"{name}: stages of a look, ms; counts a look; end of stroke, ms", [stages, per_look, round(ended, 1)]
     )
     begin = time.perf_counter()
     bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=3)
-    support.figure(f"{name}: drawn a second, by this graphics card", round(3 / (time.perf_counter() - begin), 1))
+    common.figure(f"{name}: drawn a second, by this graphics card", round(3 / (time.perf_counter() - begin), 1))
     assert counts["bricks"] / 150 < 12 and counts["moves"] > 400  # what a look touches does not grow with the sculpt
     with_live.end_all()
     bpy.data.objects.remove(ob)
@@ -182,24 +181,24 @@ def steps(screen):
 
     # the first stroke: held down, so that a picture has the arrows
     yield from drag(screen, [(15, 20, 20), (45, 20, 20)], release=False)
-    assert run() is not None and module("drawing.pointer").held is not None
+    assert run() is not None and module("sculpt.pointer").held is not None
     yield 1.0
     yield from screen.picture("stroke-1-force")
     end = pixel(screen, (45, 20, 20))
     press(screen, *end, "RELEASE")
-    yield lambda: module("drawing.pointer").held is None
+    yield lambda: module("sculpt.pointer").held is None
     yield 0.5
     first = volume().volume
     removed, ball, depth = whole - first, 4.0, 1.5
     half = np.arccos((ball - depth) / ball)
     expected = 30 * ball**2 * (half - np.sin(half) * np.cos(half)) + np.pi * depth**2 * (3 * ball - depth) / 3
     assert abs(removed / expected - 1) < 0.03, (removed, expected)  # a pixel is 0.1 mm or so
-    text, at = module("operators.stroke").last, volume().to_bytes()
+    text, at = module("sculpt.stroke_operator").last, volume().to_bytes()
     stages = run().stages.milliseconds()
     assert all(stages.values()), stages
-    told = module("ui.sculpt_panel").looks(run().stages)
+    told = module("sculpt.panel").looks(run().stages)
     assert "draw " in told[2] and " tiles, " in told[3] and not told[3].startswith("0.0"), told
-    support.figure("stroke of 8 mm on 60×60×20 mm at 0.25 mm, a look, ms", {k: round(v, 2) for k, v in stages.items()})
+    common.figure("stroke of 8 mm on 60×60×20 mm at 0.25 mm, a look, ms", {k: round(v, 2) for k, v in stages.items()})
 
     # more, so that the cursor has something to stand on
     yield from drag(screen, [(15, 40, 20), (30, 34, 20), (45, 42, 20)])
@@ -214,7 +213,7 @@ def steps(screen):
     yield from drag(screen, [(10, 52, 20), (50, 52, 20)], release=False)
     assert volume().volume < added
     screen.key("ESC")
-    yield lambda: module("drawing.pointer").held is None
+    yield lambda: module("sculpt.pointer").held is None
     press(screen, *pixel(screen, (50, 52, 20)), "RELEASE")
     yield 1.0
     assert volume().to_bytes() == before
@@ -234,7 +233,7 @@ def steps(screen):
     x, y = pixel(screen, (30, 30, 20))
     screen.move(int(x), int(y))
     yield 1.0
-    scale, before = module("drawing.pointer").pixels_per_mm, settings().radius
+    scale, before = module("sculpt.pointer").pixels_per_mm, settings().radius
     press(screen, x, y, "PRESS", kind="F")
     yield 0.5
     screen.move(int(x + 3 * scale), int(y))
@@ -258,7 +257,7 @@ def steps(screen):
     yield 1.0
     yield from handles(screen)
     yield from at_the_limit(screen)
-    module("bl.live").end_all()
+    module("sculpt.live_registry").end_all()
     yield 1.0
     assert bpy.data.objects["Stock"].visible_get()
     yield from screen.picture("stroke-7-ended")

@@ -5,11 +5,9 @@ import math
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
-import plans
 
-import support
+from support import common, harness, plans
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 
@@ -50,15 +48,15 @@ def number(screen, kind, digits):
 
 
 def plan_object():
-    return next(ob for ob in bpy.data.objects if support.part("bl.plan_store").is_plan(ob))
+    return next(ob for ob in bpy.data.objects if common.part("plan.plan_store").is_plan(ob))
 
 
 def paths():
-    return support.part("bl.plan_store").plan(plan_object()).paths
+    return common.part("plan.plan_store").plan(plan_object()).paths
 
 
 def pair():
-    return support.part("bl.timeline").pair(plan_object())
+    return common.part("plan.timeline").pair(plan_object())
 
 
 def indices():
@@ -66,7 +64,7 @@ def indices():
 
 
 def key_frames():
-    return support.part("bl.timeline").read_keys(pair()[0])[0].tolist()
+    return common.part("plan.timeline").read_keys(pair()[0])[0].tolist()
 
 
 def shown():
@@ -76,7 +74,7 @@ def shown():
 
 
 def settled():
-    replan, collisions = support.part("bl.replan"), support.part("bl.plan_collisions")
+    replan, collisions = common.part("plan.replan"), common.part("plan.collision_marks")
     ours = (replan._due, replan._settle_all, collisions.go_on, collisions.look_again)
     return not any(map(bpy.app.timers.is_registered, ours))
 
@@ -221,7 +219,7 @@ def undo(screen):
         screen.window.event_simulate("Z", "RELEASE", x=x, y=y, ctrl=True, shift=True)
         yield lambda wanted=wanted: settled() and indices() == wanted
         yield 0.3
-    assert support.part("bl.plan_states").state(plan_object()).difference.small
+    assert common.part("plan.plan_states").state(plan_object()).difference.small
     yield from screen.picture("timeline-05-redone")
 
 
@@ -232,7 +230,7 @@ def collide(screen):
     with screen.override():
         assert bpy.ops.riffler.plan_key("EXEC_DEFAULT", True, axis=(0, 1, 0.4)) == {"FINISHED"}
     yield lambda: settled() and marks()
-    ((first, last),) = support.part("bl.plan_states").state(plan_object()).colliding
+    ((first, last),) = common.part("plan.plan_states").state(plan_object()).colliding
     assert 1 < first < 20 < last < 43
     assert marks() == [f"collides {first}–{last}"]
     ui = screen.region("UI")
@@ -246,7 +244,7 @@ def collide(screen):
     for way, markers in ((-100, 0), (100, 1)):  # mm: away from the tool and back, looked at without being asked
         part.location.z += way * bpy.context.scene.unit_settings.scale_length * 1000
         yield lambda count=markers: settled() and len(marks()) == count
-    assert not support.part("bl.plan_collisions").outdated(plan_object())
+    assert not common.part("plan.collision_marks").outdated(plan_object())
     select_column(screen, 20)
     yield from press(screen, "DOPESHEET_EDITOR", "DEL")
     yield lambda: settled() and not marks()

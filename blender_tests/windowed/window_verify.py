@@ -3,26 +3,24 @@
 from pathlib import Path
 
 import bpy
-import harness
 import numpy as np
-import programs
 
-import support
+from support import common, harness, programs
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
 lessons = harness.load(HERE / "lessons.py")
-verify = harness.load(HERE.parent / "headless" / "test_verify.py")
+verify = harness.load(HERE.parent / "headless" / "program" / "test_verify.py")
 
 
 def now():
-    return support.part("bl.simulating").active()
+    return common.part("program.simulation").active()
 
 
 def there():
     """The simulated stock is where the frame is, and the timer has ended."""
-    wanted = now().course.row_at(bpy.context.scene.frame_current_final)
-    return now().prefix.row == wanted and not bpy.app.timers.is_registered(support.part("bl.simulating")._tick)
+    wanted = now().program_timeline.row_at(bpy.context.scene.frame_current_final)
+    return now().prefix.row == wanted and not bpy.app.timers.is_registered(common.part("program.simulation")._tick)
 
 
 def steps(screen):
@@ -65,7 +63,7 @@ def simulated(screen, stock):
         scene.frame_set(frame)
         yield there
         whole = now().prefix.volume.copy()
-        assert support.is_hidden(stock) and 0 < now().prefix.row < now().prefix.rows - 1
+        assert common.is_hidden(stock) and 0 < now().prefix.row < now().prefix.rows - 1
         left = programs_volume(now().prefix.row)
         assert whole.to_bytes() == left
     yield 0.5
@@ -78,13 +76,13 @@ def simulated(screen, stock):
         bpy.ops.screen.animation_cancel()
     screen.key("ESC")
     yield lambda: now() is None
-    assert not support.is_hidden(stock) and support.part("bl.chunks").shown() == []
+    assert not common.is_hidden(stock) and common.part("sculpt.chunks").shown() == []
     yield 0.5
 
 
 def programs_volume(row):
     """The stock with all rows up to that one carved in one go."""
-    setup = support.part("bl.programs").take(bpy.context, programs.settings())
+    setup = common.part("program.programs").take(bpy.context, programs.settings())
     volume = setup.stock
     ((tool, poses),) = setup.runs
     volume.carve(tool, poses[: row + 1])
@@ -103,7 +101,7 @@ def verified(screen, stock):
             "RUNNING_MODAL"
         }
     yield lambda: not bpy.context.window_manager.riffler.running
-    assert verify.kinds() == ["gouge"] and support.is_hidden(stock)
+    assert verify.kinds() == ["gouge"] and common.is_hidden(stock)
     index = 0
     kind, size, at, *place = verify.findings()[0]["title"].split()  # what the list's lines begin with
     assert (kind, at) == ("Gouge", "at") and 0 < float(size) < 1 and len(place) == 3, verify.findings()[0]
@@ -119,17 +117,17 @@ def verified(screen, stock):
     screen.area.spaces.active.region_3d.view_distance = 90
     tip = np.array(bpy.data.objects["Riffler Tool"].matrix_world)[:3, 3]
     assert np.linalg.norm(tip - found["place"]) < 4  # the plan's tool is there, too
-    assert support.part("drawing.legend").kept.built > 0
+    assert common.part("stock.deviation_legend").kept.built > 0
     yield 1.0
     yield from screen.picture("32-verified")
-    built = support.part("drawing.legend").kept.built
+    built = common.part("stock.deviation_legend").kept.built
     screen.area.tag_redraw()
     yield 1.0
-    assert support.part("drawing.legend").kept.built == built
+    assert common.part("stock.deviation_legend").kept.built == built
     with screen.override():
         bpy.ops.riffler.verify_clear("EXEC_DEFAULT", True)
     yield 0.5
-    assert not support.is_hidden(stock) and screen.area.spaces.active.shading.color_type == "MATERIAL"
+    assert not common.is_hidden(stock) and screen.area.spaces.active.shading.color_type == "MATERIAL"
     yield from on_the_plans_machine(screen)
 
 

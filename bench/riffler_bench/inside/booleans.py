@@ -52,7 +52,7 @@ def modifier(solver, side, repeats):
     ob = block(side)
     before = host.enclosed(*host.numbers(ob.data))
     mesh = bpy.data.meshes.new("Capsule")
-    host.part("bl.meshes").fill(mesh, *capsule())
+    host.part("blender.meshes").fill(mesh, *capsule())
     tool = bpy.data.objects.new("Capsule", mesh)
     bpy.context.collection.objects.link(tool)
     bpy.context.view_layer.update()
@@ -90,7 +90,7 @@ def live(side, repeats):
         bpy.context.view_layer.update()
 
     for _ in range(repeats + 1):
-        run = host.part("bl.live").of(bpy.data.objects[name])
+        run = host.part("sculpt.live_registry").of(bpy.data.objects[name])
         before = run.volume.volume
         run.begin_stroke()
         begin = time.perf_counter(), time.process_time()

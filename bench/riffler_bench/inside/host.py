@@ -37,7 +37,7 @@ def prepare(paths=(), addon=None):
 
 
 def part(name):
-    """A module of the add-on: part("bl.live")."""
+    """A module of the add-on: part("sculpt.live_registry")."""
     return importlib.import_module(f"{ADDON}.{name}")
 
 
@@ -134,7 +134,7 @@ def plain(name, co, tri):
     for ob in list(bpy.data.objects):
         bpy.data.objects.remove(ob)
     mesh = bpy.data.meshes.new(name)
-    part("bl.meshes").fill(mesh, co, tri)
+    part("blender.meshes").fill(mesh, co, tri)
     ob = bpy.data.objects.new(name, mesh)
     bpy.context.collection.objects.link(ob)
     bpy.context.view_layer.objects.active = ob

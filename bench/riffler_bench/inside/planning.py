@@ -17,7 +17,7 @@ def plan(part, tool, axis, minimum, folder, post):
     ob = host.plain("Part", np.asarray(mesh.vertices), np.asarray(mesh.triangles))
     scene, operators, times = bpy.context.scene, bpy.ops.riffler, host.Times()
     scene.riffler.plan.part = ob
-    store = host.part("bl.plan_store")
+    store = host.part("plan.plan_store")
     times.of("find", lambda: operators.plan_find(tool=json.dumps(tool), minimum_length=minimum))
     made = store.active(bpy.context)
     count = len(store.plan(made).paths)

@@ -41,13 +41,13 @@ def sculpt(side):
     settings.sculpt.depth, settings.sculpt.pressure, settings.sculpt.axis = DEPTH, "NONE", "NORMAL"
     bpy.ops.ed.undo_push(message="Stock")
     begin = time.perf_counter()
-    live = host.part("bl.live").begin(bpy.context, ob)
+    live = host.part("sculpt.live_registry").begin(bpy.context, ob)
     bpy.context.view_layer.update()
     return ob, live, time.perf_counter() - begin
 
 
 class Looks:
-    """Stages of each event in s, told from the add-on's own clocks (core/stages.py) and from around its brush."""
+    """Seconds of each event by stage, by the add-on's clocks (sculpt/pure/stages.py) and from around its brush."""
 
     def __init__(self, live):
         self.live, self.rows, self._added = live, [], 0.0
@@ -102,7 +102,7 @@ class Looks:
 
 
 def shown(live):
-    chunks = host.part("bl.chunks").collection_of(live.mark).objects
+    chunks = host.part("sculpt.chunks").collection_of(live.mark).objects
     return sum(len(ob.data.polygons) for ob in chunks)
 
 
@@ -118,7 +118,7 @@ def kinds(strokes):
 def history(times, strokes):
     """Undo and redo of the strokes; the volume must come and go with them. Then undo of a step that has nothing to do
     with the sculpt, in the same file: less Blender cannot take."""
-    live = host.part("bl.live")
+    live = host.part("sculpt.live_registry")
     name = bpy.context.object.name
 
     def volume():
@@ -161,14 +161,14 @@ def headless(side, strokes, events):
     """Without drawing: samples to the brush, a look, and Blender's dependency graph."""
     _, live, began = sculpt(side)
     core, sight = (
-        host.part("core.brush"),
-        host.part("core.sight").Sight(np.diag([0.02, 0.02, -0.001, 1.0]), (4000, 4000)),
+        host.part("sculpt.pure.brush_stroke"),
+        host.part("sculpt.pure.view_rays").ViewRays(np.diag([0.02, 0.02, -0.001, 1.0]), (4000, 4000)),
     )
     choice = core.Choice(depth=DEPTH)
     looks, times, whole, hand = Looks(live), host.Times(), live.volume.volume, lines(side, strokes, events)
-    sample = host.part("core.stroke").Sample
+    sample = host.part("sculpt.pure.stroke_path").Sample
     for line in hand:
-        made = core.Brush(live, BALL, sight, choice)
+        made = core.BrushStroke(live, BALL, sight, choice)
         looks.watch(made)
         for k, (x, y) in enumerate(line):
             begin, cpu = time.perf_counter(), time.process_time()
@@ -196,7 +196,7 @@ def windowed(side, strokes, events):
     with view.override():
         bpy.ops.wm.tool_set_by_id(name="riffler.carve")
     yield 3.0
-    pointer = host.part("drawing.pointer")
+    pointer = host.part("sculpt.pointer")
     looks, times, whole, expected = Looks(live), host.Times(), live.volume.volume, 0.0
     for line in lines(side, strokes, events):
         way = [view.pixel((x, y, HEIGHT / 2)) for x, y in line]
@@ -216,7 +216,7 @@ def windowed(side, strokes, events):
         yield 1.0
         a, b = (np.array(view.place(p)) for p in (way[0], way[-1]))
         expected += removed(np.linalg.norm(b - a))
-    live = host.part("bl.live").of(bpy.data.objects[ob.name])
+    live = host.part("sculpt.live_registry").of(bpy.data.objects[ob.name])
     out = summed(looks, times, live, whole, expected, began, side)
     yield from view.history(times, kinds(strokes))
     return out | undone(times) | {"renderer": view.renderer(), "pixels": [view.region.width, view.region.height]}

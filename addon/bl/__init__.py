@@ -1,1 +1,0 @@
-"""Adapters to Blender. Every difference between its versions is dealt with in versions.py, and nowhere else."""

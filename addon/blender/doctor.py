@@ -1,0 +1,61 @@
+"""What Riffler finds on this machine, as a text to be sent with a question."""
+
+import bpy
+from riffler.command import doctor
+
+from ..common import diagnosis
+from . import operator_parts, preferences_access, versions
+
+TEXT = "Riffler Doctor"
+
+last = ""  # the newest report, for the preferences
+
+
+def facts():
+    """Pairs of what Riffler's own report does not know."""
+    found = [("Blender", bpy.app.version_string + (" without a window" if bpy.app.background else ""))]
+    found += [("graphics", card)] if (card := versions.graphics()) else []
+    found.append(("add-on", preferences_access.ROOT))
+    for name in ("journals", "tools"):
+        try:
+            found.append((name, diagnosis.folder(preferences_access.target(name))))
+        except OSError as error:
+            found.append((name, operator_parts.said(error)))
+    return found
+
+
+class RIFFLER_OT_doctor(bpy.types.Operator):
+    """Look at this machine, its folders and the devices that are plugged in, and copy what was found to the clipboard
+    and into a text of this file"""
+
+    bl_idname = "riffler.doctor"
+    bl_label = "Copy Doctor Report"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return not operator_parts.busy(cls, context)  # a device that sculpts is not to be asked who it is
+
+    def execute(self, context):
+        global last
+        try:
+            rows = doctor.rows(doctor.report())
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        ours = facts()
+        rows = [row for row in rows if row[0] not in dict(ours)]
+        last = diagnosis.table("Riffler in Blender", [*rows, *ours])
+        text = bpy.data.texts.get(TEXT) or bpy.data.texts.new(TEXT)
+        text.clear()
+        text.write(last)
+        context.window_manager.clipboard = last
+        self.report({"INFO"}, f"Copied, and in the text {text.name!r}")
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_doctor,)
+
+
+def detach():
+    global last
+    last = ""

@@ -1,0 +1,41 @@
+"""Long work on a file that is chosen first."""
+
+import bpy
+
+from . import operator_parts
+from .long_work import LongWork
+
+
+class FileWork(LongWork):
+    """Mixin of operators of long work, before ExportHelper or ImportHelper, which is also the `helper`.
+
+    Blender calls `execute` once the file is chosen, and frees the operator after it: the work, which goes on, is
+    another call of the same operator, which does not ask any more."""
+
+    helper = None
+
+    ask: bpy.props.BoolProperty(
+        name="Ask",
+        default=True,
+        options={"HIDDEN", "SKIP_SAVE"},
+        description="With INVOKE_DEFAULT: choose the file first; off: begin at once, in the background",
+    )
+    _asked = False
+
+    def invoke(self, context, event):
+        if not self.ask:
+            return LongWork.invoke(self, context, event)
+        self._asked = True
+        return self.helper.invoke(self, context, event)
+
+    def execute(self, context):
+        if not self._asked or bpy.app.background or context.window is None:
+            return LongWork.execute(self, context)
+        self._asked = False
+        call = getattr(bpy.ops.riffler, type(self).bl_idname.partition(".")[2])  # an instance has Blender's name for it
+        try:
+            call("INVOKE_DEFAULT", **{**self.as_keywords(), "ask": False})
+        except RuntimeError as error:  # what the other call has reported, as Blender hands it on
+            said = " ".join(line.removeprefix("Error: ") for line in str(error).splitlines())
+            return operator_parts.fail(self, RuntimeError(said))
+        return {"CANCELLED"}  # of this call there is nothing to be undone

@@ -1,0 +1,193 @@
+"""Long work: one shell for all operators that take longer than a person waits.
+
+In a window the work runs on a timer, in slices (a cut) or in a thread of its own (a native task): the status bar and
+the panel show how far it is, the view may be looked at, Esc takes everything back. Without a window, from a script, and
+when settings are changed in the redo panel it runs in one go. Either way finished work is one undo step, and cancelled
+or failed work leaves nothing behind.
+"""
+
+import time
+
+import bpy
+from bpy.props import FloatProperty, StringProperty
+
+from ..common.job import RefreshClock, run_through, slice_budget
+from ..translations import local
+from . import handlers, operator_parts, views
+
+TELL = 0.1  # s between two reports of progress
+TICK = {False: 0.01, True: 0.05}  # s from one step to the next of work in slices; from one look at a thread to the next
+
+AGAIN, SETTLED = 0.5, 10.0  # s between redraws of the sidebars after the end, and for how long
+
+CLASSES = ()
+_until = 0.0  # sidebars are drawn again
+_running = None  # the operator whose work runs in a window, if one's does
+
+
+class WorkProgress:
+    running: StringProperty(description="What runs (“Cutting”); empty where nothing does")
+    simulating: StringProperty(description="The program that is simulated; empty where none is")
+    shading: StringProperty(description="How views were shaded before they showed colours of distances")
+    percent: FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100, precision=0)
+    notice: StringProperty(description="What happened to a sculpt that nobody asked for; empty where all is well")
+    text: StringProperty(description="How far it is, in its own words")
+
+
+class LongWork:
+    """Mixin of operators. A subclass has `begin(context)`, which returns the job (common/job.py), or raises one of
+    operator_parts.ERRORS and has changed nothing then; and `finish(context, job)`, which takes over what the finished
+    job has made, and returns what the operator returns. Its own attributes keep names, not references to Blender's
+    data, which may be gone with the next event."""
+
+    doing = ""  # for the panel, the status bar, and the tooltips of what has to wait: "Finding pencil paths"
+    cancelled = ""  # what Esc reports
+    _job = None  # Blender also calls `cancel` where nothing has begun: of a file selector that was closed
+
+    def lost(self, context):
+        """Why the work is for nothing now, as what it was begun for has changed; otherwise nothing."""
+        return ""
+
+    def show(self, context, job):
+        """Shows the unfinished work; never takes more than a share of the time."""
+
+    def restore(self, context):
+        """Takes back what `show` has shown."""
+
+    # ------------------------------------------------------------------ in one go
+    def execute(self, context):
+        wm = context.window_manager
+        wm.progress_begin(0, 100)
+        try:
+            job = self.begin(context)
+            run_through(job, lambda share: wm.progress_update(100 * share))
+            return self.finish(context, job)
+        except operator_parts.ERRORS as error:
+            self.cancel(context)
+            return operator_parts.fail(self, error)
+        finally:
+            wm.progress_end()
+
+    # ------------------------------------------------------------------ in a window
+    def invoke(self, context, event):
+        global _running
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        try:
+            self._job = self.begin(context)
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        self._clock, self._shown, self._spent = RefreshClock(), False, 0.0
+        self._left, self._told = time.perf_counter(), 0.0
+        wm = context.window_manager
+        wm.progress_begin(0, 100)
+        wm.riffler.running = self.doing
+        self._timer = wm.event_timer_add(TICK[self._job.in_background], window=context.window)
+        wm.modal_handler_add(self)
+        _running = self
+        self._tell(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if self._job is None:  # ended from outside, by `detach`
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS":
+            self.cancel(context)
+            self.report({"INFO"}, local(self.cancelled))
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"} if event.type in operator_parts.NAVIGATION else {"RUNNING_MODAL"}
+        try:
+            return self._tick(context)
+        except operator_parts.ERRORS as error:
+            self.cancel(context)
+            return operator_parts.fail(self, error)
+        except BaseException:
+            self.cancel(context)
+            raise
+
+    def cancel(self, context):
+        """Nothing has come of it. Blender calls it too, when the window closes or another file is opened."""
+        if self._job is None:
+            return
+        try:
+            self._job.cancel()
+            if self._shown and not self.lost(context):
+                self.restore(context)
+        finally:
+            self._end(context)
+
+    def _tick(self, context):
+        if why := self.lost(context):
+            self.cancel(context)
+            self.report({"WARNING"}, why)
+            return {"CANCELLED"}
+        outside = time.perf_counter() - self._left  # what drawing the window took
+        if self._spent:
+            self._clock.spent(self._spent + outside)
+            self._spent = 0.0
+        if self._job.step(0.0 if self._job.in_background else slice_budget(outside)):
+            done = self.finish(context, self._job)
+            self._end(context)
+            return done
+        self._refresh(context)
+        self._tell(context)
+        self._left = time.perf_counter()
+        return {"RUNNING_MODAL"}
+
+    def _refresh(self, context):
+        if self._clock.due():
+            begin = time.perf_counter()
+            self._shown = True
+            self.show(context, self._job)
+            self._spent = time.perf_counter() - begin
+
+    def _tell(self, context):
+        if time.perf_counter() - self._told < TELL:
+            return
+        self._told = time.perf_counter()
+        state = context.window_manager.riffler
+        state.percent = 100 * self._job.fraction
+        state.text = self._job.text or "Esc cancels"
+        context.window_manager.progress_update(state.percent)
+        _status(context, f"Riffler: {local(self.doing)}, {state.percent:.0f} %    {local('Esc: cancel')}")
+        views.redraw_sidebars(context)
+
+    def _end(self, context):
+        global _running
+        _running = self._job = None
+        wm = context.window_manager
+        wm.event_timer_remove(self._timer)
+        wm.progress_end()
+        wm.riffler.running = ""
+        _status(context, None)
+        views.redraw_sidebars(context)
+        _settle()
+
+
+def _settle():
+    """The button that has begun the work is grey meanwhile, and Blender leaves one under the pointer as it is, however
+    often it is drawn: it is drawn until the pointer is elsewhere."""
+    global _until
+    _until = time.monotonic() + SETTLED
+    if not bpy.app.timers.is_registered(_redraw):
+        bpy.app.timers.register(_redraw, first_interval=AGAIN)
+
+
+def _redraw():
+    views.redraw_sidebars(bpy.context)
+    return AGAIN if time.monotonic() < _until else None
+
+
+def _status(context, text):
+    if context.workspace is not None:  # there is none while another file is opened
+        context.workspace.status_text_set(text)
+
+
+def detach():
+    """Whatever runs is cancelled."""
+    try:
+        if _running is not None:
+            _running.cancel(bpy.context)
+    finally:
+        handlers.stop(_redraw)  # which the end of the work has begun

@@ -1,0 +1,30 @@
+"""The scene's millimetres."""
+
+from ..common import units
+
+clean = units.clean
+
+
+def mm_per_unit(scene):
+    """scene mm = Blender units × scale_length × 1000, whatever units the scene shows."""
+    return units.mm_per_unit(scene.unit_settings.scale_length)
+
+
+SHOWN = {"MM": "MILLIMETERS", "CM": "CENTIMETERS", "M": "METERS", "INCH": "INCHES"}
+
+
+def set_unit(scene, screens, mm, shown="MM"):
+    """One Blender unit is `mm` millimetres; lengths are shown in one of size_guess.UNITS. In millimetres a part of
+    some metres stays within the views' clipping."""
+    settings = scene.unit_settings
+    settings.system = "IMPERIAL" if shown == "INCH" else "METRIC"
+    settings.scale_length = mm / 1000
+    settings.length_unit = SHOWN[shown]
+    if shown != "MM":
+        return
+    for screen in screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                space = area.spaces.active
+                space.clip_start = max(0.1 / mm, 0.01)  # Blender's own; nearer, it tells far surfaces apart no more
+                space.clip_end = max(space.clip_end, 10_000.0 / mm)

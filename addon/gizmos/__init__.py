@@ -1,1 +1,0 @@
-"""Handles in the 3D view."""

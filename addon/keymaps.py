@@ -1,0 +1,84 @@
+"""The add-on's own keys beside those of its tools: in Blender's add-on key configuration, taken back with the add-on.
+What a user makes of them is in the user's configuration, and stays there."""
+
+from dataclasses import dataclass, field
+
+import bpy
+import rna_keymap_ui
+
+from . import menus
+from .program import simulation
+from .sculpt import panel
+from .translations import CONTEXT
+
+
+@dataclass(frozen=True)
+class Key:
+    keymap: str
+    operator: str
+    event: dict
+    label: str
+    given: dict = field(default_factory=dict)  # to the operator
+    space: str = "EMPTY"
+
+    def is_of(self, item):
+        """Keys of others may be of operators that have nothing of such a name, or that are gone."""
+        given = self.given.items()
+        return item.idname == self.operator and all(getattr(item.properties, n, None) == v for n, v in given)
+
+
+def _menu(operator, menu, **event):
+    return Key("Object Mode", operator, event, menu.bl_label, {"name": menu.bl_idname})
+
+
+STOP = simulation.RIFFLER_OT_simulate_stop
+# Blender has nothing on these keys in any version, but for Esc, which is ours only while something is simulated.
+KEYS = (
+    _menu("wm.call_menu_pie", panel.RIFFLER_MT_sculpt_pie, type="W", ctrl=True, shift=True),
+    _menu("wm.call_menu", menus.RIFFLER_MT_object, type="W", ctrl=True, alt=True),
+    Key("3D View", STOP.bl_idname, {"type": "ESC"}, STOP.bl_label, space="VIEW_3D"),
+)
+CLASSES = ()
+_made = []  # (keymap, item)
+
+
+def attach():
+    configuration = bpy.context.window_manager.keyconfigs.addon
+    if configuration is None:  # Blender without a window may have none
+        return
+    for key in KEYS:
+        keymap = configuration.keymaps.new(key.keymap, space_type=key.space)
+        item = keymap.keymap_items.new(key.operator, value="PRESS", **key.event)
+        _made.append((keymap, item))
+        for name, value in key.given.items():
+            setattr(item.properties, name, value)
+
+
+def detach():
+    while _made:
+        keymap, item = _made.pop()
+        keymap.keymap_items.remove(item)
+
+
+def users():
+    """(keymap, item) of each of KEYS in the user's configuration, which is the one that counts; the item is None where
+    the user has removed it."""
+    configuration = bpy.context.window_manager.keyconfigs.user
+    for key in KEYS:
+        keymap = configuration.keymaps.get(key.keymap) if configuration is not None else None
+        items = keymap.keymap_items if keymap is not None else ()
+        yield keymap, next(filter(key.is_of, items), None)
+
+
+def draw(layout, context):
+    """One row for each key, as in Blender's own list: edited there, and put back by its arrow."""
+    layout.label(text="Keys", text_ctxt=CONTEXT)
+    for key, (keymap, item) in zip(KEYS, users(), strict=True):
+        if item is None:
+            layout.label(
+                text=f"{key.label}: removed. Restore in the list Keymap, {key.keymap}, brings it back", icon="INFO"
+            )
+            continue
+        layout.context_pointer_set("keymap", keymap)
+        configuration = context.window_manager.keyconfigs.user
+        rna_keymap_ui.draw_kmi([], configuration, keymap, item, layout, 0)

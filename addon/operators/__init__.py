@@ -1,1 +1,0 @@
-"""Operators: thin shells around core and bl."""

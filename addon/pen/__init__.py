@@ -1,0 +1,1 @@
+"""Sculpting with a pen or another device."""

@@ -1,0 +1,333 @@
+"""Sculpting with a pen, or whatever device: a session in the device's thread (pen/session.py), at which Blender
+looks thirty times a second; what its tool feels is drawn, and what it does is said.
+"""
+
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+import riffler
+
+from ..blender import handlers, operator_parts, preferences_access, views
+from ..common import problems, units
+from ..sculpt import brushes, draw_pace, fixtures, force_view, sculpt_work, sculpts, undo_states
+from ..sculpt.pure import reach
+from ..translations import local
+from . import properties
+from . import session as pen_session
+
+FRAME = 1 / 30  # s from one look to the next
+TELL = 0.2  # s between two changes of what the panel says
+# The tool that is active while a device sculpts: Esc is its key, and choosing another one ends the work
+# (sculpt/idle_detection.py).
+TOOL = "riffler.carve"
+MODES = (
+    ("TOOL", "As the tool at hand", "What the sculpt tool in the toolbar does; without one, Carve"),
+    *brushes.entries(brush for brush in brushes.BRUSHES.values() if brush.session),
+)
+
+_shown = None  # arrows and gauge (sculpt/force_view.py)
+_told, _told_at = (), 0.0  # what the panel says, and since when
+
+
+def brush_of(context, choice):
+    """What a session does to the material. ValueError where the tool at hand does something that no session can."""
+    if choice != "TOOL":
+        return brushes.of(choice.lower())
+    brush = brushes.of_tool(_at_hand(context))
+    if brush is None:
+        return brushes.of("remove")
+    if not brush.session:
+        raise ValueError(f"a pen carves or puts material on: take Carve or Add instead of {brush.label}")
+    return brush
+
+
+def _at_hand(context):
+    """Identifier of the tool that is active in the 3D view's toolbar, or ""."""
+    tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
+    return tool.idname if tool is not None else ""
+
+
+def session_options(context, ob, settings, brush):
+    clean = units.clean
+    options = {
+        "mode": brush.cuts,
+        "stiffness": clean(settings.stiffness),
+        "material": riffler.Material(removal_constant=clean(settings.removal_constant)),
+        "obstacles": obstacles(context, ob),
+        **preferences_access.limits(),
+    }
+    if settings.device == properties.RECORDING:
+        return options  # its poses are in the stock's frame
+    options["scale"] = clean(settings.scale)
+    if settings.start == "CURSOR":
+        world = np.append(context.scene.cursor.location, 1.0)
+        tip = (sculpts.from_world(ob) @ world)[:3]
+    else:
+        lower, upper = np.array(ob.data.riffler.lower), np.array(ob.data.riffler.upper)
+        tip = np.append(0.5 * (lower + upper)[:2], upper[2] + clean(settings.gap))
+    options["at"] = [*tip, 0, 0, 1]
+    return options
+
+
+def obstacles(context, ob):
+    """riffler.Collider of the fixtures, in the sculpt's millimetres, or None."""
+    collection = context.scene.riffler.sculpt.fixtures
+    if collection is None:
+        return None
+    return fixtures.collider(context, collection, sculpts.from_world(ob), {ob.name})
+
+
+def device_of(settings):
+    """A kind of riffler.pen.kinds, or properties.RECORDING."""
+    return preferences_access.device() if settings.device == properties.PREFERRED else settings.device
+
+
+def open_device(settings):
+    if settings.device != properties.RECORDING:
+        return riffler.pen.open(device_of(settings))
+    if not settings.recording.endswith(".rjournal"):
+        raise ValueError("choose a recording (.rjournal) to be played")
+    path = bpy.path.abspath(settings.recording)
+    problems.check_source(path)
+    return riffler.pen.open(path)
+
+
+def recordings(settings):
+    """The folder that recordings go into, or None."""
+    if not settings.record:
+        return None
+    if not settings.folder or (settings.folder.startswith("//") and not bpy.data.filepath):
+        raise ValueError("choose a folder for the recording, or save the .blend first: // is the folder that it is in")
+    folder = Path(bpy.path.abspath(settings.folder))
+    if not folder.is_dir():
+        raise ValueError(f"there is no folder {folder} for the recording: choose another")
+    problems.check_target(folder / "session.rjournal")
+    return folder
+
+
+NO_COPIES = "Mirror and Radial are for strokes of the pointer: a session of a device makes no copies"
+
+
+class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.types.Operator):
+    """Sculpt with a pen or another device, until Esc or until this is called again"""
+
+    bl_idname = "riffler.pen_sculpt"
+    bl_label = "Sculpt with Pen"
+    bl_options = set()  # it pushes its undo steps itself: its beginning, and each stroke
+
+    mode: bpy.props.EnumProperty(
+        name="Mode",
+        items=MODES,
+        default="TOOL",
+        options={"SKIP_SAVE"},
+        description="What the session does to the material",
+    )
+    seconds: bpy.props.FloatProperty(
+        name="Seconds",
+        min=0.0,
+        max=86400.0,
+        options={"HIDDEN", "SKIP_SAVE"},
+        description="How long it sculpts when it is called from a script",
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return pen_session.running is not None or sculpt_work.sculpt_poll(cls, context)
+
+    def execute(self, context):
+        """For `seconds`, in one go."""
+        if pen_session.running is not None:
+            return _stop(self)
+        if not self.seconds > 0:
+            return operator_parts.fail(self, ValueError("seconds: say how long, as there is no window to end it in"))
+        if not self._start(context):
+            return {"CANCELLED"}
+        session, end = pen_session.running, time.monotonic() + self.seconds
+        try:
+            while time.monotonic() < end and session.look():
+                time.sleep(FRAME)
+            session.finish()
+        except operator_parts.ERRORS as error:
+            session.fail(error)
+        return _said(self, session)
+
+    def invoke(self, context, event):
+        global _shown
+        if pen_session.running is not None or self.seconds > 0 or bpy.app.background or context.window is None:
+            return self.execute(context)
+        if not self._start(context):
+            return {"CANCELLED"}
+        _take_up_tool(context)
+        settings, session = context.scene.riffler.sculpt, pen_session.running
+        if session.run.pushes and brush_of(context, self.mode).chips:
+            _shown = force_view.begin(units.clean(settings.limit), session.diameter, session.live.to_world)
+        draw_pace.begin(session.live.stages)
+        bpy.app.timers.register(_look, first_interval=FRAME)
+        return {"FINISHED"}
+
+    def _start(self, context):
+        ob = sculpts.active(context)
+        try:
+            brush = brush_of(context, self.mode)
+            if len(context.scene.riffler.sculpt.maps()) > 1:
+                self.report({"WARNING"}, local(NO_COPIES))
+            sculpt_work.check_state(self, context, ob)
+            sculpt_work.refuse_edits(ob)
+            depth = units.clean(context.scene.riffler.sculpt.depth)
+            tool = brush.cutter(riffler.Tool.from_dict(self.tool_dict(context)), depth)
+            folder, options = recordings(self), session_options(context, ob, self, brush)
+            device = open_device(self)
+            pen_session.PenSession(context, ob, device, tool, options, folder, _leave)
+        except (*operator_parts.ERRORS, TypeError) as error:
+            operator_parts.fail(self, error)
+            return False
+        bpy.ops.ed.undo_push(message=self.bl_label)
+        _tell(pen_session.running)
+        return True
+
+
+def _take_up_tool(context):
+    if not _at_hand(context).startswith("riffler."):
+        bpy.ops.wm.tool_set_by_id(name=TOOL, space_type="VIEW_3D")
+
+
+def _look():
+    """Of the timer, as long as the session goes on."""
+    session = pen_session.running
+    if session is None:
+        return None
+    try:
+        if session.look():
+            _tell(session)
+            return FRAME
+    except operator_parts.ERRORS as error:
+        session.fail(error)
+    if session.problem:
+        undo_states.tell(session.problem)
+    return None
+
+
+def _tell(session):
+    global _told, _told_at
+    run = session.run
+    if _shown is not None and run.pose is not None:
+        _shown.pose, _shown.to_world = run.pose, session.live.to_world
+        _shown.force, _shown.torque = run.push
+    brush = brushes.of(session.mode)
+    what = f" {brush.done}" if brush.puts_on else ""
+    hand = f"Hand: {run.state}, {run.force:.2f} N"
+    text = f"{units.format_volume(session.changed)}{what} in {_strokes(session)}"
+    told = hand, text, run.why
+    if told == _told or time.perf_counter() - _told_at < TELL:
+        return
+    _told, _told_at = told, time.perf_counter()
+    state = bpy.context.window_manager.riffler
+    state.force, state.text, state.why = told
+    why = f"    {run.why}" if run.why else ""
+    _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: take a stroke back{why}")
+    views.redraw_sidebars(bpy.context)
+
+
+def _strokes(session):
+    return units.counted(session.count, "stroke")
+
+
+def _status(text):
+    """In every window: a timer has none of its own."""
+    for window in bpy.context.window_manager.windows:
+        window.workspace.status_text_set(text)
+
+
+def _leave():
+    """The session has ended, whoever ended it."""
+    global _shown, _told
+    _told = ()
+    if _shown is not None:
+        _shown = None
+        force_view.end()
+    draw_pace.end()
+    _status(None)
+    views.redraw_sidebars(bpy.context)
+
+
+def _stop(operator):
+    session = pen_session.running
+    try:
+        session.finish()
+    except operator_parts.ERRORS as error:
+        session.fail(error)
+    return _said(operator, session)
+
+
+def _said(operator, session):
+    """What a session has done, and whether that is anything."""
+    problem = session.problem or session.run.why
+    brush = brushes.of(session.mode)
+    done = brush.done
+    if not session.count:
+        why = problem or brush.no_stroke
+        operator.report({"WARNING"}, f"Nothing was {done} in {session.seconds:.1f} s: {why}")
+        return {"CANCELLED"}
+    note = f"; {session.problem}" if session.problem else ""
+    changed = units.format_volume(session.changed)
+    text = f"{done.capitalize()} {changed} in {_strokes(session)}, {session.seconds:.1f} s{note}"
+    if session.live.cut_off:
+        operator.report({"WARNING"}, local(reach.CUT_OFF))
+    operator.report({"WARNING"} if session.problem else {"INFO"}, text)
+    return {"FINISHED"}
+
+
+class PenRuns:
+    """Mixin of operators that need a session."""
+
+    @classmethod
+    def poll(cls, context):
+        return pen_session.running is not None or operator_parts.deny(cls, "No pen is sculpting")
+
+
+class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
+    """End the sculpting with a pen: its strokes stay"""
+
+    bl_idname = "riffler.pen_stop"
+    bl_label = "End Session"
+    bl_options = set()
+
+    def execute(self, context):
+        _stop(self)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_pen_home(PenRuns, bpy.types.Operator):
+    """The pen stands in its home posture now: its counters are set"""
+
+    bl_idname = "riffler.pen_home"
+    bl_label = "Home"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context):
+        device = pen_session.running.run.device
+        if not device.home():
+            return operator_parts.fail(self, ValueError(f"{device.kind} has nothing to home"))
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_pen_reset(PenRuns, bpy.types.Operator):
+    """Let force through again after it was taken away, once what was wrong is mended"""
+
+    bl_idname = "riffler.pen_reset"
+    bl_label = "Clear Trip"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context):
+        pen_session.running.run.session.reset()
+        return {"FINISHED"}
+
+
+def detach():
+    handlers.stop(_look)
+    pen_session.end()
+
+
+CLASSES = (RIFFLER_OT_pen_sculpt, RIFFLER_OT_pen_stop, RIFFLER_OT_pen_home, RIFFLER_OT_pen_reset)

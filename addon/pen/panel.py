@@ -1,0 +1,59 @@
+"""The pen's panel: which device, how it feels, what it is doing."""
+
+import bpy
+
+from ..blender.panel_parts import Sidebar, give, lines, wrapped
+from . import operators, properties
+
+WHAT = {kind: what for kind, _, what, *_ in properties.DEVICES}
+
+
+class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
+    bl_idname = "RIFFLER_PT_pen"
+    bl_label = "Pen (mm, N)"
+    bl_order = 7
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_decorate = False
+        settings = context.scene.riffler.pen
+        state = context.window_manager.riffler
+        if state.sculpting:
+            self._session(layout, context, state)
+        else:
+            op = layout.operator(operators.RIFFLER_OT_pen_sculpt.bl_idname, icon="STYLUS_PRESSURE")
+            give(op, settings, properties.PenSettings)
+        self._settings(layout, context, settings, not state.sculpting)
+
+    def _session(self, layout, context, state):
+        layout.operator(operators.RIFFLER_OT_pen_stop.bl_idname, icon="CANCEL", depress=True)
+        lines(layout, state.force, state.text)
+        if state.why:
+            lines(layout, *wrapped(context, state.why), icon="INFO")
+        row = layout.row(align=True)
+        row.operator(operators.RIFFLER_OT_pen_home.bl_idname)
+        row.operator(operators.RIFFLER_OT_pen_reset.bl_idname)
+
+    def _settings(self, layout, context, settings, enabled):
+        column = layout.column()
+        column.enabled = enabled
+        column.use_property_split = True
+        column.prop(settings, "device")
+        lines(column, *wrapped(context, WHAT[operators.device_of(settings)]))
+        if settings.device == properties.RECORDING:
+            column.prop(settings, "recording")
+        else:
+            column.prop(settings, "start")
+            if settings.start == "ABOVE":
+                column.prop(settings, "gap")
+            column.prop(settings, "scale")
+        group = column.column(align=True)
+        group.prop(settings, "stiffness")
+        group.prop(settings, "removal_constant")
+        column.prop(settings, "record")
+        if settings.record:
+            column.prop(settings, "folder")
+
+
+CLASSES = (RIFFLER_PT_pen,)

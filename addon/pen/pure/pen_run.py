@@ -1,0 +1,108 @@
+"""A session with a pen between two looks at it, without Blender, and the names of its recordings."""
+
+from __future__ import annotations
+
+import numpy as np
+import riffler
+
+
+def journal_name(name: str, when) -> str:
+    """Of a sculpt and a date, fit for any file system."""
+    kept = "".join(c if c.isalnum() or c in " -_." else "_" for c in name).strip(" .")
+    return f"{kept or 'sculpt'} {when:%Y-%m-%d %H-%M-%S}.rjournal"
+
+
+class PenRun:
+    """A device and its sessions, one after the other, each with a volume that nobody else changes meanwhile: `prepare`,
+    `start`, `look` some thirty times a second, `halt`; at last `close`.
+
+    `options` are riffler.Session's. Where they say where the tool stands (`at`), the next session goes on from where it
+    stood last."""
+
+    def __init__(self, device, tool, options):
+        self.device, self._tool, self._options = device, tool, dict(options)
+        self.session = None
+        self.pose: np.ndarray | None = None  # (6,) of the tool, mm
+        self.push = np.zeros((2, 3))  # N, N·mm about its tip: on the tool, the mean since the last look
+        self.state, self.force, self.why = "off", 0.0, ""  # the force is the hand's
+        self.strokes, self.in_stroke = 0, False  # of this session
+        self.untold = 0  # steps that nobody looked at in time
+        self._rows: list[list[list[float]]] = []
+        self._open = False
+
+    def prepare(self, volume, mask=None):
+        """The session, which may be given a journal before it starts."""
+        if self.pose is not None and "at" in self._options:
+            self._options["at"] = self.pose
+        self.session = riffler.Session(volume, self._tool, self.device, protect=mask, **self._options)
+        self.strokes, self.in_stroke, self.untold, self._open = 0, False, 0, False
+        self._rows.clear()
+        return self.session
+
+    def start(self) -> None:
+        self.session.start()
+
+    @property
+    def running(self) -> bool:
+        return self.session is not None and self.session.running
+
+    def look(self) -> None:
+        """Brings the volume up to date."""
+        self._take(self.session.frame())
+        # A simulated hand presses no button to say that it has seen what was wrong.
+        if self.state == "tripped" and self.device.kind == "simulated" and not self.device.state().fault:
+            self.session.reset()
+
+    @property
+    def over(self) -> bool:
+        """True where nothing more will come: a recording that was played to its end."""
+        return self.device.kind == "recording" and self.device.health()["state"] == "stopped"
+
+    def halt(self) -> str:
+        """The device pushes no more, and the volume is as the session left it. What went wrong, or nothing."""
+        try:
+            if self.running:
+                self._take(self.session.stop())
+        except RuntimeError as error:
+            return str(error)
+        finally:
+            self.in_stroke, self.push = False, np.zeros((2, 3))
+        return ""
+
+    @property
+    def pushes(self) -> bool:
+        """True where the device has motors, so that the hand feels what is cut."""
+        return any(axis["pushes"] for axis in self.device.limits.values())
+
+    def close(self) -> None:
+        self.device.stop()
+
+    def taken_rows(self) -> list[np.ndarray]:
+        """(n, 6) of each stroke since the last time, of which none is being made."""
+        rows = [np.array(stroke) for stroke in self._rows if len(stroke) > 1]
+        self._rows.clear()
+        return rows
+
+    def _take(self, frame) -> None:
+        self.state, self.strokes, self.in_stroke = frame.state, frame.strokes, frame.in_stroke
+        if len(frame):
+            self.pose, self.push = frame.tool, frame.tool_forces.mean(axis=0).reshape(2, 3)
+        self.untold = frame.untold
+        self.force = float(np.linalg.norm(frame.force))
+        self._collect(frame)
+        health = self.device.health()["problem"] if self.session.running else None
+        cause = frame.cause if frame.state not in ("ready", "ramp", "active") else None
+        self.why = self.session.journal_problem or frame.problem or health or cause or ""
+
+    def _collect(self, frame) -> None:
+        """What a stroke is for a journal: from where the tool stood before the first move that takes something."""
+        for start, end, cutting, missed in zip(
+            frame.starts.tolist(), frame.poses.tolist(), frame.cutting, frame.missed, strict=True
+        ):
+            if missed:
+                continue
+            if cutting and not (self._open and self._rows and self._rows[-1][-1] == start):
+                self._rows.append([start])
+            self._open = bool(cutting)
+            if cutting and end != start:
+                self._rows[-1].append(end)

@@ -1,0 +1,212 @@
+"""The session of a device with a live sculpt: it cuts in the device's thread, and the owner of the timer shows thirty
+times a second what has changed.
+
+A stroke of the hand is what the pointer's are: a state with a token, an undo step, packed when the hand rests. The
+native session has snapshots of its strokes, too, so undo and redo go through it; where it cannot go (the state is older
+than the session, a stroke has begun meanwhile), it is ended and another is begun with that state, the tool staying
+where it is. Nothing modal runs: Blender makes its autosaves meanwhile.
+"""
+
+import time
+from datetime import datetime
+from pathlib import Path
+
+import bpy
+
+from ..common import tool_solid
+from ..sculpt import live_registry
+from ..sculpt.pure import journal
+from ..sculpt.undo_states import SPARE, snapshots
+from .pure import pen_run
+
+LABEL = "Pen Stroke"
+
+running = None  # a device is in one hand
+
+
+class PenSession:
+    """Of `device`, open, with the sculpt `ob`; `tool`: riffler.Tool. `options`: riffler.Session's. `recordings`: the
+    folder for a recording of what was done, or None. `ended` is called when it has ended, whoever ended it. ValueError,
+    OSError, RuntimeError where it cannot be; then nothing has changed, and the device is closed."""
+
+    def __init__(self, context, ob, device, tool, options, recordings=None, ended=lambda: None):
+        global running
+        self._begin, self._recordings, self._on_end = time.perf_counter(), recordings, ended
+        self.ended = False
+        self.problem, self.count = "", 0  # what went wrong; strokes
+        self._tool, self.mode = tool, options.get("mode", "remove")
+        self.run = pen_run.PenRun(device, tool, {**options, "undo": context.preferences.edit.undo_steps + SPARE})
+        fresh = live_registry.of(ob) is None
+        self.live = None
+        try:
+            self.live = live_registry.begin(context, ob)
+            self.live.cut_off = False
+            self._take_up()
+            self.live.chunks.show_tool(tool_solid.solid(tool.outline(0.02 * tool.diameter)))
+        except BaseException:
+            self.run.halt()
+            self.run.close()
+            if self.live is not None:
+                self.live.persistence.end_session()
+                if fresh:
+                    self.live.end()
+            raise
+        self._before = self.live.volume.volume
+        self.live.device = running = self
+        bpy.context.window_manager.riffler.sculpting = True
+
+    def _take_up(self):
+        """A native session with the volume as it is."""
+        work = self.live
+        _ = work.mesher  # has to know what is shown before it changes
+        session = self.run.prepare(work.volume, work.mask)
+        self._seen, self._strokes = work.volume.revision, 0
+        self._states, self._at = [self._seen], 0  # revisions, as the session's own undo has them
+        work.persistence.begin_session(work.object, work.token, snapshots.get(work.token).content, session)
+        self.run.start()
+
+    # ------------------------------------------------------------------ while it goes on
+    @property
+    def changed(self):
+        """mm³ removed or put on since it began, but for what was taken back."""
+        return abs(self._before - self.live.volume.volume)
+
+    @property
+    def diameter(self):
+        return self._tool.diameter
+
+    @property
+    def seconds(self):
+        return time.perf_counter() - self._begin
+
+    def look(self):
+        """Shows what was cut since the last look. False where it has ended."""
+        if self.ended:
+            return False
+        work = self.live
+        if work.object is None or not work.awake:
+            work.end()
+            return False
+        if not self.run.running:
+            self._take_up()
+        over = self.run.over
+        self.run.look()
+        self._follow()
+        work.chunks.place(work.object.matrix_world)
+        if self.run.pose is not None:
+            work.chunks.place_tool(self.run.pose)
+        if over:
+            self.finish()
+        return not over
+
+    def _follow(self):
+        """The volume has gone on; a stroke may have ended."""
+        work, run = self.live, self.run
+        if work.volume.revision != self._seen:
+            self._seen = work.volume.revision
+            if not work.in_stroke:
+                work.begin_device_stroke()
+            work.show()
+        if run.in_stroke or run.strokes == self._strokes:
+            return
+        made, self._strokes = run.strokes - self._strokes, run.strokes
+        work.persistence.made(made)
+        for rows in run.taken_rows():
+            work.took(self._tool.to_dict(), rows, self.mode)
+        if run.untold:
+            self.problem = "Blender was busy for seconds: strokes may be missing among the cuts"
+        if work.finish_stroke(bpy.context, LABEL):
+            self.count += made
+            self._at += 1
+            self._states[self._at :] = [self._seen]
+
+    # ------------------------------------------------------------------ undo
+    def before_undo(self):
+        """The stroke that is being made ends here."""
+        if self.look() and self.run.in_stroke:
+            self._halt()
+
+    def go(self, content):
+        """The volume is `content`'s again, or False: then it is not the session's any more."""
+        wanted = content.volume.revision
+        if self.run.running and wanted in self._states:
+            to = self._states.index(wanted)
+            step = self.run.session.redo if to > self._at else self.run.session.undo
+            try:
+                while self.live.volume.revision != wanted and step():
+                    pass
+            except RuntimeError:  # a stroke has begun meanwhile
+                pass
+            if self.live.volume.revision == wanted:
+                self._at, self._seen = to, wanted
+                return True
+        self.run.halt()
+        self._end_journal()
+        return False
+
+    # ------------------------------------------------------------------ the end
+    def _halt(self):
+        self.problem = self.run.halt() or self.problem
+        try:
+            self._follow()
+        finally:
+            self._end_journal()
+
+    def _end_journal(self):
+        folder = self.live.persistence.end_session()
+        if self._recordings is None or folder is None:
+            return
+        try:
+            journal.write_recording(folder, self._recording(), {"sculpt": self.live.name})
+        except journal.PROBLEMS as error:
+            self.problem = f"no recording was written: {error}"
+
+    def _recording(self):
+        path = Path(self._recordings) / pen_run.journal_name(self.live.name, datetime.now())
+        k, first = 2, path
+        while path.exists():
+            path, k = first.with_stem(f"{first.stem} {k}"), k + 1
+        return path
+
+    def finish(self):
+        """Ends it, once: the stroke that is being made is the last."""
+        if self.ended:
+            return
+        self.ended = True
+        try:
+            if self.live.object is not None and self.live.awake:
+                self._halt()
+        finally:
+            self.drop()
+
+    def drop(self):
+        """Ends it, whatever has become of the sculpt; what was not looked at is nobody's."""
+        global running
+        self.ended = True
+        if self.live.device is not self:
+            return
+        self.live.device = None
+        try:
+            self.problem = self.run.halt() or self.problem
+            self._end_journal()
+        finally:
+            self.run.close()
+            self.live.chunks.hide_tool()
+            if running is self:
+                running = None
+            state = bpy.context.window_manager.riffler
+            state.sculpting, state.force, state.why = False, "", ""
+            self._on_end()
+
+    def fail(self, error):
+        """Ends it where something else has failed; what no state has yet is taken back."""
+        self.problem = str(error) or type(error).__name__
+        self.drop()
+        if self.live.object is not None and self.live.awake:
+            self.live.give_up()
+
+
+def end():
+    """Whatever session runs."""
+    if running is not None:
+        running.finish()

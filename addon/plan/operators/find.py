@@ -1,0 +1,143 @@
+"""Pencil cuts found on the part, in a thread of their own; the result is a plan and its curves."""
+
+import bpy
+import riffler
+
+from ...blender import object_surfaces, operator_parts, scene_units
+from ...blender.long_work import LongWork
+from ...common import units
+from ...common.job import TaskJob
+from ...sculpt import live_registry, sculpt_work
+from .. import fit_check, obstacles, path_curves, path_switches, plan_states, plan_store, properties, replan, timeline
+
+
+class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator):
+    """Find the valleys of the part that a ball of the cutter's diameter touches on both sides, as paths of a plan"""
+
+    bl_idname = "riffler.plan_find"
+    bl_label = "Find Pencil Cuts"
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Finding pencil cuts"
+    cancelled = "Search cancelled: nothing has changed"
+
+    tool: bpy.props.StringProperty(
+        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the plan's tool of the scene"
+    )
+    replace: bpy.props.StringProperty(
+        name="Replace",
+        options={"SKIP_SAVE"},
+        description="Name of a plan whose paths are found anew on its own part; its orientations go. Empty: a new plan",
+    )
+
+    @classmethod
+    def description(cls, context, properties):
+        if not properties.replace:
+            return cls.__doc__
+        return f"Replace the paths of {properties.replace} and their orientations by what is found on its part now"
+
+    @classmethod
+    def poll(cls, context):
+        if not operator_parts.object_mode(cls, context):
+            return False
+        mine, own = context.scene.riffler.plan.part, obstacles.part_of(context.scene, plan_store.active(context))
+        why = object_surfaces.unfit(mine, context.scene)
+        if why and object_surfaces.unfit(own, context.scene):  # a plan's own part is enough to find its paths again
+            return operator_parts.deny(cls, why)
+        return not operator_parts.busy(cls, context)
+
+    def invoke(self, context, event):
+        """A person is asked first; a script has said what it wants."""
+        if asked := fit_check.size_question(context.scene):
+            return operator_parts.fail(
+                self, ValueError(f"{asked} Choose it in the panel Part and Fixtures, also if it is right")
+            )
+        return super().invoke(context, event)
+
+    def begin(self, context):
+        settings = context.scene.riffler.plan
+        if self.replace and not plan_store.is_plan(context.scene.objects.get(self.replace)):
+            raise ValueError(f"there is no plan {self.replace!r} in this scene: leave Replace empty for a new one")
+        self._tool = riffler.Tool.from_dict(sculpt_work.tool_of_text(self.tool) if self.tool else settings.tool_dict())
+        part = self._own_part(context) or settings.part
+        live_registry.end_all()  # the mesh of a sculpt that is being worked at is not up to date
+        mesh = object_surfaces.in_world(context, part)
+        self._part, self._mm = part.name, scene_units.mm_per_unit(context.scene)
+        self._made_on = riffler.plan.part_of(mesh, self._part)
+        self._tolerance = units.clean(self.tolerance)
+        task = riffler.tasks.pencil(
+            mesh,
+            self._tool,
+            tolerance=self._tolerance,
+            minimum_length=units.clean(self.minimum_length),
+            passes=self.passes,
+            stepover=units.clean(self.stepover) or None,
+        )
+        return TaskJob(task)
+
+    def _own_part(self, context):
+        """That of the plan that is to be replaced, if it is still there."""
+        own = context.scene.objects[self.replace].riffler.plan.part if self.replace else None
+        return None if object_surfaces.unfit(own, context.scene) else own
+
+    def lost(self, context):
+        if context.scene.objects.get(self._part) is None:
+            return f"Search cancelled: {self._part} was removed or renamed meanwhile"
+        if self.replace and not plan_store.is_plan(context.scene.objects.get(self.replace)):
+            return f"Search cancelled: {self.replace} was removed or renamed meanwhile"
+        return ""
+
+    def finish(self, context, job):
+        paths = list(job.result)
+        if not paths:
+            raise ValueError(f"{self._part}: no pencil cut, as {job.result.reason}")
+        plan = riffler.plan.Plan(paths, self._tool, part=self._made_on, tolerance=self._tolerance)
+        if self.replace:
+            ob = context.scene.objects[self.replace]
+            ob.riffler.plan.findings.clear()  # on the paths of before
+            plan_store.write(ob, plan)
+        else:
+            ob = plan_store.new(context, plan)
+        ob.riffler.plan.part = context.scene.objects[self._part]
+        left = path_curves.kept_note(path_curves.show(ob, plan, self._mm))
+        total = units.trim(sum(path.length for path in paths), 1)
+        found = f"{ob.name}: {units.counted(len(paths), 'path')}, {total} mm"
+        problems = []
+        if timeline.pair(ob) is not None:
+            replan.sync(context.scene, ob)
+            problems = plan_states.state(ob).problems
+        operator_parts.tell_all(self, f"{found}. {left}" if left else found, problems)
+        return {"FINISHED"}
+
+    def draw(self, context):
+        operator_parts.draw_fields(self, properties.FindSettings.__annotations__)
+
+
+class RIFFLER_OT_plan_show(bpy.types.Operator):
+    """Draw the plan's paths anew; edits to their curves are lost. Copies stay, and curves that were renamed or are in
+    use"""
+
+    bl_idname = "riffler.plan_show"
+    bl_label = "Redraw Paths"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        if plan_store.active(context) is None:
+            return operator_parts.deny(cls, "Select a plan, or one of its paths")
+        return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
+
+    def execute(self, context):
+        ob = plan_store.active(context)
+        try:
+            plan = plan_store.plan(ob)
+        except ValueError as error:
+            return operator_parts.fail(self, error)
+        context.view_layer.objects.active = ob  # the curve that may be active goes
+        left = path_curves.show(ob, plan, scene_units.mm_per_unit(context.scene))
+        path_switches.show(ob)
+        if left:
+            self.report({"INFO"}, path_curves.kept_note(left))
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_plan_find, RIFFLER_OT_plan_show)

@@ -1,0 +1,284 @@
+"""Key orientations as keyframes: a plan on the timeline, keys set, deleted and jumped to, collisions marked."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, IntProperty
+
+from ...blender import operator_parts, scene_units
+from ...common import quaternions, units
+from ...common.job import AfterJob
+from .. import (
+    collision_marks,
+    fit_check,
+    obstacles,
+    path_curves,
+    path_switches,
+    plan_states,
+    plan_store,
+    replan,
+    timeline,
+)
+from ..current_pose import plan_object
+from ..pure import key_orientations
+from .plan_work import TimelineWork, plan_poll, tell, timeline_poll
+
+
+class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
+    """Lay the plan's paths out on the timeline, with a tool that moves along them; its keyframes are the plan's key
+    orientations from then on"""
+
+    bl_idname = "riffler.plan_to_timeline"
+    bl_label = "Plan to Timeline"
+    bl_options = {"REGISTER", "UNDO"}
+
+    frames_per_mm: FloatProperty(
+        name="Frames per mm",
+        default=0.0,
+        min=0.0,
+        max=1e4,
+        precision=3,
+        description="How slowly the tool moves; 0: as fast as the feed and the scene's frame rate say",
+    )
+    first: IntProperty(name="First Frame", default=1, min=0, max=1_000_000, description="Where the first path begins")
+
+    @classmethod
+    def poll(cls, context):
+        return plan_poll(cls, context)
+
+    def execute(self, context):
+        try:
+            replan.flush()
+            ob = plan_object(context)
+            plan = plan_store.plan(ob)
+            if not plan.paths:
+                raise ValueError("The plan has no paths: find some first")
+            rate = self.frames_per_mm or _rate(context.scene)
+            plan, known, quats = self._divided(ob, plan, rate)
+            lay_out(context, ob, plan, (rate, self.first), known, quats)
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        return tell(self, ob)
+
+    def _divided(self, ob, plan, rate):
+        """The plan with a point at each frame; and where it is on the timeline so already, what that says."""
+        paths = [key_orientations.divided(p, rate) for p in plan.paths]
+        cl = list(plan.cl) or [None] * len(paths)
+        cl = [rows if path.interpolation != "linear" or path is old else None
+              for rows, path, old in zip(cl, paths, plan.paths, strict=True)]  # fmt: skip
+        plan = replace(plan, paths=paths, cl=cl)
+        found = timeline.pair(ob)
+        if found is None:
+            return plan, None, None
+        tool = found[0]
+        same = (tool[timeline.RATE], tool[timeline.FIRST], tool[timeline.PATHS])
+        if same != (rate, self.first, replan.geometry(plan)):
+            return plan, None, None
+        frames, quats = timeline.read_keys(tool)
+        known = key_orientations.read(key_orientations.Layout(paths, rate, self.first), frames, quats)
+        return plan, known, dict(zip(map(float, frames), quats, strict=True))
+
+
+def lay_out(context, ob, plan, times, known=None, quats=None):
+    """Makes `plan` the object's, and puts it on the timeline; `times`: frames per mm, and the first frame. ValueError,
+    with nothing changed, where it is too long."""
+    rate, first = times
+    layout = key_orientations.Layout(plan.paths, rate, first)
+    if layout.last > 1_000_000:
+        raise ValueError(f"The way is {layout.last} frames long: take fewer frames per mm")
+    tool, _ = timeline.make(context, ob, plan.tool)
+    tool[timeline.RATE], tool[timeline.FIRST] = rate, first
+    tool[timeline.PATHS] = replan.geometry(plan)
+    timeline.write_keys(tool, *key_orientations.written(layout, [p.keys for p in plan.paths], known, quats))
+    plan_store.write(ob, plan)
+    if path_curves.of(ob):  # as many points as the paths have now
+        path_curves.show(ob, plan, scene_units.mm_per_unit(context.scene))
+        path_switches.show(ob)
+    timeline.show_range(context.scene, first, layout.last)
+    replan.sync(context.scene, ob)
+
+
+def _rate(scene):
+    fps = scene.render.fps / scene.render.fps_base
+    return key_orientations.frames_per_mm(scene_units.clean(scene.riffler.plan.feed), fps)
+
+
+class RIFFLER_OT_plan_key(bpy.types.Operator):
+    """Make the tool's orientation a key of the path at this frame. Turn the tool with R before, or give an axis"""
+
+    bl_idname = "riffler.plan_key"
+    bl_label = "Set Key Orientation"
+    bl_options = {"REGISTER", "UNDO"}
+
+    axis: FloatVectorProperty(
+        name="Axis",
+        subtype="XYZ",
+        description="From the tool's tip to the spindle, in the world; 0, 0, 0: as the tool stands now",
+    )
+    path: IntProperty(name="Path", default=0, min=0, description="Number of the path; 0: that of the frame")
+    point: IntProperty(name="Point", default=0, min=0, description="Of the path, from 0; where a path is given")
+
+    @classmethod
+    def poll(cls, context):
+        return timeline_poll(cls, context)
+
+    def execute(self, context):
+        try:
+            ob = plan_object(context)
+            frame = self._frame(context, ob)
+            axis = np.array(self.axis, float)
+            if not np.isfinite(axis).all():
+                raise ValueError("axis must be finite")
+            quat = None if np.any(axis) else timeline.stands(context.scene, *timeline.pair(ob))
+            set_key(context.scene, ob, frame, quat, axis)
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        return tell(self, ob)
+
+    def _frame(self, context, ob):
+        if not self.path:
+            return context.scene.frame_current_final
+        return frame_of(replan.layout_of(ob, plan_store.plan(ob)), self.path, self.point)
+
+
+def frame_of(layout, path, point):
+    """Of a path (from 1) and its point (from 0). ValueError."""
+    if path > len(layout.tracks):
+        raise ValueError(f"path {path}: the plan has {len(layout.tracks)}")
+    track = layout.tracks[path - 1]
+    if point >= track.points:
+        raise ValueError(f"point {point}: path {path} has {track.points}, from 0")
+    return track.frame_of(point)
+
+
+def ranges(layout):
+    shown = ", ".join(f"{t.first} and {t.last}" for t in layout.tracks[:3])
+    return shown + (" …" if len(layout.tracks) > 3 else "")
+
+
+def set_key(scene, ob, frame, quat=None, axis=None):
+    """A keyframe at `frame`, or on the one that its point has already, and all that follows from it. `quat` (4,), or
+    else an axis (3,), taken with as little twist as can be, and kept in the plan as it is: keyframes are single
+    precision. ValueError, with nothing changed, where the path takes no such key."""
+    tool, _ = timeline.pair(ob)
+    plan = plan_store.plan(ob)
+    if not replan.fits(ob, plan):
+        raise ValueError(replan.OTHER_PATHS)
+    frames, quats = timeline.read_keys(tool)
+    layout = replan.layout_of(ob, plan)
+    if layout.at(frame) is None:
+        raise ValueError(f"Frame {frame:g} is on no path: go to one between {ranges(layout)}")
+    reading = key_orientations.read(layout, frames, quats)
+    path, index, _ = layout.place(frame)
+    frame = reading.frames.get((path, index), frame)
+    if quat is None:
+        before = quats[max(0, int(np.searchsorted(frames, frame)) - 1)] if len(frames) else None
+        axis = quaternions.unit(np.asarray(axis, float))
+        quat = quaternions.transported(axis[None], before)[0]
+    else:
+        axis = quaternions.axes_of(np.asarray(quat, float))
+    wanted = key_orientations.change(plan.paths[path].keys, {**reading.keys[path], index: axis}).keys
+    # What the path refuses comes before the change.
+    turned = plan.paths[path].oriented({**wanted, index: axis}, plan.paths[path].interpolation or "smooth")
+    others = np.abs(frames - frame) > 1e-4
+    frames, quats = np.append(frames[others], frame), np.vstack([quats[others], quat])
+    order = np.argsort(frames)
+    timeline.write_keys(tool, frames[order], quaternions.aligned(quats[order]))
+    paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
+    paths[path], cl[path] = turned, None
+    ob.riffler.plan.forget({path})
+    plan_store.write(ob, replace(plan, paths=paths, cl=cl))
+    replan.sync(scene, ob)
+
+
+class RIFFLER_OT_plan_key_delete(bpy.types.Operator):
+    """Delete the path's key at this frame"""
+
+    bl_idname = "riffler.plan_key_delete"
+    bl_label = "Delete Key Orientation"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return timeline_poll(cls, context)
+
+    def execute(self, context):
+        ob, frame = plan_object(context), context.scene.frame_current_final
+        tool, _ = timeline.pair(ob)
+        frames, quats = timeline.read_keys(tool)
+        here = np.abs(frames - frame) < 0.5
+        if not here.any():
+            return operator_parts.fail(self, ValueError(f"There is no key at frame {frame:g}: jump to one first"))
+        here = np.arange(len(frames)) == np.abs(frames - frame).argmin()
+        timeline.write_keys(tool, frames[~here], quaternions.aligned(quats[~here]))
+        replan.sync(context.scene, ob)
+        return tell(self, ob)
+
+
+class RIFFLER_OT_plan_key_jump(bpy.types.Operator):
+    """Go to the next key orientation, or to the one before"""
+
+    bl_idname = "riffler.plan_key_jump"
+    bl_label = "Jump to Key Orientation"
+    bl_options = {"REGISTER"}  # going to a frame is no step of undo in Blender
+
+    back: BoolProperty(name="Back", description="To the one before")
+
+    @classmethod
+    def poll(cls, context):
+        return timeline_poll(cls, context)
+
+    def execute(self, context):
+        frames, _ = timeline.read_keys(timeline.pair(plan_object(context))[0])
+        now = context.scene.frame_current_final
+        there = frames[frames < now - 1e-3] if self.back else frames[frames > now + 1e-3]
+        if not len(there):
+            return operator_parts.fail(
+                self, ValueError(f"There is no key {'before' if self.back else 'after'} this frame")
+            )
+        frame = float(there[-1] if self.back else there[0])
+        timeline.go_to(context.scene, frame)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
+    """Mark the frames at which cutter, shank or holder enter the part or a fixture; from then on as keys change"""
+
+    bl_idname = "riffler.plan_check"
+    bl_label = "Mark Collisions"
+    doing = "Looking for collisions"
+    cancelled = "Stopped looking for collisions"
+
+    def begin(self, context):
+        ob, plan = self.take(context)
+        if not replan.fits(ob, plan):
+            raise ValueError(replan.OTHER_PATHS)
+        if not plan_states.state(ob).motions:
+            raise ValueError("; ".join(plan_states.state(ob).problems) or "Nothing plays: use Plan to Timeline")
+        taken = obstacles.take(context, ob)
+        self._notes = fit_check.notes(context, plan, taken)
+        return AfterJob(taken, self._look, in_background=False)
+
+    def _look(self, near):
+        self._near, self._known = near, {}
+        return collision_marks.clearance_job(self.ob, near, self._known)
+
+    def finish(self, context, job):
+        now = plan_states.state(self.ob)
+        now.near, now.clearances, now.job = self._near, self._known, None
+        found = collision_marks.show(context.scene, self.ob, job)
+        done = f"No collision at {units.counted(job.computed, 'pose')}"
+        if found:
+            done = f"The tool collides at {units.counted(sum(b - a + 1 for a, b in found), 'frame')}, marked below"
+        operator_parts.tell_all(self, done, self._notes, bool(found))
+        return {"FINISHED"}
+
+
+CLASSES = (
+    RIFFLER_OT_plan_to_timeline,
+    RIFFLER_OT_plan_key,
+    RIFFLER_OT_plan_key_delete,
+    RIFFLER_OT_plan_key_jump,
+    RIFFLER_OT_plan_check,
+)

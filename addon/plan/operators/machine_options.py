@@ -1,0 +1,94 @@
+"""What is given of a machine's options, and what is not."""
+
+import bpy
+from bpy.props import EnumProperty, StringProperty
+
+from ...blender import operator_parts, scene_units
+from ..machines import MACHINES
+from ..pure import machine_fields
+
+HOW = (
+    ("GIVE", "Value Shown", "Give the value that the field shows"),
+    ("CURSOR", "3D Cursor", "Give the place of the 3D cursor, in mm of the scene"),
+    ("UNSET", "Not Given", "What counts is what the machine has where nothing is given"),
+)
+
+
+class OfMachine:
+    """Mixin: of which machine; `option` is of a subclass."""
+
+    machine: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="Whose option it is")
+
+    def fact(self, context):
+        """ValueError that lists the options where there is none of that name."""
+        listed = {fact["name"]: fact for fact in machine_fields.facts(self.machine)}
+        if self.option not in listed:
+            raise ValueError(f"{self.machine} has no option {self.option!r}: it has {', '.join(listed)}")
+        return listed[self.option]
+
+    def give(self, context, value=None):
+        """By default the value that the field shows: from then on it counts as given."""
+        group, key = context.scene.riffler.machines.of(self.machine), machine_fields.identifier(self.option)
+        value = getattr(group, key) if value is None else value
+        setattr(group, key, value if isinstance(value, (str, bool, float)) else tuple(value))
+
+
+class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
+    """Give this option of the machine, or take it back"""
+
+    bl_idname = "riffler.machine_option"
+    bl_label = "Machine Option"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    option: StringProperty(name="Option", description="Its name")
+    how: EnumProperty(name="How", items=HOW, default="GIVE", description="What becomes of it")
+
+    @classmethod
+    def description(cls, context, properties):
+        return next(what for how, _, what in HOW if how == properties.how)
+
+    def execute(self, context):
+        try:
+            fact = self.fact(context)
+            if self.how == "CURSOR" and fact["count"] != 3:
+                raise ValueError(f"{self.option} is no place: give a number")
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        if self.how == "UNSET":
+            context.scene.riffler.machines.of(self.machine).property_unset(machine_fields.identifier(self.option))
+        elif self.how == "CURSOR":
+            self.give(context, [x * scene_units.mm_per_unit(context.scene) for x in context.scene.cursor.location])
+        else:
+            self.give(context)
+        return {"FINISHED"}
+
+
+_entries = []  # Blender keeps no reference to the texts of an enumeration that a function makes
+
+
+def _others(self, context):
+    """The options that are not given."""
+    given = {} if context is None else context.scene.riffler.machines.given(self.machine)
+    _entries[:] = [
+        (fact["name"], machine_fields.label(fact), machine_fields.about(fact), k)
+        for k, fact in enumerate(machine_fields.facts(self.machine))
+        if fact["name"] not in given
+    ]
+    return _entries
+
+
+class RIFFLER_OT_machine_option_add(OfMachine, bpy.types.Operator):
+    """Give one more of the machine's options: limits and rates of its axes, how its code is written"""
+
+    bl_idname = "riffler.machine_option_add"
+    bl_label = "Give an Option"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    option: EnumProperty(name="Option", items=_others, description="Its name")
+
+    def execute(self, context):
+        self.give(context)
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_machine_option, RIFFLER_OT_machine_option_add)

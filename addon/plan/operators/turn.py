@@ -1,0 +1,322 @@
+"""Turning the tool at the point of the path that the frame is at: by dials and handles in the view, by the map of free
+orientations, by numbers; and going to a point that is pointed at."""
+
+import math
+
+import bpy
+import numpy as np
+import riffler
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+from ...blender import operator_parts, scene_units
+from ...common import quaternions
+from ...common.job import AfterJob, DoneJob, TaskJob
+from ...sculpt import force_view
+from .. import (
+    current_pose,
+    obstacles,
+    orientation_map_view,
+    orientation_probe,
+    path_view,
+    plan_states,
+    plan_store,
+    replan,
+    timeline,
+)
+from ..current_pose import plan_object
+from ..pure import tool_rotation
+from . import keys
+from .plan_work import PlanWork, tell, timeline_poll
+
+MAP = "MAP"
+HANDLES = (
+    (tool_rotation.INCLINATION, "Inclination", "Forward and backward, about the path's y"),
+    (tool_rotation.TILT, "Tilt", "To the left and to the right"),
+    (tool_rotation.FREE, "Free", "The tool's end goes where the pointer goes"),
+    (MAP, "Map", "To the cell of the map of free orientations that is pointed at"),
+)
+BUDGET = 2000.0  # µs for the force at a move of the pointer
+_held = None  # the operator that turns the tool in a window
+HELP = "Ctrl: steps of 5°    Shift: slowly    Numbers: degrees    Esc: as it was"
+
+
+def _spot(context, ob, path=0, point=0):
+    """The spot at the scene's frame, or of a path (from 1) and a point, and its frame. ValueError."""
+    plan = plan_store.plan(ob)
+    if not replan.fits(ob, plan):
+        raise ValueError(replan.OTHER_PATHS)
+    layout = replan.layout_of(ob, plan)
+    frame = keys.frame_of(layout, path, point) if path else context.scene.frame_current_final
+    found = current_pose.spot(context.scene, ob, frame)
+    if found is None:
+        raise ValueError(f"Frame {frame:g} is on no path: go to one between {keys.ranges(layout)}")
+    return found, frame
+
+
+class RIFFLER_OT_plan_turn(bpy.types.Operator):
+    """Turn the tool at this point of its path, and make that a key. In the view, drag a dial or the tool's end"""
+
+    bl_idname = "riffler.plan_turn"
+    bl_label = "Turn Tool"
+    bl_options = {"REGISTER", "UNDO", "BLOCKING"}
+
+    inclination: FloatProperty(
+        name="Inclination",
+        subtype="ANGLE",
+        min=-math.pi,
+        max=math.pi,
+        description="How far the tool leans forward along the path",
+    )
+    tilt: FloatProperty(
+        name="Tilt",
+        subtype="ANGLE",
+        min=-math.pi / 2,
+        max=math.pi / 2,
+        description="How far the tool leans to the left of the path",
+    )
+    relative: BoolProperty(name="Relative", description="The angles are added to those the tool has")
+    path: IntProperty(name="Path", min=0, options={"SKIP_SAVE"}, description="Number of the path; 0: that of the frame")
+    point: IntProperty(name="Point", min=0, options={"SKIP_SAVE"}, description="Of the path, from 0; with a path")
+    handle: EnumProperty(name="Handle", items=HANDLES, default=tool_rotation.FREE, options={"HIDDEN", "SKIP_SAVE"})
+
+    _turn = None
+
+    @classmethod
+    def poll(cls, context):
+        return timeline_poll(cls, context)
+
+    def draw(self, context):
+        operator_parts.draw_fields(self, ("inclination", "tilt", "relative"))
+
+    def execute(self, context):
+        try:
+            ob = plan_object(context)
+            spot, frame = _spot(context, ob, self.path, self.point)
+            angles = tool_rotation.cleaned(self.inclination), tool_rotation.cleaned(self.tilt)
+            if self.relative:
+                angles = tool_rotation.within(*np.add(spot.line.lean(spot.index, spot.axis), angles))
+            keys.set_key(context.scene, ob, frame, axis=spot.line.axis(spot.index, *angles))
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        return self._say(context, ob, frame, angles)
+
+    def _say(self, context, ob, frame, angles):
+        """What came of it; how the tool stands only where somebody has looked around before."""
+        near = obstacles.known(ob)
+        if near is None or plan_states.state(ob).problems:
+            return tell(self, ob)
+        spot = current_pose.spot(context.scene, ob, frame)
+        state = orientation_probe.state(context.scene, near, spot, spot.axis)
+        self.report({"INFO" if state.free else "WARNING"}, f"{tool_rotation.said(*angles)}: {state}")
+        return {"FINISHED"}
+
+    # ------------------------------------------------------------------ in a window
+    def invoke(self, context, event):
+        global _held
+        at = event.mouse_region_x, event.mouse_region_y
+        if self.handle == MAP:
+            angles = orientation_map_view.angles_at(context, at)
+            if angles is None:
+                return {"PASS_THROUGH"}
+            self.inclination, self.tilt, self.relative = *angles, False
+            return self.execute(context)
+        if bpy.app.background or context.region_data is None:
+            return self.execute(context)
+        try:
+            ob = plan_object(context)
+            spot, _ = _spot(context, ob)
+            view = current_pose.sight(context, context.region, context.region_data)
+            radius = current_pose.reach(context, view, spot.centre)
+            self._turn = tool_rotation.Turn(
+                spot.line, spot.index, self._axis(context, spot), self.handle, view.ray(*at), radius
+            )
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        self._ob, self._path, self._index, self._area = ob.name, spot.path, spot.index, context.area
+        tool = spot.plan.tool
+        mm = scene_units.mm_per_unit(context.scene)
+        self._shown = force_view.begin(
+            context.scene.riffler.sculpt.limit, tool.diameter / 2, np.diag([1 / mm, 1 / mm, 1 / mm, 1.0])
+        )
+        try:
+            self._follow(context)
+        except operator_parts.ERRORS as error:
+            self.cancel(context)
+            return operator_parts.fail(self, error)
+        context.window_manager.modal_handler_add(self)
+        _held = self
+        return {"RUNNING_MODAL"}
+
+    def _axis(self, context, spot):
+        """As the tool is seen: somebody may have turned it by R."""
+        tool, ghost = timeline.pair(spot.ob)
+        if tool.constraints.get(timeline.TURN) and tool.constraints[timeline.TURN].influence == 0:
+            return quaternions.axes_of(timeline.stands(context.scene, tool, ghost))
+        return spot.axis
+
+    def modal(self, context, event):
+        if event.type in ("ESC", "RIGHTMOUSE") and event.value == "PRESS":
+            self.cancel(context)
+            return {"CANCELLED"}
+        if event.type in ("RET", "NUMPAD_ENTER") or (event.type == "LEFTMOUSE" and event.value == "RELEASE"):
+            return self._done(context)
+        try:
+            if event.type == "MOUSEMOVE":
+                view = current_pose.sight(context, context.region, context.region_data)
+                ray = view.ray(event.mouse_region_x, event.mouse_region_y)
+                self._turn.move(ray, slow=event.shift, snap=event.ctrl)
+                self._follow(context)
+            elif event.value == "PRESS" and self._turn.type(event.type, event.unicode or event.ascii):
+                self._follow(context)
+        except operator_parts.ERRORS as error:
+            self.cancel(context)
+            return operator_parts.fail(self, error)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """The tool is as it was; Blender calls it too, when another file is opened."""
+        self._end(context)
+        ob = bpy.data.objects.get(self._ob)
+        if ob is not None and timeline.pair(ob) is not None:
+            current_pose.release(context.scene, ob)
+
+    def _done(self, context):
+        angles, turned = self._turn.angles, self._turn.turned
+        self.cancel(context)
+        if not turned:
+            return {"CANCELLED"}
+        self.inclination, self.tilt = angles
+        self.relative = False
+        return self.execute(context)
+
+    def _end(self, context):
+        global _held
+        _held = current_pose.held = None
+        force_view.end()
+        # The context is another one where the add-on is disabled, and the area may be gone.
+        for window in context.window_manager.windows:
+            for area in window.screen.areas:
+                if area == self._area:
+                    area.header_text_set(None)
+                    area.tag_redraw()
+
+    def _follow(self, context):
+        """Shows the tool as it is turned, what pushes it, and how it stands."""
+        ob = bpy.data.objects.get(self._ob)
+        spot = current_pose.spot(context.scene, ob)
+        if spot is None or (spot.path, spot.index) != (self._path, self._index):
+            raise ValueError("The plan or the frame has changed: the tool is as it was")
+        current_pose.held = axis = self._turn.axis
+        said = tool_rotation.said(*self._turn.angles)
+        try:
+            pose = tool_rotation.stand(spot.line, spot.index, axis, spot.plan.tool)
+        except ValueError as error:  # a bull-nosed cutter does not reach a valley at any angle
+            context.area.header_text_set(f"{said}: {error}    {HELP}")
+            return
+        current_pose.hand(context.scene, spot, pose)
+        state = self._look(context, spot, pose)
+        typed = f"  [{self._turn.typed}°]" if self._turn.typed else ""
+        context.area.header_text_set(f"{said}{typed}: {state}    {HELP}")
+        context.area.tag_redraw()
+
+    def _look(self, context, spot, pose):
+        near = obstacles.known(spot.ob)
+        if near is None:
+            try:
+                near = obstacles.ask(context, spot.ob)
+            except ValueError as error:
+                return str(error)
+        if near is None:
+            return "looking at the part …"
+        contact = near.collider.query(spot.plan.tool, pose, budget_us=BUDGET)
+        self._shown.pose, self._shown.force, self._shown.torque = pose, contact.force, contact.torque
+        clearance = scene_units.clean(context.scene.riffler.plan.clearance)
+        return near.state(spot.plan.tool, pose, spot.plan.tolerance or 0.01, clearance)
+
+
+class PointsAt:
+    """Mixin of operators for a point of a path: one that is given, or the one under the pointer."""
+
+    path: IntProperty(name="Path", default=0, min=0, description="Number of the path; 0: that of the frame")
+    point: IntProperty(name="Point", default=0, min=0, description="Of the path, from 0; where a path is given")
+
+    @classmethod
+    def poll(cls, context):
+        return timeline_poll(cls, context)
+
+    def invoke(self, context, event):
+        return self.execute(context) if self._pointed(context, event) else {"PASS_THROUGH"}
+
+    def _pointed(self, context, event):
+        """Takes what is under the pointer; False where that is nothing."""
+        if context.region_data is None:
+            return True
+        found = path_view.under(context, (event.mouse_region_x, event.mouse_region_y))
+        if found is not None:
+            self.path, self.point = found.path + 1, found.index
+        return found is not None
+
+    def _go(self, context):
+        spot, frame = _spot(context, plan_object(context), self.path, self.point)
+        timeline.go_to(context.scene, frame)
+        return spot, frame
+
+
+class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
+    """Go to the frame at which the tool is at this point of its path"""
+
+    bl_idname = "riffler.plan_point"
+    bl_label = "Go to Point of Path"
+    bl_options = {"REGISTER"}  # going to a frame is no step of undo in Blender
+
+    def execute(self, context):
+        try:
+            self._go(context)
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
+    """Set a key at this point of the path: the free orientation that leans least, and none where none is free. Only
+    where there is no part to look at, the one it has"""
+
+    bl_idname = "riffler.plan_point_key"
+    bl_label = "Set Free Key at Point"
+    doing = "Looking for a free orientation"
+    cancelled = "Stopped looking for a free orientation: no key was set"
+
+    def invoke(self, context, event):
+        return PlanWork.invoke(self, context, event) if self._pointed(context, event) else {"PASS_THROUGH"}
+
+    def begin(self, context):
+        ob, _ = self.take(context)
+        self._spot, self._frame = _spot(context, ob, self.path, self.point)
+        if obstacles.part_of(context.scene, ob) is None:
+            return DoneJob(None)
+        scene, start = context.scene.name, riffler.tasks.free_orientations
+        return AfterJob(
+            obstacles.take(context, ob),
+            lambda near: TaskJob(orientation_probe.free_orientations(bpy.data.scenes[scene], near, self._spot, start)),
+        )
+
+    def finish(self, context, job):
+        axis, said = self._spot.axis, "There is no part: the orientation is the one it was"
+        if job.result is not None:
+            axis, said = job.result.suggestion, ""
+            if axis is None:
+                raise ValueError(f"No orientation is free here: {job.result.reason}: no key was set")
+        keys.set_key(context.scene, self.ob, self._frame, axis=axis)
+        self._go(context)
+        lean = self._spot.line.lean(self._spot.index, axis)
+        self.report({"WARNING" if said else "INFO"}, said or tool_rotation.said(*lean))
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_plan_turn, RIFFLER_OT_plan_point, RIFFLER_OT_plan_point_key)
+
+
+def detach():
+    """The tool is as it was: Blender drops the operator that turns it without a word."""
+    if _held is not None:
+        _held.cancel(bpy.context)

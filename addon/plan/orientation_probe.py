@@ -1,0 +1,187 @@
+"""What there is around the plan's tool where it stands: whether it is free, and the map of free orientations.
+
+Whoever draws asks, which costs nothing; what is missing then is looked for from a timer, the map in a native task. Of a
+point that was left the old map stays, and is said to be old, until the new one is there. Maps are of places, not of
+orientations: turning the tool makes none.
+"""
+
+from dataclasses import dataclass
+
+import bpy
+import riffler
+
+from ..blender import handlers, scene_units, views
+from . import current_pose, obstacles, plan_store
+from .pure import tool_rotation
+
+CLASSES = ()
+PAUSE = 0.1  # s that the frame stands still, before a map is begun
+LOOK = 0.03  # s between two looks at a task
+
+
+@dataclass
+class Known:
+    """`text`: how the tool stands, or what is missing; `map`: a riffler FreeOrientations, `old` where it is of another
+    point."""
+
+    text: str = ""
+    free: bool = True
+    map: object = None
+    old: bool = True
+
+
+@dataclass
+class _Wanted:
+    scene: str
+    ob: str
+    spot: current_pose.Spot
+    key: tuple
+
+
+_known = Known()
+_wanted = None  # _Wanted of whoever asked last
+_shown = _begun = None  # keys of the map that is shown, and of the one in the making
+_stood = None  # what `text` is about
+_task = None
+_asked = False  # since the timer last looked
+maps = 0  # that were computed, since the add-on runs
+
+
+def ask(context, spot):
+    """Known about a turning.Spot, as far as it is by now."""
+    global _wanted, _asked, _known
+    wanted = _Wanted(context.scene.name, spot.ob.name, spot, _key(context.scene, spot.ob, spot))
+    moved = _wanted is None or _wanted.key != wanted.key
+    _wanted, _asked = wanted, _asked or moved
+    _known.old = _shown != wanted.key
+    if (_known.old or _stood != _standing(wanted)) and not bpy.app.timers.is_registered(_look):
+        bpy.app.timers.register(_look, first_interval=PAUSE)
+    return _known
+
+
+def _key(scene, ob, spot):
+    """What a map is of. An object that a spot was kept with may be gone: it is not asked."""
+    settings = scene.riffler.plan
+    return (
+        ob.name,
+        spot.path,
+        spot.index,
+        spot.centre.tobytes(),
+        str(spot.plan.tool.to_dict()),
+        spot.plan.tolerance,
+        scene_units.clean(settings.clearance),
+        obstacles.version(ob),
+    )
+
+
+def _standing(wanted):
+    return wanted.key, wanted.spot.axis.tobytes()
+
+
+def _look():
+    """A timer's."""
+    global _asked, _stood
+    scene = bpy.data.scenes.get(_wanted.scene)
+    ob = scene.objects.get(_wanted.ob) if scene is not None else None
+    if not plan_store.is_plan(ob):
+        _stop()
+        return None
+    if _asked:  # whoever scrubs waits for nothing
+        _asked = False
+        return PAUSE
+    try:
+        near = obstacles.ask(obstacles.SceneContext(scene), ob)
+        if near is None:
+            return LOOK
+        wanted = _wanted
+        wanted.key = _key(scene, ob, wanted.spot)
+        if _stood != _standing(wanted):
+            _stand(scene, near, wanted)
+        if _map(scene, near, wanted):
+            return LOOK
+    except (ValueError, OSError, RuntimeError, MemoryError) as error:
+        _missing(str(error))
+    return None
+
+
+def _stand(scene, near, wanted):
+    global _stood
+    _stood = _standing(wanted)
+    found = state(scene, near, wanted.spot, wanted.spot.axis)
+    _known.text, _known.free = str(found), found.free
+    views.redraw()
+
+
+def state(scene, near, spot, axis):
+    """plan.pure.clearance.State of the tool at a spot. ValueError where it cannot stand so."""
+    pose = tool_rotation.stand(spot.line, spot.index, axis, spot.plan.tool)
+    return near.state(
+        spot.plan.tool, pose, spot.plan.tolerance or 0.01, scene_units.clean(scene.riffler.plan.clearance)
+    )
+
+
+def free_orientations(scene, near, spot, start=riffler.plan.free_orientations):
+    """At a spot, with the plan's tolerance and the room beside shank and holder that the scene wants; `start`: may be
+    that of riffler.tasks."""
+    tool = riffler.plan.with_room(spot.plan.tool, scene_units.clean(scene.riffler.plan.clearance))
+    return start(spot.line, spot.index, tool, near.collider, tolerance=spot.plan.tolerance or 0.01)
+
+
+def _map(scene, near, wanted):
+    """True while the map is in the making."""
+    global _task, _begun, _shown, maps
+    if _shown == wanted.key:
+        if _known.old:  # for a moment nobody knew whether something had changed
+            _known.old = False
+            views.redraw()
+        return False
+    if _task is None or _begun != wanted.key:
+        _cancel()
+        _task = free_orientations(scene, near, wanted.spot, riffler.tasks.free_orientations)
+        _begun = wanted.key
+        return True
+    if not _task.done:
+        return True
+    _known.map, _known.old, _shown = _task.result(), False, _begun
+    _task, maps = None, maps + 1
+    views.redraw()
+    return False
+
+
+def _missing(text):
+    global _shown, _stood
+    _cancel()
+    _shown, _stood = _wanted.key, _standing(_wanted)  # not to be tried again before something is another
+    _known.text, _known.free, _known.map = text, False, None
+    views.redraw()
+
+
+def _cancel():
+    global _task
+    if _task is not None:
+        _task.cancel()
+    _task = None
+
+
+def _stop():
+    global _known, _wanted, _shown, _begun, _stood
+    _cancel()
+    _known, _wanted, _shown, _begun, _stood = Known(), None, None, None, None
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_):
+    _stop()
+
+
+_HANDLERS = {"load_post": _on_load}
+
+
+def attach():
+    handlers.listen(_HANDLERS)
+
+
+def detach():
+    handlers.ignore(_HANDLERS)
+    handlers.stop(_look)
+    _on_load()

@@ -1,0 +1,204 @@
+"""What a plan is made for, with what, and how; and what a plan's objects keep."""
+
+import json
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from ..blender.fields import length
+from ..blender.object_surfaces import WITH_SURFACE
+from ..common import json_object, presets
+from .machines import MACHINES
+
+SHOWN = (
+    ("CONTACTS", "Contacts", "Where the cutter touches the part, on both sides of each path", 1),
+    ("NORMALS", "Normals", "Of the part at the contacts", 2),
+    ("AXES", "Axes", "Of the tool along each path; those of keys stand out", 4),
+)
+
+
+LEAVE = (
+    ("CLEAR", "What Is Clear", "Along the tool's axis where that is clear, otherwise another way"),
+    ("UP", "Up", "Along the scene's z"),
+)
+
+
+class FindSettings:
+    """Shared by the panel's settings and the operator."""
+
+    tolerance: length(
+        "Tolerance",
+        0.01,
+        "Of the paths, in mm; a valley that is no deeper below the ball is taken for a faceted one",
+        1e-4,
+        10.0,
+    )
+    minimum_length: length("Shortest", 0.0, "Paths that are shorter are left out, in mm")
+    passes: IntProperty(
+        name="Passes",
+        default=1,
+        min=1,
+        max=100,
+        description="1: along each valley only; each one more adds a path on either side of it",
+    )
+    stepover: length("Stepover", 0.0, "Between two passes, in mm; 0: what leaves ridges of the tolerance")
+
+
+def _named(settings, context):
+    from . import replan
+
+    replan.name_paths(settings.id_data)
+
+
+class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
+    """On a scene. The tool is kept whole, so that a plan can be made anew where its file is gone."""
+
+    part: PointerProperty(
+        name="Part",
+        type=bpy.types.Object,
+        poll=lambda _, ob: ob.type in WITH_SURFACE,
+        description="The finished part, as it lies in the scene",
+    )
+    sized: StringProperty(description="Which part, in which unit, was said to have the right size")
+    fixtures: PointerProperty(
+        name="Fixtures",
+        type=bpy.types.Collection,
+        description="Vises, clamps and whatever else the tool must stay clear of",
+    )
+    tool: StringProperty(name="Tool", description="Cutter, shank and holder as JSON", default="")
+    source: StringProperty(name="From", description="The file that the tool was taken from; empty: the presets")
+    clearance: length("Clearance", 0.0, "That shank and holder keep from part and fixtures, in mm")
+    plane: length(
+        "Clearance Plane",
+        0.0,
+        "z in mm of the scene, above part, fixtures and stock, at which the tool goes from path to path; 0: 10 mm "
+        "above what is known",
+        -1e5,
+    )
+    retract: length("Retract", 0.0, "mm that the tool first leaves a cut by; 0: what is clear, the shortest first")
+    leave: EnumProperty(
+        name="Leave",
+        items=LEAVE,
+        default="CLEAR",
+        description="Which way the tool leaves a cut, and comes to it",
+    )
+    lead_in: length(
+        "Lead-In", 0.0, "mm before a cut that are fed, with air above them; 0: all the way from the clearance plane"
+    )
+    feed: length("Feed", 800.0, "mm/min at the tip", 0.001, 1e6)
+    spindle: FloatProperty(name="Spindle", default=12000.0, min=0.0, max=1e6, precision=0, description="rev/min")
+    show: EnumProperty(
+        name="Show",
+        items=SHOWN,
+        options={"ENUM_FLAG"},
+        default={"CONTACTS", "AXES"},
+        description="What is drawn of the active plan while the Orient tool is chosen",
+    )
+    draw_paths: BoolProperty(
+        name="Draw Paths", default=True, description="Thick lines, coloured by what the tool does along them"
+    )
+    frame_names: BoolProperty(
+        name="Path Names",
+        default=True,
+        update=_named,
+        description="Markers on the timeline where each path begins",
+    )
+    post: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="That the NC code is written for")
+
+    def tool_dict(self):
+        """The form of riffler.Tool.to_dict. ValueError where the text is none."""
+        if not self.tool:
+            return presets.preset(presets.presets()[0]["name"])
+        return json_object.loads(self.tool, "the plan's tool (take one from a library)")
+
+    def take(self, tool, source=""):
+        self.tool = json.dumps(tool, ensure_ascii=False)
+        self.source = source
+
+
+class RifflerFinding(bpy.types.PropertyGroup):
+    """One line of a list. `path` and `point`: of the plan, from 0; -1: it is about a program's row. `place`: mm of the
+    scene."""
+
+    name: StringProperty()
+    title: StringProperty(description="What a list shows: kind, size and place first; empty: the name")
+    kind: StringProperty()
+    path: IntProperty(default=-1)
+    point: IntProperty(default=-1)
+    row: IntProperty(default=-1)
+    line: IntProperty()
+    frame: FloatProperty()
+    place: FloatVectorProperty(size=3)
+
+
+STATES = (
+    ("free", "Free", "Resolved: the tool is clear of part and fixtures all along it"),
+    ("blocked", "Blocked", "The tool collides somewhere: turn its keys, or switch it off"),
+    ("keyed", "To Resolve", "It has keys, and was not resolved since they changed"),
+    ("unplanned", "No Keys", "It has no key orientation"),
+    ("off", "Off", "It is left out: neither resolved nor written"),
+)
+
+
+def _switched(row, context):
+    """A box in the list: what is written to it here, by the add-on, is what the plan has already."""
+    from . import path_switches
+
+    path_switches.follow(row)
+
+
+def _chosen(p, context):
+    from . import path_switches
+
+    path_switches.go(context, p.id_data, p.row)
+
+
+class RifflerPathRow(bpy.types.PropertyGroup):
+    """What a list shows of a path."""
+
+    name: StringProperty()
+    length: FloatProperty(description="mm")
+    state: EnumProperty(items=STATES, default="unplanned")
+    on: BoolProperty(
+        name="On", default=True, update=_switched, description="A path that is off is neither resolved nor written"
+    )
+
+
+class RifflerPathCurve(bpy.types.PropertyGroup):
+    """The curve object of one path, and the name that it was given."""
+
+    name: StringProperty()
+    curve: PointerProperty(type=bpy.types.Object)
+
+
+class RifflerPlanObject(bpy.types.PropertyGroup):
+    """On a plan's Empty: where the plan is, what a panel shows without reading it, and what shows its paths, in their
+    order (plan/path_curves.py)."""
+
+    store: PointerProperty(type=bpy.types.Image)
+    part: PointerProperty(type=bpy.types.Object)
+    paths: IntProperty()
+    length: FloatProperty()
+    keyed: IntProperty()
+    resolved: IntProperty(default=-1)  # of those with keys; -1: in a file from before it was counted
+    tool: StringProperty()
+    curves: CollectionProperty(type=RifflerPathCurve)
+    rows: CollectionProperty(type=RifflerPathRow, description="Its paths, in their order")
+    row: IntProperty(name="Path", default=-1, update=_chosen, description="The one that is chosen in the list, from 0")
+    findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
+    index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")
+
+    def forget(self, paths):
+        """What was found on paths, by their numbers from 0, that are others now."""
+        for k in reversed(range(len(self.findings))):
+            if self.findings[k].path in paths:
+                self.findings.remove(k)

@@ -1,0 +1,1 @@
+"""Keys, motions, clearances and tools of plans, without Blender."""

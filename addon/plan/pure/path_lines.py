@@ -1,0 +1,63 @@
+"""The lines of a plan that a view shows, by what the tool does along them: along the centres of its ball, in mm.
+
+Pieces are (n, 2, 3), the two ends of each.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import motion
+
+# In the order of a legend: what is wrong first, then what is written, then what is not.
+KINDS = ("blocked", "lifted", "cut", "lead", "retract", "rapid", "keyed", "unplanned", "off")
+LIFTED = 1e-3  # mm: what is less is rounding
+
+
+def of_path(path, rows, state: str) -> dict[str, np.ndarray]:
+    """{kind: pieces} of one path in a state of plan/path_rows.py; `rows`: its cutter locations, or None."""
+    if state != "free" or rows is None or not len(rows):
+        line = np.vstack([path.centres, path.centres[:1]]) if path.closed else path.centres
+        return {state: pieces(line)}
+    line, high = centres(rows, path.radius), lifts(path, rows) > LIFTED
+    both, off = pieces(line), high[:-1] | high[1:]
+    return {"cut": both[~off], "lifted": both[off]}
+
+
+def centres(rows: np.ndarray, radius: float) -> np.ndarray:
+    return rows[:, :3] + radius * rows[:, 3:]
+
+
+def pieces(line: np.ndarray) -> np.ndarray:
+    return np.stack([line[:-1], line[1:]], axis=1)
+
+
+def lifts(path, rows: np.ndarray) -> np.ndarray:
+    """(n,) mm by which rows stand off their path along the tool's axis; what was put between points, evenly between."""
+    start = np.hstack([path.centres - path.radius * path.axes, path.axes])
+    if path.closed:
+        start = np.vstack([start, start[:1]])
+    number = motion.points_of_rows(rows, start)
+    known = np.flatnonzero(number >= 0)
+    if not len(known):
+        return np.zeros(len(rows))
+    off = rows[known, :3] - start[number[known], :3]
+    return np.interp(np.arange(len(rows)), known, np.einsum("ij,ij->i", off, rows[known, 3:]))
+
+
+def of_links(poses: np.ndarray, begins: list[int], lengths: list[int], radius: float) -> dict[str, np.ndarray]:
+    """{kind: pieces} of a program's own rows: before, between and after the cuts, which are `lengths` rows long from
+    `begins` on. The way up from a cut is a retract, the way down to the next a lead-in, what lies between a rapid."""
+    line, found = centres(poses, radius), {"lead": [], "retract": [], "rapid": []}
+    ends = [b + n - 1 for b, n in zip(begins, lengths, strict=True)]
+    for first, last in zip([0, *ends], [*begins, len(poses) - 1], strict=True):
+        way, both = poses[first : last + 1, 2], pieces(line[first : last + 1])
+        if not len(both):
+            continue
+        top = np.flatnonzero(way >= way.max() - 1e-6)
+        up = top[0] if first else 0
+        down = top[-1] if last < len(poses) - 1 or not ends else len(way) - 1
+        found["retract"].append(both[:up])
+        found["rapid"].append(both[up:down])
+        found["lead"].append(both[down:])
+    return {kind: np.concatenate(some) for kind, some in found.items() if some}

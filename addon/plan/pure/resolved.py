@@ -1,0 +1,52 @@
+"""Cutter locations that paths have had, for keys that come back. In a window what follows from a key comes after its
+step of undo: undo brings the keyframe back as it was, and the plan stays as it became."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+
+import numpy as np
+
+from . import key_orientations
+
+COUNT, NBYTES = 2000, 64_000_000  # of paths, and of their locations: more than many steps of one plan
+
+
+class Resolved:
+    """Of one plan. `mark`: what the locations are free of (plan/plan_store.py); without one they are not kept."""
+
+    def __init__(self, count: int = COUNT, nbytes: int = NBYTES):
+        self._count, self._most, self._nbytes = count, nbytes, 0
+        self._kept: OrderedDict[tuple, tuple] = OrderedDict()  # the path is held, so its id is nobody else's
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    def put(self, number: int, path, rows, mark) -> None:
+        """A path's locations, `rows` (n, 6) or None; what was put last stays."""
+        if rows is None or not len(rows) or not mark:
+            return
+        name = number, id(path)
+        if name in self._kept:
+            self._nbytes -= self._kept.pop(name)[1].nbytes
+        self._kept[name] = path, rows, mark
+        self._nbytes += rows.nbytes
+        while len(self._kept) > 1 and (len(self._kept) > self._count or self._nbytes > self._most):
+            self._nbytes -= self._kept.popitem(last=False)[1][1].nbytes
+
+    def get(self, number: int, path, wanted: dict, mark):
+        """(path, rows) of that path with the keys `wanted`, to single precision, or None."""
+        for (other, _), (before, rows, marked) in reversed(self._kept.items()):
+            if (
+                (other, marked) == (number, mark)
+                and _same(before, path)
+                and not key_orientations.change(before.keys, wanted)
+            ):
+                return before, rows
+        return None
+
+
+def _same(before, path) -> bool:
+    """But for the keys."""
+    rule = before.interpolation == (path.interpolation or before.interpolation)
+    return rule and before.closed == path.closed and np.array_equal(before.centres, path.centres)

@@ -1,0 +1,39 @@
+"""Where tool libraries are, and what is in them."""
+
+import riffler
+
+from ..blender import preferences_access
+from .pure import tool_library
+
+
+def folders():
+    """Of tool files."""
+    return preferences_access.folders("tools")
+
+
+def target():
+    """Where a tool is saved. FileNotFoundError where the folder that was chosen is gone."""
+    return preferences_access.target("tools")
+
+
+def files():
+    """The tools of all folders, and a line for each file that cannot be read, and for a folder that was chosen and is
+    gone. Our own is empty where it is not there yet."""
+    entries, problems = [], []
+    try:
+        preferences_access.folder("tools")
+    except FileNotFoundError as error:
+        problems.append(str(error))
+    for folder in folders():
+        if folder.is_dir():
+            found, bad = tool_library.scan(folder, riffler.Tool.from_dict)
+            entries += found
+            problems += bad
+    return entries, problems
+
+
+def tool(name, path=""):
+    """The dictionary of a tool: from a file, or where `path` is empty, from the presets. ValueError says what there is
+    instead."""
+    entries = tool_library.read(path, riffler.Tool.from_dict) if path else tool_library.shipped()
+    return dict(tool_library.find(entries, name).tool) if name or not path else dict(entries[0].tool)

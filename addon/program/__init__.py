@@ -1,0 +1,1 @@
+"""Programs of plans, files and cuts: written as NC code, simulated, verified."""

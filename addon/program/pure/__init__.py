@@ -1,0 +1,1 @@
+"""A program on the timeline and on a stock, without Blender."""

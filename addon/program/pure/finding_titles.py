@@ -1,0 +1,29 @@
+"""Findings as lists show them: kind, size and place first, so that ten of a kind are told apart."""
+
+from __future__ import annotations
+
+from ...common import units
+
+KINDS = {
+    "rapid": "Rapid cuts",
+    "holder": "Holder hits",
+    "shank": "Shank hits",
+    "fixture": "Fixture hit",
+    "gouge": "Gouge",
+    "rest": "Rest",
+    "spindle": "Spindle stands",
+    "machine": "Out of reach",
+    "unknown": "Undescribed",
+}
+
+
+def verified(what: str, value: float, place) -> str:
+    """“Gouge 0.77 at 44 17 7”, short enough for a sidebar: the sentence below the list has the units. `what`: of KINDS;
+    `value` in mm or mm³, 0 where there is none; `place` in mm of the scene."""
+    size = f" {_number(value)}" if value > 0 else ""
+    return f"{what}{size} at {' '.join(units.trim(float(x), 0) for x in place)}"
+
+
+def _number(value: float) -> str:
+    """Two digits are enough to tell findings apart."""
+    return f"{value:.2g}" if value < 10 else f"{value:.0f}"

@@ -1,0 +1,259 @@
+"""A program that is simulated: the stock at the row of the scene's current frame, shown in chunks as a sculpt that is
+worked at is. The sculpt itself is hidden meanwhile and stays as it is: what is carved is a copy.
+
+With a window the carving is done from a timer, some milliseconds at a time, so that scrubbing stays light; the stock
+catches up. Without one timers never run, and it is done at once. Nothing modal runs. Undo ends a simulation, since it
+may bring back anything of what is shown; so do saving and the loading of a file.
+"""
+
+import time
+
+import bpy
+import riffler
+
+from ..blender import handlers, operator_parts
+from ..common import tool_solid, units
+from ..common.problems import said
+from ..plan import plan_states, plan_store, replan, timeline
+from ..sculpt import chunks, sculpts, undo_states
+from . import programs, properties
+from .pure.program_prefix import ProgramPrefix
+
+BUDGET, PAUSE = 0.02, 0.01  # s of carving, and between two lots of it
+SHOWN = 0.15  # s between two pictures of a stock that is still catching up
+_now = None
+
+
+class Simulation:
+    """Of a programs.Setup. `prefix.volume` is the stock as it is shown."""
+
+    def __init__(self, context, setup):
+        ob = bpy.data.objects[setup.sculpt]
+        self.name, self.scene, self.program_timeline, self.sculpt = (
+            setup.name,
+            context.scene.name,
+            setup.program_timeline,
+            ob.name,
+        )
+        self._plan, self._identity = setup.plan, _identity(setup.plan)
+        self.prefix = ProgramPrefix(setup.stock, setup.runs)
+        self._mesher = riffler.Mesher(self.prefix.volume)
+        self.mark = sculpts.new_mark(ob)
+        self.chunks = chunks.Chunks(context, ob, self._mesher.shape, sculpts.shown_mm_per_unit(ob.data))
+        try:
+            self.chunks.update(self._mesher, self._mesher.patches())
+        except BaseException:
+            chunks.sweep(self.mark, ob.name)
+            raise
+        self._own_tool = not setup.plan or timeline.pair(bpy.data.objects[setup.plan]) is None
+        self._tool, self._pictured = None, 0.0
+
+    @property
+    def object(self):
+        """The sculpt, as long as it and what is shown of it are there."""
+        return sculpts.marked(self.mark, self.sculpt) if self.chunks.there else None
+
+    @property
+    def outdated(self):
+        """True where the program is of a plan that is another one now."""
+        return _identity(self._plan) != self._identity
+
+    @property
+    def scene_frame(self):
+        return bpy.data.scenes[self.scene].frame_current_final
+
+    def go_on(self, budget):
+        """Towards the row of the current frame; True when the stock is there and seen so."""
+        there = self.prefix.step(self.program_timeline.row_at(self.scene_frame), budget)
+        if there or time.monotonic() - self._pictured > SHOWN:
+            self._show()
+        return there
+
+    def _show(self):
+        self._pictured = time.monotonic()
+        self.chunks.update(self._mesher, self._mesher.update(self.prefix.volume))
+        self.chunks.place(self.object.matrix_world)
+        if self._own_tool:
+            tool, pose = self.prefix.pose(self.prefix.row)
+            if tool is not self._tool:
+                self._tool = tool
+                self.chunks.show_tool(tool_solid.solid(tool.outline()))
+            self.chunks.place_tool(pose)
+
+
+def _identity(plan):
+    """Of the plan's object with that name."""
+    return plan_store.identity(bpy.data.objects.get(plan))
+
+
+def active():
+    """The Simulation that is shown, or None."""
+    return _now
+
+
+def begin(context, setup):
+    """Shows `setup` at the current frame; what was shown before is not any more. None where it has stopped at once,
+    which was told."""
+    global _now
+    end()
+    _now = Simulation(context, setup)
+    context.window_manager.riffler.simulating = setup.name
+    _follow()
+    return _now
+
+
+def end():
+    """The sculpt itself is seen again."""
+    global _now
+    was, _now = _now, None
+    handlers.stop(_tick)
+    if was is not None:
+        bpy.context.window_manager.riffler.simulating = ""
+        chunks.sweep(was.mark, was.sculpt)
+
+
+def drop_outdated():
+    """Ends it where its plan has changed; True where it did."""
+    if _now is None or not _now.outdated:
+        return False
+    name = _now.name
+    end()
+    undo_states.tell(f"{name}: simulation ended: the plan has changed")
+    return True
+
+
+def _follow():
+    if bpy.app.background:
+        _lot(float("inf"))
+    elif not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=0.0)
+
+
+def _tick():
+    """A timer's. A render reads what would be changed."""
+    if _now is not None and bpy.app.is_job_running("RENDER"):
+        return SHOWN
+    return None if _now is None or _lot(BUDGET) else PAUSE
+
+
+def _lot(budget):
+    """True where nothing is left to do."""
+    if _now.object is None or _now.scene not in bpy.data.scenes:
+        end()
+        return True
+    if drop_outdated():
+        return True
+    try:
+        return _now.go_on(budget)
+    except (ValueError, OSError, RuntimeError, MemoryError) as error:
+        name = _now.name
+        end()
+        undo_states.tell(f"{name}: simulation stopped: {said(error)}")
+        return True
+
+
+@bpy.app.handlers.persistent
+def _on_frame(scene, depsgraph=None):
+    """A render has a copy of the scene, and shows the sculpt itself."""
+    if _now is not None and scene.name == _now.scene and (depsgraph is None or depsgraph.mode == "VIEWPORT"):
+        _follow()
+
+
+@bpy.app.handlers.persistent
+def _end(*_):
+    end()
+
+
+@bpy.app.handlers.persistent
+def _before_render(*_):
+    if _now is not None and _now.object is not None:
+        try:
+            chunks.weigh(_now.object)
+        except ValueError as error:
+            undo_states.tell(str(error))
+
+
+_HANDLERS = {
+    "frame_change_post": _on_frame,
+    "save_pre": _end,
+    "undo_post": _end,
+    "redo_post": _end,
+    "render_init": _before_render,
+    "load_pre": _end,
+}
+
+
+# ---------------------------------------------------------------------- operators
+def program_poll(cls, context):
+    """True where there may be a program on a stock."""
+    if not operator_parts.object_mode(cls, context):
+        return False
+    if programs.stock_object(context) is None:
+        return operator_parts.deny(cls, programs.no_stock(context))
+    return True
+
+
+class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, bpy.types.Operator):
+    """Show the stock as the program leaves it at the current frame: play, or drag the frame. Esc in the view ends it"""
+
+    bl_idname = "riffler.simulate"
+    bl_label = "Simulate"
+    bl_options = {"REGISTER"}  # what is shown is no step of undo
+
+    @classmethod
+    def poll(cls, context):
+        return program_poll(cls, context) and not operator_parts.busy(cls, context, simulation=False)
+
+    def execute(self, context):
+        try:
+            end()
+            replan.flush()  # the program is that of the keys as they are now
+            setup = programs.take(context, self)
+            now = begin(context, setup)
+            if now is None:
+                raise ValueError(context.window_manager.riffler.notice)
+        except operator_parts.ERRORS as error:
+            end()
+            return operator_parts.fail(self, error)
+        first, last = now.program_timeline.first, now.program_timeline.last
+        timeline.show_range(context.scene, first, last)
+        count = units.counted(len(setup.program.poses), "row")
+        done = f"{setup.name}: {count} at frames {first} to {last}. Esc in the view ends it"
+        operator_parts.tell_all(self, done, setup.notes)
+        return {"FINISHED"}
+
+    def invoke(self, context, event):
+        return self.execute(context)
+
+
+class RIFFLER_OT_simulate_stop(bpy.types.Operator):
+    """End the simulation: the stock is seen as it is"""
+
+    bl_idname = "riffler.simulate_stop"
+    bl_label = "End Simulation"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        if active() is None:
+            return operator_parts.deny(cls, "Nothing is being simulated")
+        return True
+
+    def execute(self, context):
+        end()
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_simulate, RIFFLER_OT_simulate_stop)
+
+
+def attach():
+    handlers.listen(_HANDLERS)
+    plan_states.followers.append(drop_outdated)
+
+
+def detach():
+    if drop_outdated in plan_states.followers:
+        plan_states.followers.remove(drop_outdated)
+    handlers.ignore(_HANDLERS)
+    end()

@@ -1,0 +1,108 @@
+"""What the add-on keeps on scenes, objects, meshes and the window manager. Lengths in mm, angles in rad.
+
+A module has the fields of one topic; here they are put together, and attached to what owns them.
+"""
+
+import bpy
+from bpy.props import PointerProperty, StringProperty
+
+from .blender.long_work import WorkProgress
+from .pen.properties import PenProgress, RifflerPen
+from .plan.cutter_properties import RifflerCutter
+from .plan.machines import GROUPS, RifflerMachines
+from .plan.properties import (
+    RifflerFinding,
+    RifflerPathCurve,
+    RifflerPathRow,
+    RifflerPlan,
+    RifflerPlanObject,
+)
+from .program.properties import RifflerVerify
+from .sculpt.fields_without_undo import RifflerStrokeFields, RifflerToolFields
+from .sculpt.properties import RifflerSculpt
+from .sculpt.tool_properties import RifflerTool
+from .stock.properties import (
+    RifflerClay,
+    RifflerCut,
+    RifflerMesh,
+    RifflerNc,
+    RifflerResult,
+    RifflerStock,
+)
+
+
+class RifflerScene(bpy.types.PropertyGroup):
+    stock: PointerProperty(type=RifflerStock)
+    tool: PointerProperty(type=RifflerTool)
+    cutter: PointerProperty(type=RifflerCutter)
+    cut: PointerProperty(type=RifflerCut)
+    nc: PointerProperty(type=RifflerNc)
+    pen: PointerProperty(type=RifflerPen)
+    clay: PointerProperty(type=RifflerClay)
+    result: PointerProperty(type=RifflerResult)
+    plan: PointerProperty(type=RifflerPlan)
+    sculpt: PointerProperty(type=RifflerSculpt)
+    verify: PointerProperty(type=RifflerVerify)
+    machines: PointerProperty(type=RifflerMachines)
+
+
+class RifflerObject(bpy.types.PropertyGroup):
+    """On an object. `token` and `mark`, of a sculpt that is being worked at: which state of it is shown, and whose work
+    it is. Blender's undo brings both back with the object; on the mesh they would make Blender read the whole mesh
+    again."""
+
+    token: StringProperty()
+    mark: StringProperty(description="What the work at the sculpt is known by, also after it")
+    plan: PointerProperty(type=RifflerPlanObject)
+
+
+class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
+    """On the window manager: what runs now, and what panels change without undo steps."""
+
+    sculpt: PointerProperty(type=RifflerStrokeFields)
+    tool: PointerProperty(type=RifflerToolFields)
+
+
+CLASSES = (
+    *GROUPS.values(),
+    RifflerMachines,
+    RifflerStock,
+    RifflerTool,
+    RifflerCutter,
+    RifflerCut,
+    RifflerNc,
+    RifflerPen,
+    RifflerClay,
+    RifflerResult,
+    RifflerFinding,
+    RifflerPathCurve,
+    RifflerPathRow,
+    RifflerPlan,
+    RifflerSculpt,
+    RifflerVerify,
+    RifflerScene,
+    RifflerMesh,
+    RifflerPlanObject,
+    RifflerObject,
+    RifflerStrokeFields,
+    RifflerToolFields,
+    RifflerProgress,
+)
+_OWNERS = (
+    (bpy.types.Scene, RifflerScene),
+    (bpy.types.Mesh, RifflerMesh),
+    (bpy.types.Object, RifflerObject),
+    (bpy.types.WindowManager, RifflerProgress),
+)
+_given = []  # those that have theirs
+
+
+def attach():
+    for owner, group in _OWNERS:
+        owner.riffler = PointerProperty(type=group)
+        _given.append(owner)
+
+
+def detach():
+    while _given:
+        del _given.pop().riffler

@@ -1,0 +1,1 @@
+"""Sculpting by hand: live sculpts, their strokes and undo, the sculpt tools, the cutter."""

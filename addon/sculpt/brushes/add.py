@@ -1,0 +1,41 @@
+"""Puts material on in the shape of the cutter."""
+
+import riffler
+
+from ..pure.reach import outline_of
+from .brush import Brush
+
+
+def stub(tool, depth: float):
+    """The cutter without what stands on its end: put on, a whole one would be a pillar as long as it is."""
+    line = outline_of(tool)
+    widest = line[line[:, 0] >= line[:, 0].max() * (1 - 1e-9), 1].min()
+    data = tool.to_dict()
+    shorter = {k: v for k, v in data.items() if k not in ("shank", "holder")}
+    shorter["length"] = min(tool.length, max(float(widest), depth, 0.05 * tool.diameter))
+    return riffler.Tool.from_dict(shorter)
+
+
+class Add(Brush):
+    id, place, label, icon = "add", 20, "Add", "add"
+    description = "Put material on"
+    tip = "Put material on in the shape of the cutter. Ctrl: take it away. Shift: smooth"
+    colour = (0.3, 0.65, 1.0)
+    opposite = "remove"
+    journal = cuts = "add"
+    puts_on = chips = session = True
+    done = "put on"
+    no_stroke = "no stroke where the stock's box has room; Make Room in Clay gives it more"
+    unchanged = "Nothing was put on: the stock's box is full there, or protected. Make Room in Clay gives it more"
+
+    def cutter(self, given, depth):
+        return stub(given, depth)
+
+    def apply(self, sculpt, tool, poses, dt):
+        return sculpt.volume.carve(tool, poses, dt=dt, mode="add", protect=sculpt.mask)
+
+    def picture(self, draw):
+        return draw.bead() + draw.cutter(draw.FLOOR + 24)
+
+
+BRUSHES = (Add(),)

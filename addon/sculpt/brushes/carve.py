@@ -1,0 +1,23 @@
+"""Takes material away with the cutter."""
+
+from .brush import Brush
+
+
+class Carve(Brush):
+    id, place, label, icon = "remove", 10, "Carve", "carve"
+    description = "Take material away"
+    tip = "Take material away with the cutter, along the surface. Ctrl: put it on. Shift: smooth"
+    colour = (1.0, 0.45, 0.2)
+    opposite = "add"
+    journal = cuts = "remove"
+    clear = chips = session = True
+    done = "removed"
+
+    def apply(self, sculpt, tool, poses, dt):
+        return sculpt.volume.carve(tool, poses, dt=dt, mode="remove", protect=sculpt.mask)
+
+    def picture(self, draw):
+        return draw.groove() + draw.cutter(draw.FLOOR - 34) + draw.chip()
+
+
+BRUSHES = (Carve(),)

@@ -1,0 +1,41 @@
+"""Smooths the surface by dabs at the cutter's tip, as wide as the cutter."""
+
+from .brush import Brush, Path
+
+DABS = 1 / 6  # of the tool's width: from one dab to the next
+
+
+class Smooth(Brush):
+    id, place, label, icon = "soften", 30, "Smooth", "smooth"
+    description = "Smooth the surface"
+    tip = "Smooth the surface as wide as the cutter"
+    colour = (0.55, 0.9, 0.45)
+    second = "STRENGTH"
+    journal = "soften"
+    shapes = clear = True
+
+    def refusal(self, volume):
+        if volume.directions == "xyz":
+            return ""
+        return (
+            "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in "
+            "the box at the lower left"
+        )
+
+    def path(self, axis, depth, diameter, pitch):
+        """A dab's middle is the tip, on the surface."""
+        return Path("NORMAL", 0.0, {"spacing": max(pitch, DABS * diameter)})
+
+    def moves(self, poses, dt, new):
+        """The first of poses that go on was dabbed with the last ones."""
+        return poses[0 if new else 1 :], None
+
+    def apply(self, sculpt, tool, poses, dt):
+        sculpt.volume.soften(poses[:, :3], 0.5 * tool.diameter, sculpt.strength, sculpt.mask)
+
+    def picture(self, draw):
+        return draw.wave() + draw.cutter(draw.FLOOR + 4)
+
+
+SMOOTH = Smooth()  # what Shift gives with every tool
+BRUSHES = (SMOOTH,)

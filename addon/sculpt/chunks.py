@@ -1,0 +1,371 @@
+"""What is seen of a sculpt while somebody works at it: a hundred mesh objects, each with the triangles of some bricks.
+
+Filling one mesh of half a million triangles takes a tenth of a second; a chunk takes what its own triangles take. They
+are Blender's own objects, so that materials, matcaps and overlays are the artist's, and few, since Blender's undo costs
+by the object (docs/decisions.md). The sculpt itself is hidden meanwhile.
+
+Everything is in one collection that says which sculpt it stands for: what is left of one, in an undo step or in the
+file of a Blender that crashed, is known and swept away. A copy that somebody made of something in it stays: Blender has
+given it another name.
+"""
+
+import itertools
+import uuid
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from ..blender import meshes, versions
+from ..blender.views import views
+from ..common.blocks import Blocks
+from . import mask_display, sculpts
+
+MARK = "riffler_live"  # on the collection: the sculpt's mark (sculpts.new_mark); on meshes and the material, too
+MADE = "riffler_made"  # on the collection and its objects: the name that they were given
+NUMBER = "riffler_chunk"  # on a chunk's object
+FILLING = "riffler_filling"  # on its mesh: which of our fillings it shows
+TOOL = "Riffler Tool"
+SHOWN = "riffler_shown"  # on its object: which time it was shown
+
+_fillings = itertools.count(1)
+
+
+class Chunks:
+    """Of the sculpt `ob`, whose mesh has bricks in a lattice of `shape`. Keeps names and no references: those die with
+    the next undo."""
+
+    def __init__(self, context, ob, shape, mm_per_unit):
+        self._take(ob, shape, mm_per_unit)
+        collection = _new_collection(context, ob)
+        self._before = _before(collection)
+        try:
+            first = None  # the others hang on it: one line in the outliner, and one object to be moved
+            for block in range(len(self._blocks)):
+                chunk = self._add(collection, ob, "Riffler Chunk")
+                chunk[NUMBER] = block
+                self._names[block] = chunk.name
+                if first is None:
+                    first = chunk
+                else:
+                    chunk.parent, chunk.matrix_basis = first, Matrix()
+        except Exception:
+            sweep(ob.riffler.mark)
+            raise
+        hide(ob)
+
+    @classmethod
+    def found(cls, ob, shape, mm_per_unit):
+        """Those that an undo has brought back."""
+        self = cls.__new__(cls)
+        self._take(ob, shape, mm_per_unit)
+        self._before = _before(collection_of(self._mark))
+        self.outline(False)
+        return self
+
+    def _take(self, ob, shape, mm_per_unit):
+        self._mm, self._mark, self._blocks = mm_per_unit, ob.riffler.mark, Blocks(shape)
+        self._names: dict[int, str] = {}  # of objects, by block
+        self._shown = ""
+        self.fillings: dict[int, int] = {}  # which one each block shows
+        self._materials = [m.name for m in ob.data.materials if m and m.name != mask_display.NAME]
+        self._tool, self._tool_at = "", None  # name of its object; where it was put, unless an undo may have moved it
+
+    # ------------------------------------------------------------------ what is shown
+    def update(self, mesher, bricks, mask=None, stages=None):
+        """Fills the blocks of these bricks anew; what lies in `mask`, a volume, is seen to be protected."""
+        solid = set(mesher.patches()) if len(bricks) else ()
+        for block in sorted({self._blocks.of(int(b)) for b in bricks}):
+            self._fill(block, mesher, [b for b in self._blocks.bricks(block) if b in solid], mask, stages)
+
+    def _fill(self, block, mesher, bricks, mask, stages):
+        ob = bpy.data.objects.get(self._names.get(block, ""))
+        if ob is None:  # somebody has removed it: it is not wanted
+            return
+        vertices, triangles, edges, shading = _patch(mesher, bricks)
+        meshes.fill(ob.data, vertices / self._mm, triangles, edges, **shading)
+        mask_display.show(ob.data, mask, vertices, triangles)
+        self.fillings[block] = next(_fillings)
+        ob.data[FILLING] = self.fillings[block]
+        if stages:
+            size = sum(a.nbytes for a in (vertices, triangles, *edges, *shading.values()))
+            stages.count(bricks=len(bricks), chunks=1, triangles=len(triangles), bytes=size)
+
+    def place(self, matrix):
+        """All of them at `matrix`, the sculpt's."""
+        for name in self._names.values():
+            ob = bpy.data.objects.get(name)
+            if ob is not None and ob.parent is None and ob.matrix_world != matrix:
+                ob.matrix_world = matrix
+
+    def adopt(self, fillings):
+        """After an undo: the objects that came back, and the bricks of those that do not show what `fillings` says."""
+        self._tool_at = None
+        if fillings is None:  # nobody knows: all of them
+            fillings = dict.fromkeys(range(len(self._blocks)), -1)
+        found = {ob[NUMBER]: ob for ob in collection_of(self._mark).objects if NUMBER in ob and is_own(ob)}
+        self._names = {block: ob.name for block, ob in found.items()}
+        self.fillings = {block: ob.data.get(FILLING, 0) for block, ob in found.items()}
+        stale = [block for block, filling in fillings.items() if self.fillings.get(block) != filling]
+        return [brick for block in stale for brick in self._blocks.bricks(block)]
+
+    def outline(self, on):
+        """The views' outlines, which no undo brings back or takes away: they are off while chunks are there."""
+        if on:
+            _outline(self._before.outlined)
+        else:
+            _draw_outlines(self._before.outlined, False)
+
+    def give_back(self, name):
+        """Where somebody has removed the collection: what `sweep` would have given back."""
+        self.outline(True)
+        _reveal(sculpts.marked(self._mark, name), self._before)
+
+    @property
+    def there(self):
+        """Whether the collection is there: an undo may have gone back to before it."""
+        return collection_of(self._mark) is not None
+
+    # ------------------------------------------------------------------ the tool
+    def show_tool(self, solid):
+        """`solid`: vertices (mm, the tip in the origin, the axis z) and triangles."""
+        self._shown, self._tool_at = uuid.uuid4().hex, None
+        ob = next(iter(self._tools()), None)
+        if ob is not None:
+            self._tool, ob[SHOWN], ob.hide_viewport = ob.name, self._shown, False
+            meshes.fill(ob.data, solid[0] / self._mm, solid[1])
+            return
+        ob = self._add(collection_of(self._mark), sculpts.marked(self._mark), TOOL)
+        ob[SHOWN] = self._shown
+        meshes.fill(ob.data, solid[0] / self._mm, solid[1])
+        material = bpy.data.materials.new(TOOL)
+        material[MARK] = self._mark
+        material.diffuse_color = (0.9, 0.45, 0.1, 1.0)
+        ob.data.materials.clear()
+        ob.data.materials.append(material)
+        self._tool = ob.name
+
+    def place_tool(self, pose):
+        """`pose`: (6,) tip and axis, mm in the sculpt's frame."""
+        ob, sculpt = bpy.data.objects.get(self._tool), sculpts.marked(self._mark)
+        if ob is not None and sculpt is not None:
+            turn = Vector((0, 0, 1)).rotation_difference(Vector(pose[3:])).to_matrix().to_4x4()
+            matrix = sculpt.matrix_world @ Matrix.Translation(Vector(pose[:3]) / self._mm) @ turn
+            if matrix != self._tool_at:  # a hand at rest has nothing drawn
+                self._tool_at = ob.matrix_world = matrix
+
+    @property
+    def tool_there(self):
+        """Whether it is the tool that this has shown: an undo may have gone back to before that."""
+        return any(ob.get(SHOWN) == self._shown for ob in self._tools())
+
+    def hide_tool(self):
+        """It is not seen any more, nor is one that an undo has brought back. It stays until the next one or the end:
+        Blender's undo takes for unchanged what has not changed from step to step, and so would bring it back without
+        the collection that it was in, had it been removed between two."""
+        for ob in self._tools():
+            ob.hide_viewport = True
+
+    def _tools(self):
+        collection = collection_of(self._mark)
+        return [ob for ob in collection.objects if SHOWN in ob and is_own(ob)] if collection is not None else []
+
+    def _add(self, collection, sculpt, name):
+        mesh = bpy.data.meshes.new(name)
+        mesh[MARK] = self._mark
+        for material in self._materials:
+            mesh.materials.append(bpy.data.materials.get(material))
+        ob = bpy.data.objects.new(name, mesh)
+        ob[MADE] = ob.name
+        ob.matrix_world = sculpt.matrix_world
+        ob.hide_render = True  # what is rendered is the sculpt
+        collection.objects.link(ob)
+        for space in _local_views():
+            ob.local_view_set(space, True)
+        return ob
+
+
+def _patch(mesher, bricks):
+    """Vertices, triangles, edges and shading of a chunk, as meshes.fill takes them."""
+    if versions.OWN_NORMALS:
+        vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=meshes.SHARP_ANGLE)
+        return vertices, triangles, edges, {"normals": normals}
+    if not versions.SMOOTH_BY_POLYGON:
+        vertices, triangles, *edges = mesher.patch(bricks, edges=True)
+        return vertices, triangles, edges, {}
+    # Flat is what touches an edge: its corners' mean normals lean away from its own by half of what the edge has.
+    vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=np.pi)
+    corners = vertices[triangles]
+    (a, b, c), (d, e, f) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    own = np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=1)  # np.cross takes three times as long
+    least = np.cos(0.5 * meshes.SHARP_ANGLE) * np.sqrt(np.einsum("fc,fc->f", own, own))
+    leaning = np.einsum("fkc,fc->fk", normals.reshape(-1, 3, 3), own).min(axis=1)
+    return vertices, triangles, edges, {"smooth": leaning >= least}
+
+
+def _new_collection(context, ob):
+    collection = bpy.data.collections.new("Riffler Live")
+    collection[MARK], collection[MADE] = ob.riffler.mark, collection.name
+    collection["hidden"], collection["selected"] = ob.hide_get(), ob.select_get()
+    collection["selectable"] = not ob.hide_select
+    collection["scene"], collection["layer"] = context.scene.name, context.view_layer.name
+    # Views that draw a line around every object would draw it around every chunk. It is written down here, so that it
+    # is given back after a crash, too.
+    outlined = [f"{screen}/{k}" for screen, k, space in views() if space.shading.show_object_outline]
+    collection["outlined"] = "\n".join(outlined)
+    collection.hide_select = True
+    context.scene.collection.children.link(collection)
+    _draw_outlines(outlined, False)
+    return collection
+
+
+def hide(ob):
+    """The sculpt's own mesh is not seen, and does not weigh on each undo, where that would cost. It stays visible for
+    Blender, as one that only its instances are drawn of, which it has none of: to a view a hidden object is not the
+    active one, and its menu of modes is empty. Whatever has children, or instances of its own, is hidden by its eye."""
+    versions.lighten(ob.data)
+    ob.select_set(False)
+    if ob.hide_get():
+        return
+    if ob.children or ob.instance_type != "NONE":
+        ob.hide_set(True)
+        return
+    ob.instance_type, ob.show_instancer_for_viewport, ob.hide_select = "VERTS", False, True
+
+
+def is_hidden(ob):
+    """Whether `hide` has hidden it, so that its instances would be drawn only."""
+    return ob.instance_type == "VERTS" and not ob.show_instancer_for_viewport
+
+
+def reveal(ob, select=False, layers=None, selectable=True):
+    """Undoes the hiding, in these view layers, or in every one. `selectable`: as it was."""
+    if is_hidden(ob):
+        ob.instance_type, ob.show_instancer_for_viewport, ob.hide_select = "NONE", True, not selectable
+    if layers is None:
+        layers = [layer for scene in bpy.data.scenes for layer in scene.view_layers]
+    for layer in layers:
+        if ob.name in layer.objects:
+            ob.hide_set(False, view_layer=layer)
+            if select:
+                ob.select_set(True, view_layer=layer)
+
+
+@dataclass
+class Before:
+    """How it was before the chunks: whether the sculpt was hidden and selected in that view layer, and which views drew
+    outlines."""
+
+    hidden: bool
+    selected: bool
+    selectable: bool
+    layer: tuple  # names of scene and view layer
+    outlined: list
+
+
+def _before(collection):
+    """Of a collection of chunks; an older add-on did not write down the layer."""
+    layer = collection.get("scene", ""), collection.get("layer", "")
+    selectable = bool(collection.get("selectable", True))
+    return Before(collection["hidden"], collection["selected"], selectable, layer, collection["outlined"].split("\n"))
+
+
+def _reveal(ob, before):
+    if ob is None or before.hidden:
+        return
+    scene = bpy.data.scenes.get(before.layer[0])
+    layer = scene and scene.view_layers.get(before.layer[1])
+    reveal(ob, before.selected, None if layer is None else [layer], before.selectable)
+
+
+def _outline(places):
+    """Gives the views their outlines back; where another sculpt is shown in chunks, that one will."""
+    other = next((c for c in bpy.data.collections if MARK in c), None)
+    if other is not None:
+        other["outlined"] = "\n".join([other["outlined"], *places])
+        return
+    _draw_outlines(places, True)
+
+
+def _draw_outlines(places, on):
+    for screen, k, space in views():
+        if f"{screen}/{k}" in places:
+            space.shading.show_object_outline = on
+
+
+def weigh(ob):
+    """Undoes versions.lighten, where nobody has shown anything else since."""
+    if sculpts.is_sculpt(ob) and not ob.data.polygons and ob.data.vertices:
+        sculpts.refill(ob.data, sculpts.shown_mm_per_unit(ob.data))
+
+
+def collection_of(mark):
+    """The collection of the sculpt of that mark, or None."""
+    return next((c for c in bpy.data.collections if c.get(MARK) == mark), None)
+
+
+def shown():
+    """Marks of the sculpts that are shown in chunks."""
+    return [c[MARK] for c in bpy.data.collections if MARK in c]
+
+
+def _local_views():
+    """Of the windows only: Blender crashes where an object is put into the local view of a screen that none shows."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D" and area.spaces.active.local_view and window.scene == bpy.context.scene:
+                yield area.spaces.active
+
+
+def sweep(mark=None, name=""):
+    """Takes away what there is, of the sculpt of that mark (and name, where it is known) or of all, and shows the
+    sculpts again."""
+    for collection in [c for c in bpy.data.collections if MARK in c and mark in (None, c[MARK])]:
+        ob, before = sculpts.marked(collection[MARK], name), _before(collection)
+        try:
+            weigh(ob)
+        except ValueError as error:  # what is packed cannot be read: there is no surface to be shown
+            print(f"Riffler: {error}")
+        _clear(collection)
+        _reveal(ob, before)
+        _outline(before.outlined)
+    stray = [ob for ob in bpy.data.objects if is_own(ob) and ob.data is not None and _is_marked(ob.data, mark)]
+    _remove(stray)  # somebody, or an undo, has taken them out of the collection
+    for place in (bpy.data.meshes, bpy.data.materials):
+        marked = [thing for thing in place if _is_marked(thing, mark)]
+        for thing in (thing for thing in marked if thing.users):
+            del thing[MARK]  # a copy shows it: it is somebody's now
+        bpy.data.batch_remove([thing for thing in marked if not thing.users])
+
+
+def _is_marked(thing, mark):
+    return MARK in thing and mark in (None, thing[MARK])
+
+
+def is_own(thing):
+    """Of an object or a collection: True where the add-on has made it, and it is no copy."""
+    return thing.get(MADE) == thing.name
+
+
+def _clear(collection):
+    """Takes away the collection and what the add-on has made in it. A copy of the whole collection, as of a scene, has
+    pictures only."""
+    pictures = [ob for ob in collection.objects if ob.data is not None and MARK in ob.data]
+    if is_own(collection):
+        pictures = [ob for ob in pictures if is_own(ob)]
+    _remove(pictures)
+    for ob in list(collection.objects):  # somebody put it there
+        collection.objects.unlink(ob)
+        if not ob.users_collection:
+            bpy.context.scene.collection.objects.link(ob)
+    bpy.data.collections.remove(collection)
+
+
+def _remove(pictures):
+    """What hangs on them, a copy of one, say, stays where it is."""
+    gone = set(pictures)
+    left = [(ob, ob.matrix_world.copy()) for ob in bpy.data.objects if ob.parent in gone and ob not in gone]
+    bpy.data.batch_remove(gone)
+    for ob, matrix in left:
+        ob.matrix_world = matrix

@@ -1,0 +1,338 @@
+"""The first stroke on an object that is no sculpt yet: the drag is kept, and once it is over Riffler asks whether the
+object is to be one. Blender would have moved the object otherwise."""
+
+import json
+import textwrap
+import time
+
+import bpy
+import numpy as np
+from bpy.props import EnumProperty, FloatProperty, StringProperty
+
+from ..blender import meshes, object_surfaces, operator_parts, refusals
+from ..common import fitting, units
+from ..translations import local
+from . import chunks, fit, mesh_edits, sculpt_work, sculpts
+from .stroke_operator import MODES, MOVES, sample
+
+WIDE = 70  # characters in a line of a popup
+NOTHING = "Nothing to sculpt here: drag on a mesh, or add a block, sphere or cylinder by Add > Mesh > Riffler"
+
+
+class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
+    """Sculpt what is under the pointer: another sculpt, or an object that becomes one"""
+
+    bl_idname = "riffler.stroke_elsewhere"
+    bl_label = "Sculpt Another Object"
+    bl_options = {"INTERNAL"}
+
+    mode: EnumProperty(
+        name="Mode", items=MODES, default="REMOVE", options={"SKIP_SAVE"}, description="What the tool does"
+    )
+
+    @classmethod
+    def poll(cls, context):
+        """Where the stroke itself is refused: keys of a tool are not asked in the order in which they are made."""
+        if not operator_parts.object_mode(cls, context):
+            return False
+        if context.region_data is None:
+            return operator_parts.deny(cls, "Use it in a 3D view")
+        ob = sculpts.active(context)
+        if refusal(context) or ob is None or mesh_edits.made(ob):
+            return True
+        return operator_parts.deny(cls, "The active sculpt gets the stroke itself")
+
+    def invoke(self, context, event):
+        """The drag belongs to this operator whatever comes of it, so that nothing is moved or selected by it."""
+        self._refused, self._rows, self._begin = refusal(context), [], time.perf_counter()
+        target = None if self._refused else under(context, event) or object_surfaces.source_object(context)
+        if not self._refused:
+            self._refused = unfit(context, target)
+        if not self._refused and sculpts.is_sculpt(target) and not mesh_edits.made(target):
+            sculpts.select_only(context, target)
+            return bpy.ops.riffler.stroke("INVOKE_DEFAULT", True, mode=self.mode)
+        self._target = "" if self._refused else target.name
+        region = context.region
+        self._corner = region.x, region.y
+        self._view = {
+            "matrix": meshes.matrix(context.region_data.perspective_matrix).ravel().tolist(),
+            "size": [region.width, region.height],
+        }
+        self._keep(event)
+        if self._target and context.workspace is not None:
+            context.workspace.status_text_set(local("Riffler: let go to be asked what this is to be    Esc: cancel"))
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            return self._end(context)
+        if event.type in MOVES:
+            self._keep(event)
+        if event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            self._end(context)
+            if self._refused:
+                say(context, self._refused)
+            else:
+                self._ask(context, bpy.data.objects.get(self._target))
+            return {"CANCELLED"}
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        self._end(context)
+
+    def _ask(self, context, target):
+        given = {"mode": self.mode, "stroke": json.dumps({"view": self._view, "rows": self._rows})}
+        if sculpts.is_sculpt(target):
+            sculpts.select_only(context, target)
+            bpy.ops.riffler.edits_first("INVOKE_DEFAULT", **given)
+        else:
+            bpy.ops.riffler.make_sculpt("INVOKE_DEFAULT", object=self._target, **given)
+
+    def _keep(self, event):
+        self._rows.append(list(sample(event, self._corner)._replace(time=time.perf_counter() - self._begin)))
+
+    def _end(self, context):
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        return {"CANCELLED"}
+
+
+def say(context, text):
+    """At the pointer, where whoever drags looks; a line of the status bar is overlooked."""
+
+    def draw(menu, context):
+        for line in textwrap.wrap(local(text), WIDE):
+            menu.layout.label(text=line, translate=False)
+
+    context.window_manager.popup_menu(draw, title="Riffler", icon="INFO")
+
+
+def refusal(context):
+    """Why nothing can be sculpted now, whatever lies under the pointer; otherwise nothing."""
+    heard = Heard()
+    if operator_parts.busy(heard, context):
+        return heard.text
+    ob = sculpts.active(context)
+    if ob is not None and not sculpt_work.sculpt_poll(heard, context):
+        return heard.text
+    return ""
+
+
+class Heard:
+    """Stands for an operator's class, and keeps why its button would be grey."""
+
+    text = ""
+
+    def poll_message_set(self, text):
+        self.text = text
+
+
+def under(context, event):
+    """The object with a surface that the pointer is on; of a live sculpt's chunk, the sculpt. None where there is
+    none."""
+    from bpy_extras import view3d_utils
+
+    region, space = context.region, context.region_data
+    at = event.mouse_x - region.x, event.mouse_y - region.y
+    origin = view3d_utils.region_2d_to_origin_3d(region, space, at)
+    direction = view3d_utils.region_2d_to_vector_3d(region, space, at)
+    hit, *_, ob, _ = context.scene.ray_cast(context.evaluated_depsgraph_get(), origin, direction)
+    if not hit or ob is None:
+        return None
+    ob = ob.original
+    mark = ob.data.get(chunks.MARK) if ob.data is not None else None
+    return sculpts.marked(mark) if mark else ob
+
+
+def unfit(context, ob):
+    """Why that object cannot become a sculpt, with the remedy; otherwise nothing."""
+    if ob is None:
+        return refusals.instance(context.object) or NOTHING
+    if why := refusals.instance(ob):
+        return why
+    if ob.type not in object_surfaces.WITH_SURFACE:
+        return NOTHING
+    if ob.name not in context.view_layer.objects or not ob.visible_get():  # one that the pointer is on all the same
+        stands = (o for o in context.view_layer.objects if o.instance_collection is not None)
+        of = next((o for o in stands if ob.name in o.instance_collection.all_objects), None)
+        return refusals.instance(of) if of is not None else refusals.disabled(ob, context.view_layer) or NOTHING
+    return refusals.linked(ob, ob.data) if sculpts.is_sculpt(ob) else refusals.flat(ob)
+
+
+def _fit(chosen, context):
+    """Pitch and cutter that suit the size which `chosen`, the fields of the operator below, has."""
+    if chosen.side > 0:
+        chosen.pitch = fitting.pitch(chosen.side)
+        chosen.diameter = fit.cutter(context, chosen.side)
+
+
+class TakesDrag:
+    """Mixin of operators that ask first, and go on with the drag that was kept."""
+
+    mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"HIDDEN", "SKIP_SAVE"})
+    stroke: StringProperty(
+        name="Stroke",
+        options={"HIDDEN", "SKIP_SAVE"},
+        description="What riffler.stroke takes, with a view that goes from the world to clip space; empty: no stroke",
+    )
+
+    def go_on(self, context):
+        """The drag becomes a stroke on the sculpt that is active now."""
+        if not self.stroke:
+            return {"FINISHED"}
+        data = json.loads(self.stroke)
+        to_world = np.linalg.inv(sculpts.from_world(sculpts.active(context)))
+        matrix = np.array(data["view"]["matrix"], float).reshape(4, 4) @ to_world
+        data["view"]["matrix"] = matrix.ravel().tolist()
+        return bpy.ops.riffler.stroke("EXEC_DEFAULT", True, mode=self.mode, stroke=json.dumps(data))
+
+
+class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
+    """Make the object a sculpt, with units, pitch and cutter chosen from its size; the object itself is hidden"""
+
+    bl_idname = "riffler.make_sculpt"
+    bl_label = "Make It a Sculpt?"
+    bl_options = set()  # making the sculpt is one undo step, and the stroke another
+
+    object: StringProperty(name="Object", options={"HIDDEN", "SKIP_SAVE"}, description="Empty: the active one")
+    side: FloatProperty(
+        name="Longest side (mm)",
+        min=0.0,
+        max=1e5,
+        precision=2,
+        options={"SKIP_SAVE"},
+        update=lambda self, context: _fit(self, context),
+        description="The scene's unit becomes so many millimetres that the object is as long as this; nothing is "
+        "scaled. 0: chosen from the object",
+    )
+    pitch: FloatProperty(
+        name="Pitch (mm)",
+        min=0.0,
+        max=1e5,
+        precision=4,
+        options={"SKIP_SAVE"},
+        description="Distance between rays: what the surface can resolve. 0: chosen from the size",
+    )
+    diameter: FloatProperty(
+        name="Cutter (mm)",
+        min=0.0,
+        max=1e5,
+        precision=3,
+        options={"SKIP_SAVE"},
+        description="Diameter of the cutter. 0: chosen from the size",
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
+
+    def invoke(self, context, event):
+        try:
+            self._choose(context)
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        return context.window_manager.invoke_props_dialog(self, width=320)
+
+    def draw(self, context):
+        layout = self.layout
+        source = self._source(context)
+        if source is None:
+            return
+        column = layout.column(align=True)
+        column.label(text=local("{} is no sculpt yet.").format(source.name), icon="SCULPTMODE_HLT", translate=False)
+        column.label(text="OK makes one of it; the object stays, hidden.", icon="BLANK1")
+        layout.use_property_split = True
+        column = layout.column(align=True)
+        column.enabled = not fit.others(context)
+        column.prop(self, "side")
+        column = layout.column(align=True)
+        column.prop(self, "pitch")
+        column.prop(self, "diameter")
+
+    def execute(self, context):
+        kept = fit.Kept(context)
+        active, selected = context.view_layer.objects.active, list(context.selected_objects)
+        try:
+            self._choose(context)
+            source = self._source(context)
+            sculpts.select_only(context, source)
+            if not fit.others(context):
+                fit.take_unit(context, self.side / _units(source))
+            fit.take_cutter(context, units.clean(self.diameter))
+            pitch = units.clean(self.pitch)
+            bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, source="OBJECT", pitch=pitch, directions="xyz")
+        except operator_parts.ERRORS as error:
+            kept.restore()
+            for ob in context.view_layer.objects:
+                ob.select_set(ob in selected)
+            context.view_layer.objects.active = active
+            return operator_parts.fail(self, error)
+        return self.go_on(context)
+
+    # ------------------------------------------------------------------ within
+    def _source(self, context):
+        return bpy.data.objects.get(self.object) if self.object else object_surfaces.source_object(context)
+
+    def _choose(self, context):
+        """Whatever was not chosen, from the object's size."""
+        source = self._source(context)
+        if why := unfit(context, source):
+            raise ValueError(why)
+        if sculpts.is_sculpt(source):
+            raise ValueError(f"{source.name} is a sculpt already: select it, and stroke it")
+        if not self.side:
+            self.side = fit.side(context, _units(source))
+        elif not (self.pitch and self.diameter):
+            _fit(self, context)
+
+
+class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):
+    """Say what becomes of what Blender's own tools have made of the sculpt; then the stroke goes on"""
+
+    bl_idname = "riffler.edits_first"
+    bl_label = "Keep the Edits?"
+    bl_options = {"INTERNAL"}
+
+    edits: EnumProperty(
+        name="Edits",
+        items=(
+            ("TAKE", "Take Edits", "The mesh as it is now becomes the sculpt's material"),
+            ("DROP", "Drop Edits", "The mesh is made from the volume again, as it was before them"),
+        ),
+        default="TAKE",
+        options={"SKIP_SAVE"},
+        description="What becomes of them",
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return sculpt_work.sculpt_poll(cls, context)
+
+    def invoke(self, context, event):
+        return context.window_manager.invoke_props_dialog(self, width=320)
+
+    def draw(self, context):
+        name = sculpts.active(context).name
+        self.layout.label(
+            text=local("{} was edited in Blender's own modes.").format(name), icon="INFO", translate=False
+        )
+        self.layout.row().prop(self, "edits", expand=True)
+
+    def execute(self, context):
+        call = bpy.ops.riffler.take_edits if self.edits == "TAKE" else bpy.ops.riffler.rebuild
+        try:
+            call("EXEC_DEFAULT", True)
+        except RuntimeError as error:
+            return operator_parts.fail(self, error)
+        return self.go_on(context)
+
+
+def _units(ob):
+    """The longest side as it is shown, in Blender units."""
+    if min(ob.dimensions) <= 0:
+        raise ValueError(f"{ob.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
+    return fitting.longest(ob.dimensions)
+
+
+CLASSES = (RIFFLER_OT_stroke_elsewhere, RIFFLER_OT_make_sculpt, RIFFLER_OT_edits_first)

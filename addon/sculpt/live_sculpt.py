@@ -1,0 +1,373 @@
+"""A live sculpt: a volume that changes stroke by stroke, shown in chunks, each stroke one of Blender's own undo steps.
+
+A stroke ends with a new token on the object; the state that it names stays in memory (undo_states.py). Undo and redo
+bring back the token and the chunks' meshes, and `follow` brings the volume. So a step costs what Blender takes for its
+objects, whatever the size of the sculpt. The sculpt's own mesh and the data in the file follow when they are needed:
+when the work ends, before the file is saved, when an operator wants the sculpt. Packing and journal: persistence.py.
+
+The work ends by itself once no window has the sculpt and one of its tools (idle_detection.py). A timer looks; nothing
+modal runs between strokes, since Blender makes no autosave while something does.
+"""
+
+import bpy
+import numpy as np
+import riffler
+
+from ..blender import refusals, versions
+from ..common.contents import Content
+from ..common.poses import moving
+from . import brushes, chunks, idle_detection, persistence, sculpt_store, sculpts, undo_states
+from .pure import reach, symmetry
+from .pure.stages import Stages
+from .pure.stroke_record import StrokeRecord, copy_of, revision
+from .sculpt_identity import SculptIdentity
+from .shown_surface import ShownSurface
+from .undo_states import State
+
+lives = {}  # by the mark of the object (sculpts.new_mark); live_registry.py keeps it
+
+
+class LiveSculpt:
+    """Of the sculpt `ob`. ValueError, MemoryError where it cannot be; then nothing has changed."""
+
+    def __init__(self, context, ob):
+        if why := refusals.linked(ob, ob.data):
+            raise ValueError(why)
+        content = sculpt_store.content(ob.data)
+        sculpts.new_mark(ob)
+        self._take(ob, content)
+        mesher = riffler.Mesher(self.volume)
+        self._show_in(chunks.Chunks(context, ob, mesher.shape, self.mm), mesher)
+        try:
+            self.chunks.update(mesher, mesher.patches(), self.mask)
+        except Exception:
+            chunks.sweep(self.mark, self.name)
+            raise
+        self._remember(ob)
+        if not ob.data.riffler.store.library:
+            sculpt_store.mark_state(ob.data, self.token)
+        self.persistence = persistence.Persistence(ob, self.token)
+
+    @classmethod
+    def revived(cls, ob, state):
+        """Of a sculpt whose chunks an undo has brought back after the work at it had ended."""
+        self = cls.__new__(cls)
+        self._take(ob, state.content)
+        self._show_in(chunks.Chunks.found(ob, state.shape, self.mm))
+        self.token = ob.riffler.token
+        self.persistence = persistence.Persistence(ob, self.token)
+        versions.lighten(ob.data)
+        self._surface.adopt(state.fillings, self.volume, self.mask)
+        self.chunks.hide_tool()
+        return self
+
+    def _take(self, ob, content):
+        self._identity = SculptIdentity(ob)
+        self.stages = Stages()
+        self._become(content)
+        self.token = ""  # of the state
+        self._facts = None  # (token, of it)
+        self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
+        self.strength = 0.5  # of brushes that blend
+        self.keep_out = None  # of the copies by symmetry, as BrushStroke's
+        self.stroke = None  # StrokeRecord of the one that is being made
+        self.cut_off = False  # whether the box has cut off what this stroke, or this session, put on
+        self._outline = None, None  # a tool, and its cutter's
+        self.awake, self._idle = True, idle_detection.IdleClock()
+        self._objects = -1  # in the file, when copies were last looked for
+        self.device = None  # pen/session.py: PenSession, while one sculpts this
+
+    def _show_in(self, chunks, mesher=None):
+        self.chunks, self._surface = chunks, ShownSurface(chunks, self.stages, mesher)
+
+    # ------------------------------------------------------------------ where things are
+    @property
+    def object(self):
+        """The sculpt, as long as it is the one that this was begun with and nothing else has changed it; otherwise
+        None."""
+        return self._identity.object
+
+    @property
+    def mark(self):
+        return self._identity.mark
+
+    @property
+    def name(self):
+        return self._identity.name
+
+    @property
+    def mm(self):
+        return self._identity.mm
+
+    @property
+    def to_mm(self):
+        """(4, 4): Blender units in the world → mm in the sculpt's frame."""
+        return sculpts.from_world(self.object)
+
+    @property
+    def to_world(self):
+        """(4, 4): mm in the sculpt's frame → Blender units in the world."""
+        return np.linalg.inv(self.to_mm)
+
+    # ------------------------------------------------------------------ what it is
+    def _become(self, content):
+        """Takes over a state: volume, mask, cuts, and whether other means have shaped it."""
+        self.volume = content.volume.copy()
+        self.mask, self.cuts, self.shaped = copy_of(content.mask), list(content.cuts), content.shaped
+
+    def _content(self):
+        return Content(self.volume.copy(), self.cuts, copy_of(self.mask), self.shaped)
+
+    @property
+    def facts(self):
+        """sculpts.facts of the state at the end of the last stroke: counted once for each."""
+        if self._facts is None or self._facts[0] != self.token:
+            self._facts = self.token, sculpts.facts(Content(self.volume, self.cuts, self.mask))
+        return self._facts[1]
+
+    @property
+    def mesher(self):
+        return self._surface.mesher(self.volume)
+
+    def freeze(self):
+        """The surface as it is now, for picking while the stroke changes it."""
+        return self.mesher.freeze()
+
+    def show(self):
+        self._surface.show(self.volume, self.mask, self.object.matrix_world)
+
+    # ------------------------------------------------------------------ a stroke
+    def begin_stroke(self):
+        _ = self.mesher  # has to know what is shown before it changes
+        ob = self.object
+        if ob is None:
+            raise ValueError(f"{self.name} was changed or removed meanwhile")
+        self.stroke, self.cut_off = StrokeRecord(self._content()), False
+        versions.lighten(ob.data)
+        self.persistence.begin_stroke(ob, self.token, self.stroke.begin)
+
+    def begin_device_stroke(self):
+        """What a device has begun to take belongs to a stroke."""
+        content = undo_states.snapshots.get(self.token).content
+        self.stroke = StrokeRecord(Content(content.volume.copy(), content.cuts, copy_of(content.mask), content.shaped))
+        versions.lighten(self.object.data)
+
+    @property
+    def in_stroke(self):
+        return self.stroke is not None
+
+    def give_up(self):
+        """What a device has taken since the last state is there again."""
+        if not self.in_stroke:
+            self.begin_device_stroke()
+        self.cancel_stroke()
+
+    def took(self, tool, rows, mode):
+        """The poses, (n, 6), of a stroke with `tool`, a dictionary, that a device has made."""
+        brush, tool = brushes.of(mode), riffler.Tool.from_dict(tool)
+        if brush.puts_on:
+            self._reach_out(tool, rows)
+        if self.in_stroke:
+            brush.record(self.stroke, 0, tool, rows, True)
+
+    def carve(self, tool, poses, dt=None, mode="remove", new=True):
+        """Applies a brush (`mode`: its id) along the poses, (n, 6), and along their copies by symmetry. `new`: they do
+        not go on from the last ones. Returns what Brush.apply does of the poses themselves."""
+        brush = brushes.of(mode)
+        if brush.idle(self):
+            return None
+        if self.stroke is None:
+            self.begin_stroke()
+        first, stroke = None, self.stroke
+        poses, dt = brush.moves(np.asarray(poses, float), dt, new)
+        if not len(poses):
+            return None
+        with self.stages.of("cut"):
+            for k, copy in enumerate(symmetry.copies(poses, self.maps, self.centre)):
+                copy = self._kept_out(k, copy)
+                if copy is None:
+                    continue
+                cut = self._apply(brush, tool, copy, dt if k == 0 else None)
+                first = first or cut
+                self.persistence.carved(tool.to_dict(), copy, brush.journal, stroke.token, self.strength)
+                brush.record(stroke, k, tool, copy, new or k in stroke.apart)
+                stroke.apart.discard(k)
+        self.stages.count(moves=max(len(poses) - 1, 0))
+        return first
+
+    def _apply(self, brush, tool, poses, dt):
+        extent = self._extent(tool, poses)
+        if brush.paints:
+            self._surface.masked.append(extent)
+            self.stroke.painted.append(extent)
+        else:
+            self._surface.reached.append(extent)
+            self.stroke.swept.append(extent)
+        cut = brush.apply(self, tool, poses, dt)
+        if brush.puts_on:
+            self._reach_out(tool, poses)
+        return cut
+
+    def _extent(self, tool, poses):
+        """(lower, upper) of what the cutter may touch, in rays."""
+        ends = np.vstack([poses[:, :3], poses[:, :3] + tool.length * poses[:, 3:]])
+        lower, upper = ends.min(axis=0) - tool.diameter / 2, ends.max(axis=0) + tool.diameter / 2
+        return (lower - self.volume.lower) / self.volume.pitch, (upper - self.volume.lower) / self.volume.pitch
+
+    def _reach_out(self, tool, poses):
+        if self._outline[0] is not tool:
+            self._outline = tool, reach.outline_of(tool)
+        self.cut_off |= reach.is_cut_off(self._outline[1], poses, self.volume)
+
+    def _kept_out(self, k, poses):
+        """A copy's poses, clear of the fixtures; None where nothing of it is. The first is no copy: it is clear."""
+        if k == 0 or self.keep_out is None:
+            return poses
+        kept = self.keep_out(poses, np.ones(len(poses) - 1))
+        if kept is None:
+            self.stroke.apart.add(k)
+            return None
+        return moving(kept[0])[0]
+
+    def finish_stroke(self, context, label=""):
+        """What was carved since `begin_stroke` is a state of its own. The caller's operator makes the undo step; a
+        caller that has none gives it a `label`. False where nothing has changed."""
+        stroke, self.stroke = self.stroke, None
+        if stroke is None or not stroke.changed(self.volume, self.mask):
+            return False
+        self.cuts = [*self.cuts, *stroke.cuts(self.mask is not None)]
+        self.shaped |= stroke.shaped
+        self.show()
+        ob = self.object
+        self._remember(ob, stroke.token)
+        self.persistence.finished(ob, undo_states.snapshots.get(self.token).content, self.token)
+        self._identity.written(ob)
+        if label:
+            bpy.ops.ed.undo_push(message=label)
+        return True
+
+    def cancel_stroke(self):
+        stroke, self.stroke = self.stroke, None
+        if stroke is not None:
+            self.volume, self.mask = stroke.begin.volume, stroke.begin.mask
+            self._surface.masked, self._surface.reached = stroke.painted, stroke.swept
+            self.persistence.cancelled()
+            self.show()
+
+    # ------------------------------------------------------------------ undo
+    def _remember(self, ob, token=""):
+        """What is shown is a state that undo and redo may ask for."""
+        state = State(self._content(), self._surface.shape, dict(self.chunks.fillings))
+        self.token = undo_states.remember(state, token, self.token, {other.token for other in lives.values()})
+        ob.riffler.token = self.token
+
+    def follow(self):
+        """After an undo or a redo: this shows what Blender has brought back. False where it cannot."""
+        ob = self.object
+        if ob is None:
+            return False
+        was, self.awake, self.stroke = self.awake, self.chunks.there, None
+        if was != self.awake:
+            self.chunks.outline(was)
+        if not self.awake:
+            if self.device is not None:
+                self.device.drop()
+            return True  # redo may bring it again
+        state = undo_states.state_of(ob)
+        if state is None:
+            return False
+        dropped = self.device is not None and not self.chunks.tool_there  # its beginning was undone
+        if dropped:
+            self.device.drop()
+        if dropped or self.device is not None or ob.riffler.token != self.token:
+            self._bring(state.content, ob.riffler.token)
+        self.persistence.went(self.token)
+        self._surface.adopt(state.fillings, self.volume, self.mask)
+        if self.device is None:
+            self.chunks.hide_tool()
+        return True
+
+    def _bring(self, content, token):
+        volume = self.volume
+        kept = self.device is not None and self.device.go(content)
+        self._become(content)
+        if kept:  # the device's session has the volume, and has undone its own strokes in it
+            self.volume = volume
+        self.token = token
+        self._surface.outdate()
+        if self.device is not None:
+            _ = self.mesher  # has to know what is shown before the device cuts on
+
+    # ------------------------------------------------------------------ the end
+    def forget(self):
+        """Somebody works at it no more, and nothing of it is to be seen."""
+        if self.device is not None:
+            self.device.drop()
+        if self.awake and not self.chunks.there:
+            self.chunks.outline(True)
+        self.persistence.end()
+
+    def commit(self):
+        """The sculpt's mesh and data are what is shown."""
+        ob = self.object
+        if ob is None:
+            return
+        if self._changed(ob):
+            content = self._content()
+            sculpts.commit(ob.data, content, self.mm, "" if self.in_stroke else self.token)
+            self._identity.written(ob)
+        elif sculpts.behind(ob.data) or not ob.data.polygons:
+            sculpts.refill(ob.data, self.mm)
+
+    def _changed(self, ob):
+        try:
+            content = sculpt_store.content(ob.data)
+        except ValueError:  # what is packed is damaged: what is in memory takes its place
+            return True
+        return content.volume.revision != self.volume.revision or revision(content.mask) != revision(self.mask)
+
+    def end(self):
+        """Commits, and shows the sculpt itself again. An undo may bring the work back."""
+        if self.device is not None:
+            self.device.finish()
+        ob = self.object
+        if ob is not None and self.awake:
+            self.cancel_stroke()
+            self._part_copies(ob)
+            with sculpts.in_object_mode(ob):
+                self.commit()
+            ob.riffler.token = ""
+        self.persistence.end(sculpt_store.identity(ob.data) if ob is not None else "")
+        if self.awake and not self.chunks.there:
+            self.chunks.give_back(self.name)
+        chunks.sweep(self.mark, self.name)
+        lives.pop(self.mark, None)
+
+    # ------------------------------------------------------------------ between strokes
+    def look(self, now):
+        """Ends the work that nobody is at any more; otherwise packs it while the hand rests."""
+        if not self.awake or self.in_stroke:
+            return
+        ob = self.object
+        if ob is None or ob.mode != "OBJECT" or self._idle.long(idle_detection.stays(ob), now):
+            self.end()
+            return
+        if self._objects != len(bpy.data.objects):
+            self._objects = len(bpy.data.objects)
+            self._part_copies(ob)
+        self.rest(ob)
+
+    def rest(self, ob):
+        state = undo_states.snapshots.get(self.token)
+        if state is not None and self.persistence.look(ob, state.content, self.token):
+            self._identity.written(ob)
+
+    def _part_copies(self, ob):
+        """What was duplicated meanwhile is a sculpt of its own, with the state that is shown. What shares the mesh
+        shows it once the work has ended."""
+        for other in [o for o in bpy.data.objects if o.riffler.mark == self.mark and o != ob]:
+            other.riffler.mark = other.riffler.token = ""
+            if not sculpts.is_sculpt(other) or other.data == ob.data:
+                continue
+            sculpts.commit(other.data, self._content(), self.mm)
+            chunks.reveal(other)

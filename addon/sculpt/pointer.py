@@ -1,0 +1,160 @@
+"""The sculpt tool's cursor: the outline of the real cutter as a click would set it on the surface, its axis, and the
+place it goes in.
+
+Blender draws cursors over the finished view, so following the pointer costs no new picture of the sculpt.
+"""
+
+import numpy as np
+
+from ..blender import batches, meshes, object_surfaces, scene_units
+from ..common import fitting, glyphs, poses
+from . import live_registry, sculpts
+from .pure import brush_stroke, symmetry
+from .pure.view_rays import ViewRays
+
+AXES = ((1.0, 0.25, 0.3), (0.45, 0.8, 0.1), (0.25, 0.55, 1.0))  # planes square to x, y and z, as Blender's axes
+SHADOW = (0.0, 0.0, 0.0, 0.55)
+SHOWN = 1.5  # diameters of the tool above its tip: more would cover the view
+
+kept = batches.Batches()
+pixels_per_mm = 10.0  # where the pointer was last: for Blender's radial control, which knows no place
+sizing = None  # sculpt/pure/sizing.Drag, while a size is set by the pointer's distance
+held = None  # the BrushStroke of the stroke that is made now, and what its tool is
+
+
+def sight(region, space, run):
+    """From where a region looks at a live sculpt, in the sculpt's millimetres."""
+    return ViewRays(meshes.matrix(space.perspective_matrix) @ run.to_world, (region.width, region.height))
+
+
+def draw(context, brush, xy):
+    """`xy`: the pointer in the window."""
+    region, space = context.region, context.region_data
+    ob = sculpts.active(context)
+    if region is None or space is None or context.window_manager.riffler.sculpting:
+        return  # while a device sculpts, its tool is the cursor
+    at = xy[0] - region.x, xy[1] - region.y
+    zoom, corner = context.preferences.system.ui_scale, (region.x, region.y)
+    if sizing is not None:
+        rings = [(sizing.middle, sizing.first * sizing.scale, False), (sizing.middle, sizing.radius, True)]
+        _draw([(_ring(*ring), True, strong) for *ring, strong in rings], corner, brush.colour, zoom)
+        return
+    if ob is None:
+        _draw(_before(context, region, space, at), corner, brush.colour, zoom)
+        return
+    if held is None:
+        _planes(context, ob, region, space, corner, zoom)
+    tool = context.scene.riffler.tool.dictionary()
+    run = live_registry.of(ob)
+    lines = None
+    if run is not None and run.object is not None:
+        lines = _on_surface(context, brush, run, tool, at)
+    if lines is None:
+        lines = _beside(context, ob, region, space, at)
+    _draw(lines, corner, brush.colour, zoom)
+
+
+def _on_surface(context, brush, run, tool, at):
+    """None where nothing is under the pointer, and where a stroke would be refused with a message: drawing has none."""
+    global pixels_per_mm
+    settings = context.scene.riffler.sculpt
+    try:
+        view = sight(context.region, context.region_data, run)
+        if held is not None and held.pose is not None:
+            cutter, pose, place, normal = held.tool, held.pose, None, None
+        else:
+            probe = brush_stroke.BrushStroke(run, tool, view, settings.choice(brush.id), surface=run.mesher)
+            found = probe.hover(*at)
+            if found is None:
+                return None
+            cutter, (pose, place, normal) = probe.tool, found
+    except ValueError:
+        return None
+    pixels_per_mm = view.pixels_per_unit(pose[:3])
+    return tool_lines(cutter, pose, place, normal, view)
+
+
+def tool_lines(cutter, pose, place, normal, view):
+    """[(points (n, 2) in pixels, closed, whether it is the outline)] of a tool at its pose."""
+    outline = cutter.outline(0.002 * cutter.diameter)
+    axis, back = pose[3:], view.basis().back
+    across = np.cross(axis, back)
+    size = float(np.linalg.norm(across))
+    shown = glyphs.meridian(outline, SHOWN * cutter.diameter)
+    out = []
+    if size > 0.05:  # seen along its axis a tool is its ring
+        out.append((pose[:3] + shown[:, :1] * (across / size) + shown[:, 1:] * axis, True, True))
+    line = np.vstack([points for part, points in outline if part == "cutter"])
+    radius, height = line[np.argmax(line[:, 0])]
+    out.append((glyphs.ring(pose[:3] + height * axis, axis, radius), True, True))
+    out.append((np.array([pose[:3], pose[:3] + SHOWN * cutter.diameter * axis]), False, False))
+    if place is not None:
+        out.append((glyphs.ring(place, normal, 0.12 * cutter.diameter, 24), True, False))
+    return [(view.project(points), closed, strong) for points, closed, strong in out]
+
+
+def _planes(context, ob, region, space, corner, zoom):
+    """Where strokes are mirrored, as outlines of the planes within the stock's box; and the axis of radial copies."""
+    settings, p = context.scene.riffler.sculpt, ob.data.riffler
+    if not settings.mirror and settings.radial < 2:
+        return
+    world = meshes.matrix(ob.matrix_world)
+    world[:3, :3] /= sculpts.shown_mm_per_unit(ob.data)
+    seen = ViewRays(meshes.matrix(space.perspective_matrix), (region.width, region.height))
+    middle = 0.5 * np.add(p.lower, p.upper) - np.array(p.off_middle)
+    for line, axis, closed in symmetry.outlines(settings.mirror, settings.radial, settings.radial_axis, p, middle):
+        pixels = seen.project(poses.transform_points(world, line))
+        if np.isfinite(pixels).all():
+            _draw([(pixels, closed, False)], corner, AXES["XYZ".index(axis)], zoom, f"plane {axis} {closed}")
+
+
+def _before(context, region, space, at):
+    """Where no sculpt is active: a ring as wide as the cutter would be on the active object if it were one
+    (common/fitting.py); without an object, any ring."""
+    ob, pixels = context.object, 0.0
+    if ob is not None and ob.type in object_surfaces.WITH_SURFACE and min(ob.dimensions) > 0:
+        middle = meshes.matrix(ob.matrix_world) @ np.append(np.mean(ob.bound_box, axis=0), 1.0)
+        seen = ViewRays(meshes.matrix(space.perspective_matrix), (region.width, region.height))
+        pixels = 0.5 * max(ob.dimensions) / fitting.CUTTERS * seen.pixels_per_unit(middle[:3])
+    return [(_ring(at, min(max(pixels, 6.0), 200.0)), True, True)]
+
+
+def _ring(at, radius):
+    """(64, 2) pixels."""
+    angle = 2 * np.pi * np.arange(64) / 64
+    return np.asarray(at) + radius * np.c_[np.cos(angle), np.sin(angle)]
+
+
+def _beside(context, ob, region, space, at):
+    """Off the surface, and before the first stroke: a ring as wide as the tool would be in the sculpt's middle."""
+    global pixels_per_mm
+    p = ob.data.riffler
+    mm = sculpts.shown_mm_per_unit(ob.data)
+    middle = poses.transform_points(meshes.matrix(ob.matrix_world), 0.5 * np.add(p.lower, p.upper)[None] / mm)[0]
+    seen = ViewRays(meshes.matrix(space.perspective_matrix), (region.width, region.height))
+    scale = float(np.cbrt(abs(np.linalg.det(meshes.matrix(ob.matrix_world)[:3, :3]))))
+    pixels_per_mm = seen.pixels_per_unit(middle) * scale / mm
+    radius = 0.5 * scene_units.clean(context.scene.riffler.tool.diameter) * pixels_per_mm
+    return [(_ring(at, radius), True, True)]
+
+
+def _draw(lines, corner, colour, zoom, named=""):
+    import gpu
+
+    with batches.state(), gpu.matrix.push_pop():
+        gpu.matrix.translate(corner)
+        for k, (points, closed, strong) in enumerate(lines):
+            width = zoom * (1.6 if strong else 1.0)
+            signature = (points.tobytes(), width)
+            for name, extra, paint in (
+                ("shadow", 1.6 * zoom, SHADOW),
+                ("line", 0.0, (*colour, 0.95 if strong else 0.7)),
+            ):
+                batches.draw(
+                    kept.get(
+                        f"{named} {name} {k}",
+                        signature,
+                        lambda p=points, w=width + extra, c=closed: batches.flat(glyphs.ribbon(p, w, c)),
+                    ),
+                    paint,
+                )

@@ -1,0 +1,1 @@
+"""Strokes, journals and what a sculpt keeps in the .blend, without Blender."""

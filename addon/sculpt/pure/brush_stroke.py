@@ -1,0 +1,203 @@
+"""A stroke of the sculpt tool on a live sculpt: samples become poses, and poses are carved, as the hand moves.
+
+`BrushStroke.text` keeps a stroke: the view, the samples, and the samples at which the surface was frozen again. The
+same text on the same sculpt cuts the same, in a window or in a script.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import riffler
+
+from ...common import json_object
+from .. import brushes
+from .reach import outline_of
+from .stroke_path import Hit, Sample, StrokeMaker, View, settings_for
+from .view_rays import ViewRays, cross
+
+NUMBERS = len(Sample._fields)
+AROUND = 0.25  # of the tool's width: the surface's normal is the mean of what is so far around a place
+TURN = 2 * np.pi * np.arange(16) / 8
+SPOKES, RINGS = np.stack([np.cos(TURN), np.sin(TURN)], axis=1), np.repeat([1.0, 0.5], 8)  # eight in each of two rings
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How a stroke is made, whatever makes it."""
+
+    mode: str = "remove"  # id of a brush
+    depth: float = 0.5  # mm
+    axis: str = "NORMAL"  # NORMAL, VIEW, UP, TILT
+    pressure: str = "NONE"  # NONE, DEPTH, FEED
+    feed: float = 50.0  # mm/s
+    string: float = 0.0  # pixels
+    accumulate: bool = False
+
+
+class BrushStroke:
+    """`add` samples and `look` now and then, then `end` once. `run` is a LiveSculpt; `keep_out`: poses (n, 6)
+    and seconds (n - 1,) → the same of a way that does not touch what must not be touched, or None."""
+
+    def __init__(self, run, tool: dict, sight: ViewRays, choice: Choice, keep_out=None, surface=None):
+        """`surface`: what the tool follows; without one, the surface as it is now."""
+        self.brush = brushes.of(choice.mode)
+        self._run, self._sight, self._choice, self._keep_out = run, sight, choice, keep_out
+        self.tool = self.brush.cutter(riffler.Tool.from_dict(tool), choice.depth)
+        self.samples: list[Sample] = []
+        self.looks: list[int] = []  # how many samples there were when the surface was looked at
+        self.removed, self.moves, self.lifted = 0.0, 0, 0
+        self._apart = False  # what was kept out lies between the last move and the next
+        self.pose: np.ndarray | None = None  # (6,) where the tool is, mm
+        self.force = self.torque = np.zeros(3)
+        self._surface = surface or run.freeze()
+        self._maker = self._make_maker()
+
+    def add(self, sample: Sample) -> bool:
+        """True where something was carved."""
+        self.samples.append(sample)
+        return self._carve(self._maker.add(sample))
+
+    def end(self) -> bool:
+        return self._carve(self._maker.end())
+
+    def look(self) -> None:
+        """Shows what was carved; with `accumulate` the tool follows that from here on."""
+        self._run.show()
+        if self._choice.accumulate:
+            self.looks.append(len(self.samples))
+            self._surface = self._run.freeze()
+
+    def hover(self, x: float, y: float):
+        """What a click there would do: the tool's pose (6,) and the surface's point and normal (mm); None off the
+        surface. Carves nothing; for a brush that makes no stroke."""
+        pieces = self._make_maker().add(Sample(x, y))
+        found = self._surface.pick(*self._sight.ray(x, y))
+        return (pieces[0].poses[-1], *found[1:3]) if pieces and found is not None else None
+
+    def text(self) -> str:
+        rows = [list(s) for s in self.samples]
+        view = {"matrix": self._sight.matrix.ravel().tolist(), "size": list(self._sight.size)}
+        return json.dumps({"view": view, "rows": rows, "looks": self.looks})
+
+    # ------------------------------------------------------------------ within
+    def _make_maker(self) -> StrokeMaker:
+        choice, view = self._choice, self._sight.basis()
+        diameter, pitch = self.tool.diameter, self._run.volume.pitch
+        axis, depth, more = self.brush.path(choice.axis, choice.depth, diameter, pitch)
+        if axis == "UP":  # of the stock, which is a view from above
+            view, axis = View(*np.eye(3)), "VIEW"
+        if self.brush.puts_on:
+            view = View(*(-v for v in view))
+        settings = settings_for(
+            pitch,
+            diameter,
+            depth=depth,
+            axis=axis,
+            pressure=choice.pressure,
+            feed=choice.feed,
+            string=choice.string,
+            **more,
+        )
+        outline = outline_of(self.tool)
+        return StrokeMaker(settings, outline, self._pick, view)
+
+    def _pick(self, x: float, y: float) -> Hit | None:
+        found = self._surface.pick(*self._sight.ray(x, y))
+        if found is None:
+            return None
+        _, point, normal, _ = found
+        point, normal = np.asarray(point), self._around(np.asarray(point), np.asarray(normal))
+        # Material is put on from within: by the tool's mirror image, whose tip comes out of the surface.
+        return Hit(point, -normal if self.brush.puts_on else normal)
+
+    def _around(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """The surface's normal without the jerks of its facets: the mean of a place and of two rings around it. Rays
+        come in from all sides at 45°, so what lies behind an edge counts before the tool is there. It is a function of
+        the place: on a curved surface a mean along the way would lag behind it."""
+        spokes = SPOKES @ across(normal)
+        far = AROUND * self.tool.diameter * RINGS
+        directions = -np.sqrt(0.5) * (spokes + normal)
+        distance, _, normals, _ = self._surface.pick(point + far[:, None] * (2 * spokes + normal), directions)
+        near = distance <= 2 * np.sqrt(2) * far
+        from_outside = (normals * directions).sum(axis=1) < 0  # NaN where there is none
+        mean = normal + normals[near & from_outside].sum(axis=0)
+        size = np.sqrt(mean @ mean)
+        return mean / size if size > 1e-6 else normal
+
+    def _carve(self, pieces) -> bool:
+        for piece in pieces:
+            poses, dt = piece.poses, piece.dt
+            if self._keep_out is not None:
+                kept = self._keep_out(poses, dt)
+                if kept is None:
+                    self.lifted += len(poses)
+                    self._apart = True
+                    continue
+                poses, dt = kept
+                self.lifted += int((~(poses[:, None] == piece.poses).all(axis=2).any(axis=1)).sum())
+            cut = self._run.carve(self.tool, poses, dt=dt, mode=self._choice.mode, new=piece.new or self._apart)
+            self._apart = False
+            self.moves += len(poses) - 1
+            self.pose = poses[-1]
+            if cut is None:  # no chip
+                continue
+            self.removed += float(np.sum(cut.removed))
+            if len(cut.force):
+                self.force, self.torque = np.array(cut.force[-1]), np.array(cut.torque[-1])
+        return bool(pieces)
+
+
+def across(normal: np.ndarray) -> np.ndarray:
+    """(2, 3) unit vectors square to a unit vector and to each other."""
+    x, y, z = normal.tolist()
+    if abs(z) > 0.7:
+        size = math.hypot(y, z)
+        first = (0.0, z / size, -y / size)
+    else:
+        size = math.hypot(x, y)
+        first = (y / size, -x / size, 0.0)
+    return np.array([first, cross((x, y, z), first)])
+
+
+def read(text: str) -> tuple[ViewRays, list[Sample], list[int]]:
+    """Of BrushStroke.text: view, samples, looks. ValueError naming what is wrong."""
+    try:
+        data = json_object.loads(text, "stroke")
+        view, rows, looks = data["view"], data["rows"], data.get("looks", [])
+        matrix, size = view["matrix"], view["size"]
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"stroke must be JSON with view (matrix, size) and rows: {error}") from error
+    if not _numbers(matrix, 16) or not _numbers(size, 2):
+        raise ValueError("stroke: view has a matrix of 16 numbers and a size of 2")
+    if not isinstance(rows, list) or not rows:
+        raise ValueError("stroke: there are no rows")
+    for k, row in enumerate(rows):
+        if not _numbers(row) or not 2 <= len(row) <= NUMBERS or not np.isfinite(row).all():
+            raise ValueError(f"stroke: row {k} is not 2 to {NUMBERS} finite numbers ({', '.join(Sample._fields)})")
+    if not _numbers(looks) or any(not 0 <= n <= len(rows) or n != int(n) for n in looks):
+        raise ValueError(f"stroke: looks are counts of rows, 0 to {len(rows)}")
+    return ViewRays(matrix, size), [Sample(*map(float, row)) for row in rows], sorted(int(n) for n in looks)
+
+
+def _numbers(values, count=None) -> bool:
+    if not isinstance(values, list) or (count is not None and len(values) != count):
+        return False
+    try:
+        return all(isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in values)
+    except OverflowError:  # of a whole number
+        return False
+
+
+def replay(brush: BrushStroke, samples: list[Sample], looks: list[int]) -> None:
+    """What a window did, in one go."""
+    waiting = list(looks)
+    for sample in samples:
+        brush.add(sample)
+        while waiting and waiting[0] <= len(brush.samples):
+            waiting.pop(0)
+            brush.look()
+    brush.end()

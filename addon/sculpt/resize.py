@@ -1,0 +1,119 @@
+"""F and Shift F, [ and ]: radius, depth and strength of the sculpt tools, by the pointer's distance or in steps.
+
+Blender's own control of a size leaves an undo step, which settings of a brush do not.
+"""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty
+
+from ..blender import operator_parts
+from ..common import units
+from . import pointer
+from .pure import sizing
+
+FIELDS = (
+    ("RADIUS", "Radius", "Of the cutter"),
+    ("DEPTH", "Depth", "How far the tool goes in"),
+    ("STRENGTH", "Strength", "How much smoothing smooths"),
+)
+SHORTER = 0.9  # of a size: one step
+FACTOR_PIXELS = 200.0  # a whole strength
+
+WORDS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+DIGITS = {
+    **{word: str(k) for k, word in enumerate(WORDS)},
+    **{f"NUMPAD_{k}": str(k) for k in range(10)},
+    "PERIOD": ".",
+    "NUMPAD_PERIOD": ".",
+    "COMMA": ".",
+    "BACK_SPACE": "\b",
+}
+
+
+class RIFFLER_OT_resize(bpy.types.Operator):
+    """Set the size by the pointer's distance from the middle of the circle, or by digits. Shift: finer. Ctrl: round
+    numbers"""
+
+    bl_idname = "riffler.resize"
+    bl_label = "Resize Cutter"
+    bl_options = set()  # settings of a brush are no undo steps
+
+    field: EnumProperty(
+        name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"}, description="Which size is set"
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return context.region_data is not None or operator_parts.deny(cls, "Use it in a 3D view")
+
+    def invoke(self, context, event):
+        settings = context.scene.riffler.sculpt
+        scale = FACTOR_PIXELS if self.field == "STRENGTH" else pointer.pixels_per_mm
+        self._name = self.field.lower()
+        self._region = context.region.x, context.region.y
+        at = event.mouse_x - self._region[0], event.mouse_y - self._region[1]
+        self._drag = sizing.Drag(getattr(settings, self._name), scale, at)
+        self._show(context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            self._set(context, self._drag.first)
+            return self._end(context, {"CANCELLED"})
+        if event.type in {"LEFTMOUSE", "RET", "NUMPAD_ENTER"} and event.value == "PRESS":
+            return self._end(context, {"FINISHED"})
+        if event.type == "MOUSEMOVE":
+            at = event.mouse_x - self._region[0], event.mouse_y - self._region[1]
+            self._set(context, self._drag.to(at, fine=event.shift, rounded=event.ctrl))
+        elif event.type in DIGITS and event.value == "PRESS":
+            self._set(context, self._drag.typed(DIGITS[event.type]))
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        self._end(context, {"CANCELLED"})
+
+    def _set(self, context, value):
+        settings = context.scene.riffler.sculpt
+        setattr(settings, self._name, value)
+        self._drag.value = getattr(settings, self._name)  # as its field allows
+        self._show(context)
+
+    def _show(self, context):
+        unit = "" if self.field == "STRENGTH" else " mm"
+        pointer.sizing = self._drag
+        label = next(label for name, label, _ in FIELDS if name == self.field)
+        text = self._drag.text or units.trim(self._drag.value, 3)
+        context.area.header_text_set(f"{label}: {text}{unit}")
+        context.area.tag_redraw()
+
+    def _end(self, context, result):
+        pointer.sizing = None
+        if context.area is not None:
+            context.area.header_text_set(None)
+            context.area.tag_redraw()
+        return result
+
+
+class RIFFLER_OT_size_step(bpy.types.Operator):
+    """Make the cutter a step smaller or larger"""
+
+    bl_idname = "riffler.size_step"
+    bl_label = "Step Cutter Size"
+    bl_options = set()
+
+    larger: BoolProperty(name="Larger", options={"SKIP_SAVE"}, description="Off: smaller")
+
+    def execute(self, context):
+        settings = context.scene.riffler.sculpt
+        settings.radius = units.clean(settings.radius * (1 / SHORTER if self.larger else SHORTER))
+        if context.area is not None:
+            context.area.tag_redraw()
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_resize, RIFFLER_OT_size_step)
+
+
+def detach():
+    pointer.sizing = None

@@ -1,0 +1,81 @@
+"""Handles of the sculpt tool's cutter, beside the sculpt: one for its radius, one for how deep it goes."""
+
+import bpy
+from mathutils import Matrix, Vector
+
+from . import pointer, sculpts
+
+COLOUR, STRONG = (1.0, 0.55, 0.2), (1.0, 0.8, 0.5)
+ASIDE = 0.3  # of the stock's length: from it to the middle of the handles, which stays while they are pulled
+
+
+class RIFFLER_GGT_size(bpy.types.GizmoGroup):
+    bl_idname = "RIFFLER_GGT_size"
+    bl_label = "Size of the Cutter"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "WINDOW"
+    bl_options = {"3D"}
+
+    @classmethod
+    def poll(cls, context):
+        return sculpts.active(context) is not None and context.mode == "OBJECT" and pointer.held is None
+
+    def setup(self, context):
+        self._ring = self.gizmos.new("GIZMO_GT_dial_3d")
+        self._ring.hide_select = True
+        self._ring.use_draw_scale = False
+        self._radius = self._arrow("radius")
+        self._depth = self._arrow("depth")
+        for gizmo in (self._ring, self._radius, self._depth):
+            gizmo.color, gizmo.alpha = COLOUR, 0.7
+            gizmo.color_highlight, gizmo.alpha_highlight = STRONG, 1.0
+        self.draw_prepare(context)
+
+    def draw_prepare(self, context):
+        ob = sculpts.active(context)
+        if ob is None:
+            return
+        settings = context.scene.riffler.sculpt
+        middle, unit = _place(ob)
+        for gizmo in (self._ring, self._radius, self._depth):
+            gizmo.hide = unit == 0  # scaled to nothing
+        turn = ob.matrix_world.to_quaternion().to_matrix().to_4x4()
+        # Without the view's scale, Blender does not look at scale_basis either.
+        self._ring.matrix_basis = Matrix.Translation(middle) @ turn @ Matrix.Scale(settings.radius * unit, 4)
+        # An arrow's own way is its z: along the stock's x for the radius, down for the depth.
+        for gizmo, way in ((self._radius, (1, 0, 0)), (self._depth, (0, 0, -1))):
+            lean = Vector((0, 0, 1)).rotation_difference(Vector(way)).to_matrix().to_4x4()
+            gizmo.matrix_basis = Matrix.Translation(middle) @ turn @ lean
+
+    def _arrow(self, field):
+        """A handle of a field of the scene's settings, in mm; the gizmo counts in Blender units."""
+        gizmo = self.gizmos.new("GIZMO_GT_arrow_3d")
+        gizmo.use_draw_offset_scale = False
+        gizmo.length = 0.35
+
+        def get():
+            return getattr(bpy.context.scene.riffler.sculpt, field) * _unit()
+
+        def put(offset):
+            setattr(bpy.context.scene.riffler.sculpt, field, max(offset, 0.0) / (_unit() or 1.0))
+
+        gizmo.target_set_handler("offset", get=get, set=put)
+        return gizmo
+
+
+def _unit():
+    """Blender units in the world for a millimetre of the active sculpt. Asked anew each time: the scene's units may
+    change while the handles are there."""
+    ob = sculpts.active(bpy.context)
+    return _place(ob)[1] if ob is not None else 1.0
+
+
+def _place(ob):
+    """Beside the middle of the stock's top (world), and Blender units in the world for a mm of the sculpt."""
+    p, mm = ob.data.riffler, sculpts.shown_mm_per_unit(ob.data)
+    aside = p.upper[0] + ASIDE * (p.upper[0] - p.lower[0])
+    at = Vector((aside, 0.5 * (p.lower[1] + p.upper[1]), p.upper[2])) / mm
+    return ob.matrix_world @ at, abs(ob.matrix_world.to_3x3().determinant()) ** (1 / 3) / mm
+
+
+CLASSES = (RIFFLER_GGT_size,)

@@ -1,0 +1,215 @@
+"""What is done to a sculpt as a whole: another pitch or box, cut off by a plane, taken apart, edits taken over."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
+from riffler import tasks
+from riffler.mesh_notes import notes_on
+
+from ..blender import scene_units
+from ..common import units
+from ..common.contents import Content
+from ..common.job import TaskJob, ThreadTask
+from ..sculpt import mask_display, sculpts
+from ..sculpt.sculpt_work import SculptWork
+from ..translations import local
+from . import object_volumes, properties
+from .pure import estimate
+
+DIRECTIONS = (("KEEP", "As now", "The directions that the sculpt has"), *properties.DIRECTIONS)
+
+
+class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
+    """Make the clay finer or coarser: the same shape on rays that stand closer together or further apart"""
+
+    bl_idname = "riffler.resample"
+    bl_label = "Change Pitch"
+    doing = "Changing the pitch"
+    cancelled = "Pitch not changed: the sculpt is as it was"
+
+    pitch: FloatProperty(
+        name="Pitch (mm)", default=0.25, min=1e-4, max=1e5, precision=3, description="Distance between rays from now on"
+    )
+    directions: EnumProperty(
+        name="Rays", items=DIRECTIONS, default="KEEP", description="Along which axes they stand from now on"
+    )
+
+    def begin(self, context):
+        ob, self._before = self.take(context)
+        volume, pitch = self._before.volume, scene_units.clean(self.pitch)
+        wanted = volume.directions if self.directions == "KEEP" else self.directions
+        area = estimate.shown_area(len(ob.data.polygons), volume.pitch)
+        estimate.check_surface(ob.name, volume.upper - volume.lower, area, pitch)
+        return TaskJob(tasks.resampled(volume, pitch, wanted))
+
+    def finish(self, context, job):
+        before = self._before
+        content = replace(before, volume=job.result, mask=mask_display.on_grid_of(job.result, before.mask))
+        self.keep(content, unseen=estimate.too_thin(self._object, job.result.pitch))
+        context.scene.riffler.clay.pitch = job.result.pitch  # what the panel offers next
+        off = job.result.volume - before.volume.volume
+        self.report({"INFO"}, f"{units.counted(job.result.rays, 'ray')}; material {_signed(off)}")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
+    """Make the sculpt's box larger, so that there is room for material outside of it; the sculpt stays where it is"""
+
+    bl_idname = "riffler.room"
+    bl_label = "Make Room"
+    doing = "Making room"
+    cancelled = "No room was made: the sculpt is as it was"
+
+    room: FloatProperty(
+        name="Room (mm)", default=5.0, min=1e-3, precision=2, description="On every side, in whole pitches"
+    )
+
+    def begin(self, context):
+        _, self._before = self.take(context)
+        volume, room = self._before.volume, scene_units.clean(self.room)
+        return TaskJob(tasks.grown(volume, volume.lower - room, volume.upper + room))
+
+    def finish(self, context, job):
+        before, volume = self._before, job.result
+        self.keep(replace(before, volume=volume, mask=mask_display.on_grid_of(volume, before.mask)))
+        counted = volume.volume - before.volume.volume
+        note = ""
+        if abs(counted) > 1e-9 * before.volume.volume:
+            note = f"; {_signed(counted)} are counted, as the rays at the old border stand for whole cells now"
+        self.report({"INFO"}, f"The box is {units.format_size(volume.upper - volume.lower)}{note}")
+        return {"FINISHED"}
+
+
+def _signed(volume):
+    return f"{'+' if volume >= 0 else '−'}{units.format_volume(abs(volume))}"
+
+
+class RIFFLER_OT_crop(SculptWork, bpy.types.Operator):
+    """Cut the sculpt off by the plane of another object, or by a point and a normal"""
+
+    bl_idname = "riffler.crop"
+    bl_label = "Crop by Plane"
+    doing = "Cropping"
+    cancelled = "Not cropped: the sculpt is as it was"
+
+    plane: StringProperty(name="Plane", description="An object whose local plane z = 0 cuts; empty: the values below")
+    point: FloatVectorProperty(name="Point", subtype="TRANSLATION", description="In the world, Blender units")
+    normal: FloatVectorProperty(name="Normal", subtype="DIRECTION", description="Into what is taken away; 0: unused")
+    flip: BoolProperty(name="Other Side", description="Take away what lies behind the plane")
+
+    def begin(self, context):
+        ob, self._before = self.take(context)
+        point, normal = self._plane(context, ob)
+        normal = -normal if self.flip else normal
+        volume = self._before.volume.copy()
+        return TaskJob(ThreadTask(lambda progress: volume.clip(point, normal, progress=progress)))
+
+    def finish(self, context, job):
+        before, volume = self._before, job.result
+        if volume.volume <= 0:
+            raise ValueError("nothing would be left: choose the other side, or move the plane")
+        self.keep(replace(before, volume=volume, shaped=True))
+        taken = before.volume.volume - volume.volume
+        self.report({"INFO"} if taken > 0 else {"WARNING"}, f"Removed {units.format_volume(taken)}")
+        return {"FINISHED"}
+
+    def _plane(self, context, ob):
+        if not self.plane and any(self.normal):
+            m = sculpts.from_world(ob)
+            normal = np.linalg.inv(m[:3, :3]).T @ np.array(self.normal)
+            return (m @ (*self.point, 1.0))[:3], normal
+        return object_volumes.plane(
+            ob, object_volumes.chosen(context, self.plane, {"MESH", "EMPTY"}, "the plane, a mesh or an empty,")
+        )
+
+
+class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
+    """Take the sculpt's separate pieces apart: each becomes a sculpt of its own, the largest stays this one"""
+
+    bl_idname = "riffler.split"
+    bl_label = "Split into Parts"
+    doing = "Splitting"
+    cancelled = "Not split: the sculpt is as it was"
+
+    least: FloatProperty(
+        name="Smallest (mm³)", default=0.0, min=0.0, description="Smaller pieces stay with the largest"
+    )
+
+    def begin(self, context):
+        _, self._before = self.take(context)
+        return TaskJob(tasks.parts(self._before.volume, scene_units.clean(self.least)))
+
+    def finish(self, context, job):
+        first, *others = job.result or [self._before.volume]
+        if not others:
+            self.report({"WARNING"}, local("The sculpt is one piece"))
+            return {"CANCELLED"}
+        ob = bpy.data.objects[self._object]
+        collections, matrix, name = ob.users_collection, ob.matrix_world.copy(), ob.name
+        middle = sculpts.middle(ob.data, self._before.volume)
+        mm = sculpts.shown_mm_per_unit(ob.data)
+        made = []
+        try:
+            for piece in others:
+                content = Content(piece, mask=_left_of(self._before.mask, piece))
+                new = sculpts.new_object(context, f"{name} Part", content, matrix, mm, collections)
+                made.append(new)
+                sculpts.take_looks(new, ob)
+                sculpts.keep_middle(new.data, piece, middle)
+            self.keep(replace(self._before, volume=first))  # last: until then the sculpt has all pieces
+        except BaseException:
+            bpy.data.batch_remove([*made, *(new.data for new in made)])
+            sculpts.select_only(context, ob)
+            raise
+        self.report({"INFO"}, units.counted(len(job.result), "part"))
+        return {"FINISHED"}
+
+
+def _left_of(mask, piece):
+    """The mask of one piece: None where it protects nothing of it."""
+    if mask is None:
+        return None
+    return mask if mask.copy().intersect(piece).volume > 0 else None
+
+
+class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
+    """Make the mesh as it is now, deformed by Blender's own tools and modifiers, the sculpt's material"""
+
+    bl_idname = "riffler.take_edits"
+    bl_label = "Take Edits"
+    doing = "Taking the edits"
+    cancelled = "Edits not taken: the sculpt's volume is as it was"
+    from_edits = True
+
+    def begin(self, context):
+        ob, self._before = self.take(context)
+        volume = self._before.volume
+        surface = object_volumes.of_object(context, ob, ob)
+        box = volume.grown(*surface.bounds)  # so that what has not moved stands on the rays that it stood on
+        self._report = {}
+        rays = box.pitch, box.directions
+        return TaskJob(tasks.from_mesh(surface, *rays, lower=box.lower, upper=box.upper, report=self._report))
+
+    def finish(self, context, job):
+        if job.result.volume <= 0:
+            raise ValueError("the edited mesh has no volume: close it, or undo the edits")
+        before, volume = self._before, job.result
+        mask = mask_display.on_grid_of(volume, before.mask)  # where it was: what was moved has left it, or come into it
+        middle = sculpts.middle(self.mesh, before.volume)
+        self.keep(Content(volume, mask=mask, shaped=True))
+        sculpts.keep_middle(self.mesh, volume, middle)
+        ob = bpy.data.objects[self._object]
+        for modifier in [m for m in ob.modifiers if m.show_viewport]:
+            ob.modifiers.remove(modifier)
+        open_edges, mended = self._report.get("open_edges", 0), notes_on(self._report)
+        level = {"WARNING"} if open_edges or mended else {"INFO"}
+        note = f", {units.counted(open_edges, 'open edge')} closed" if open_edges else ""
+        note += f"; no longer in the NC code: {units.counted(len(before.cuts), 'cut')}" if before.cuts else ""
+        note += "".join(f"; {text}" for text in mended)
+        self.report(level, f"{units.format_volume(volume.volume)} of material{note}")
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_resample, RIFFLER_OT_room, RIFFLER_OT_crop, RIFFLER_OT_split, RIFFLER_OT_take_edits)

@@ -1,0 +1,1 @@
+"""Estimates, reliefs and 3MF, without Blender."""

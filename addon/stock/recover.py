@@ -1,0 +1,188 @@
+"""Journals of a Blender that has died: made again, or thrown away."""
+
+import bpy
+import riffler
+from mathutils import Matrix
+from riffler import tasks
+
+from ..blender import long_work, operator_parts, scene_units
+from ..common import units
+from ..common.contents import Content
+from ..common.job import TaskJob
+from ..sculpt import live_registry, persistence, sculpt_store, sculpts
+from ..sculpt.pure import journal
+
+
+class TakesJournal:
+    """Mixin of operators on one of the journals that nobody holds."""
+
+    journal: bpy.props.StringProperty(
+        name="Journal", options={"SKIP_SAVE"}, description="Name of its folder; empty: the newest"
+    )
+
+    @classmethod
+    def poll(cls, context):
+        if not operator_parts.object_mode(cls, context) or operator_parts.busy(cls, context):
+            return False
+        return bool(persistence.crashed()) or operator_parts.deny(
+            cls, "There is nothing to recover: no work was cut off"
+        )
+
+    def take(self):
+        """The journal, locked. ValueError where somebody else has it."""
+        found = [f for f in persistence.crashed(look=True) if self.journal in ("", f.folder.name)]
+        if not found:
+            raise ValueError(f"there is no journal {self.journal} that nobody works at".replace("  ", " "))
+        lock = journal.Lock(found[0].folder)
+        if not lock.held:
+            raise ValueError(f"the journal of {found[0].name} is being recovered by another Blender")
+        return found[0], lock
+
+
+class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
+    """Make a sculpt as it was when Blender was cut off: its strokes are made again, in the sculpt that is in this file,
+    or in a new object"""
+
+    bl_idname = "riffler.recover"
+    bl_label = "Recover Sculpt"
+    bl_options = {"REGISTER", "UNDO"}
+
+    doing = "Recovering"
+    cancelled = "Recovery cancelled: the journal is still there"
+    _lock = None
+
+    def begin(self, context):
+        live_registry.end_all()
+        self._found, self._lock = self.take()
+        try:
+            strokes, self._cuts, self._shaped, self._states = _prepared(self._found)
+            task = tasks.replay(strokes, self._found.folder, with_mask=True)
+        except BaseException:
+            self._lock.release()
+            raise
+        return TaskJob(task, units.counted(len(strokes.strokes), "stroke"))
+
+    def cancel(self, context):
+        super().cancel(context)
+        if self._lock is not None:
+            self._lock.release()
+
+    def finish(self, context, job):
+        volume, mask = job.result
+        content = Content(volume, self._cuts, mask, self._shaped)
+        about = self._found.about
+        ob = _target(about, self._states)
+        try:
+            if ob is not None:
+                sculpts.commit(ob.data, content, sculpts.shown_mm_per_unit(ob.data))
+            else:
+                ob = _new(context, self._found.name, content, about)
+        except BaseException:
+            self._lock.release()
+            raise
+        persistence.park(self._lock, sculpt_store.identity(ob.data))
+        persistence.crashed(look=True)
+        context.window_manager.riffler.notice = ""
+        self.report({"INFO"}, f"{ob.name} is as it was when Blender was cut off: save the file")
+        return {"FINISHED"}
+
+
+def _prepared(found):
+    """The strokes that are still to be made, on a snapshot in the journal's folder, all cuts, whether other means have
+    shaped it, too, and the tokens of the states that the journal knows, from the first to the last."""
+    try:
+        strokes, cuts = journal.part_of(found.folder)
+    except ValueError as error:
+        raise ValueError(f"the journal of {found.name} is kept, but cannot be read: {error}") from error
+    if not strokes.strokes:
+        raise ValueError(f"the journal of {found.name} has no strokes: discard it")
+    shaped, states = journal.shaped(found.folder, strokes), journal.states(found.folder, found.about, strokes)
+    if not (found.folder / journal.STOCK).exists() and strokes.stock and strokes.stock["snapshot"] == journal.STOCK:
+        strokes = _on_what_the_file_has(found, strokes, states)
+    return strokes, cuts, shaped, states
+
+
+def _on_what_the_file_has(found, strokes, states):
+    """The crash came before the state that the journal begins with was written: it, or a later one, may be in this
+    file."""
+    for ob in filter(sculpts.is_sculpt, bpy.data.objects):
+        state = _state(ob, found.about, states)
+        if state:
+            done = len(states) - 1 - states[::-1].index(state)
+            return _rest(found.folder, strokes, done, sculpt_store.content(ob.data))
+    raise ValueError(
+        f"the journal of {found.name} has no stock: open the file that it belongs to, {found.about.get('file') or '?'}"
+    )
+
+
+def _rest(folder, strokes, done, content):
+    """Those after the first `done`, on `content`."""
+    content.volume.save(folder / journal.STOCK)
+    if content.mask is not None:
+        content.mask.save(folder / journal.MASK)
+    v, out = content.volume, riffler.Journal()
+    mask = journal.MASK if content.mask is not None else ""
+    out.set_stock(v.lower, v.upper, v.pitch, v.directions, journal.STOCK, mask=mask)
+    for number, tool in strokes.tools.items():
+        out.add_tool(number, tool)
+    for s in strokes.strokes[done:]:
+        out.add_stroke(s.tool, s.poses, tolerance=s.tolerance, name=s.name, mode=s.mode, strength=s.strength)
+    return out
+
+
+def _state(ob, about, states):
+    """Which of the journal's states the file has of the sculpt, or ""."""
+    if about.get("base") and sculpt_store.identity(ob.data) == about["base"]:
+        return states[0]
+    return sculpt_store.token(ob.data) if sculpt_store.token(ob.data) in states else ""
+
+
+def _target(about, states):
+    """The sculpt of which this file has a state of the journal, or None: one that has gone on by other means since is
+    left alone. Copies that share it are not meant, where the one that was worked at is there."""
+    found = [ob for ob in bpy.data.objects if sculpts.is_sculpt(ob) and _state(ob, about, states)]
+    found = [ob for ob in found if not (ob.library or ob.data.library)]
+    return next((ob for ob in found if ob.riffler.mark == about.get("mark")), found[0] if found else None)
+
+
+def _new(context, name, content, about):
+    here = scene_units.mm_per_unit(context.scene)
+    matrix = Matrix(about.get("matrix") or Matrix.Identity(4))
+    matrix.translation *= about.get("mm_per_unit", here) / here
+    return sculpts.new_object(context, name, content, matrix, here)
+
+
+class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):
+    """Delete the journal of work that was cut off: its strokes are lost then"""
+
+    bl_idname = "riffler.discard_journal"
+    bl_label = "Discard"
+    bl_options = {"INTERNAL"}
+
+    def invoke(self, context, event):
+        return context.window_manager.invoke_confirm(self, event)
+
+    def execute(self, context):
+        try:
+            found, lock = self.take()
+            lock.delete()
+        except operator_parts.ERRORS as error:
+            return operator_parts.fail(self, error)
+        persistence.crashed(look=True)
+        self.report({"INFO"}, f"The journal of {found.name} is deleted")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_dismiss(bpy.types.Operator):
+    """Take this notice away: it was read"""
+
+    bl_idname = "riffler.dismiss"
+    bl_label = "Dismiss"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context):
+        context.window_manager.riffler.notice = ""
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_recover, RIFFLER_OT_discard_journal, RIFFLER_OT_dismiss)

@@ -1,0 +1,180 @@
+"""What is made of a sculpt: a plain mesh with a stated error, and colours of its distance from a reference."""
+
+import bpy
+import numpy as np
+from bpy.props import FloatProperty, StringProperty
+from riffler import tasks
+
+from ..blender import attributes, meshes, object_surfaces, operator_parts, refusals, scene_units
+from ..blender.long_work import LongWork
+from ..common import units
+from ..common.job import ChainJob, TaskJob
+from ..sculpt import live_registry, sculpts
+from ..sculpt.sculpt_work import SculptWork
+from . import properties
+
+
+class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operator):
+    """Make a plain mesh of the sculpt, decimated and smoothed as asked, and say how far it is from the sculpt"""
+
+    bl_idname = "riffler.to_mesh"
+    bl_label = "To Mesh"
+    doing = "Making a mesh"
+    cancelled = "No mesh was made"
+    leaves_mesh = True
+
+    def begin(self, context):
+        _, content = self.take(context)
+        iterations, tolerance = self.iterations, scene_units.clean(self.tolerance)
+
+        def first(_):
+            return tasks.to_mesh(content.volume, report=self._thin)
+
+        def smooth(mesh):
+            self._exact = mesh
+            return tasks.smooth(mesh, iterations, scene_units.clean(self.smooth_tolerance))
+
+        def decimate(mesh):
+            if self._exact is None:
+                self._exact = mesh
+            return tasks.decimate(mesh, tolerance=tolerance)
+
+        def there(mesh):
+            self._made = mesh
+            return tasks.deviation(mesh, self._exact)
+
+        def back(distance):
+            self._there = distance
+            return tasks.deviation(self._exact, self._made)
+
+        self._exact, self._thin = None, {}
+        changes = [smooth] * (iterations > 0) + [decimate] * (tolerance > 0)
+        return ChainJob(first, *changes, there, back) if changes else ChainJob(first)
+
+    def finish(self, context, job):
+        changed = self._exact is not None
+        mesh = self._made if changed else job.result
+        if not len(mesh.triangles):
+            raise ValueError(self._thin["lost_note"] or "the sculpt has no material left")
+        if note := self._thin["lost_note"]:
+            self.report({"WARNING"}, note)
+        error = max(np.abs(self._there).max(), np.abs(job.result).max()) if changed else 0.0
+        sculpt = bpy.data.objects[self._object]
+        scale = sculpts.shown_mm_per_unit(sculpt.data)
+        ob = bpy.data.objects.new(f"{sculpt.name} Mesh", bpy.data.meshes.new(f"{sculpt.name} Mesh"))
+        meshes.fill(ob.data, np.asarray(mesh.vertices) / scale, mesh.triangles)
+        ob.data[attributes.ERROR] = float(error)
+        sculpts.take_looks(ob, sculpt)
+        for collection in sculpt.users_collection:
+            collection.objects.link(ob)
+        ob.matrix_world = sculpt.matrix_world
+        sculpts.select_only(context, ob)
+        if self.hide_sculpt:
+            sculpt.hide_set(True)
+        self.report({"INFO"}, said_of(ob.data))
+        return {"FINISHED"}
+
+    def draw(self, context):
+        operator_parts.draw_fields(self, properties.ResultSettings.__annotations__)
+
+
+def said_of(mesh):
+    """What a mesh is beside the sculpt that it was made of."""
+    count = units.counted(len(mesh.polygons), "triangle")
+    return f"{count}, at most {units.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
+
+
+def _in_world(context, ob):
+    """In mm of the scene, vertex by vertex that of the evaluated mesh. ValueError where that is not known."""
+    if why := refusals.disabled(ob, context.view_layer):
+        raise ValueError(why)
+    matrix = meshes.matrix(ob.matrix_world)
+    matrix[:3] *= scene_units.mm_per_unit(context.scene)
+    return object_surfaces.surface(ob, context.evaluated_depsgraph_get(), matrix)
+
+
+class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
+    """Colour the active mesh by its distance from another object: blue is too much, red too little, in mm"""
+
+    bl_idname = "riffler.show_deviation"
+    bl_label = "Show Deviation"
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Measuring"
+    cancelled = "Not measured: the mesh is as it was"
+
+    reference: StringProperty(name="Reference", description="Name of the object; empty: the other selected one")
+    scale: FloatProperty(
+        name="Full colours at (mm)",
+        default=0.1,
+        min=1e-5,
+        precision=4,
+        description="Distance from which on a colour is full",
+    )
+
+    @classmethod
+    def poll(cls, context):
+        if context.object is None or context.object.type != "MESH":
+            return operator_parts.deny(cls, "Select the mesh or the sculpt that is to be coloured")
+        if why := refusals.linked(context.object, context.object.data):
+            return operator_parts.deny(cls, why)
+        return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
+
+    def begin(self, context):
+        live_registry.end_all()
+        ob = context.object
+        others = [o for o in context.selected_objects if o != ob and o.type == "MESH"]
+        name = self.reference or (others[0].name if len(others) == 1 else "")
+        reference = bpy.data.objects.get(name)
+        if reference is None:
+            raise ValueError(f"there is no object {name!r}" if name else "select the reference as well, or name it")
+        if reference == ob:
+            raise ValueError(f"{ob.name} is measured from itself: choose another reference")
+        if reference.type not in object_surfaces.WITH_SURFACE:
+            raise ValueError(f"{name} has no surface: choose a mesh, curve, text, surface or metaball")
+        self._object = ob.name
+        own = _in_world(context, ob)
+        if sculpts.is_sculpt(ob) and not ob.modifiers and len(own.vertices) != len(ob.data.vertices):
+            raise ValueError("the mesh was edited: rebuild it first")
+        if len(own.vertices) != len(ob.data.vertices):
+            raise ValueError(f"{ob.name}: apply its modifiers first, which make other vertices")
+        return TaskJob(tasks.deviation(own, _in_world(context, reference), signed=True))
+
+    def lost(self, context):
+        ob = bpy.data.objects.get(self._object)
+        return "" if ob is not None and ob.type == "MESH" else "Not measured: the mesh was removed meanwhile"
+
+    def finish(self, context, job):
+        mesh, distance = bpy.data.objects[self._object].data, np.asarray(job.result)
+        if len(distance) != len(mesh.vertices):
+            raise ValueError("not coloured: the mesh was changed meanwhile")
+        attributes.show_distance(mesh, distance, scene_units.clean(self.scale))
+        attributes.shade_by_attribute()
+        low, high = (units.trim(v, 4) for v in (distance.min(), distance.max()))
+        rms = units.trim(float(np.sqrt(np.mean(distance**2))), 4)
+        self.report({"INFO"}, f"From {low} to {high} mm, RMS {rms} mm")
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_hide_deviation(bpy.types.Operator):
+    """Take the colours of its distance away from the active mesh"""
+
+    bl_idname = "riffler.hide_deviation"
+    bl_label = "Hide Deviation"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        ob = context.object
+        if ob is None or ob.type != "MESH" or attributes.SCALE not in ob.data:
+            return operator_parts.deny(cls, "The active object shows no deviation")
+        if why := refusals.linked(ob, ob.data):
+            return operator_parts.deny(cls, why)
+        return True
+
+    def execute(self, context):
+        attributes.hide_distance(context.object.data)
+        attributes.settle()
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_to_mesh, RIFFLER_OT_show_deviation, RIFFLER_OT_hide_deviation)
