@@ -7,6 +7,7 @@ import bpy
 from support import common, harness, operator_task
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
+lessons = harness.load(Path(__file__).with_name("lessons.py"))
 
 
 def progress():
@@ -108,7 +109,11 @@ def stock_of_a_mesh(screen):
     with operator_task.meshes_taken_by(task):
         begin_stock(screen)
         task.share = 0.4
-        yield lambda: abs(progress().percent - 40) < 1e-3
+        with lessons.Recorded("stock.panel", "at_work") as panels:
+            yield lambda: abs(progress().percent - 40) < 1e-3
+            yield 0.5
+        drawn = {cls.__name__ for arguments, draws in panels.calls if draws for cls in arguments[2:]}
+        assert drawn == {"RIFFLER_OT_new_stock"}, "its progress is not in the panel that began it, or in another, too"
         screen.key("ESC")
         yield ended
     assert task.cancelled and "Ball Stock" not in bpy.data.objects and not bpy.data.objects["Ball"].hide_get()
