@@ -15,7 +15,7 @@ HERE = Path(__file__).resolve().parent
 stroke = harness.load(HERE / "window_stroke.py")
 lessons = harness.load(HERE / "lessons.py")
 live_tests = harness.load(HERE.parent / "headless" / "sculpt" / "test_live_sculpt.py")
-refusals = harness.load(HERE.parent / "headless" / "test_refusals.py")
+refusals = harness.load(HERE.parent / "headless" / "blender" / "test_refusals.py")
 LOWEST = 18.5  # mm: the bottom of a groove of 1.5 mm in the top at 20
 
 
