@@ -7,9 +7,9 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from common.sculpting import matches_its_volume, nothing_is_left
 
 from support import common, harness
+from support.sculpting import matches_its_volume, nothing_is_left
 
 REAL_EVENTS = True
 NAME = "Stock"
@@ -177,7 +177,7 @@ def on_top(screen, at):
     """The place on the stock's top (mm) at a pixel of the window."""
     region = screen.region()
     matrix = np.array(screen.area.spaces.active.region_3d.perspective_matrix)
-    sight = strokes.module("sculpt.pure.view_rays").Sight(matrix, (region.width, region.height))
+    sight = strokes.module("sculpt.pure.view_rays").ViewRays(matrix, (region.width, region.height))
     origin, way = sight.ray(at[0] - region.x, at[1] - region.y)
     return origin + (20 - origin[2]) / way[2] * way
 

@@ -6,9 +6,9 @@ import time
 from pathlib import Path
 
 import bpy
-from common.sculpting import live, matches_its_volume, nothing_is_left, stroke, work
 
 from support import common, harness
+from support.sculpting import live, matches_its_volume, nothing_is_left, stroke, work
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 NAME = "Stock"
