@@ -5,10 +5,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "base/thread_time.hpp"
 #include "bench/contact_scene.hpp"
-#include "geom/thread_time.hpp"
-#include "haptics/held_over.hpp"
 #include "haptics/sculpt_step.hpp"
+#include "haptics/wrench_extrapolator.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::bench {

@@ -3,11 +3,11 @@
 #include <memory>
 #include <mutex>
 
+#include "base/parallel.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "collide/collider.hpp"
-#include "geom/parallel.hpp"
 #include "haptics/material.hpp"
 
 namespace riffler {

@@ -8,10 +8,10 @@
 #include "bindings/task.hpp"
 #include "mesh/audit.hpp"
 #include "mesh/closest.hpp"
-#include "mesh/decimate.hpp"
-#include "mesh/io.hpp"
+#include "mesh/decimate/decimate.hpp"
+#include "mesh/io/io.hpp"
+#include "mesh/io/scan.hpp"
 #include "mesh/orient.hpp"
-#include "mesh/scan.hpp"
 #include "mesh/smooth.hpp"
 #include "mesh/weld.hpp"
 

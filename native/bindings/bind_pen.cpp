@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "bindings/bindings.hpp"
+#include "pen/arms/motors.hpp"
+#include "pen/arms/pens.hpp"
+#include "pen/arms/redundancy.hpp"
+#include "pen/arms/wrench_split.hpp"
 #include "pen/capability.hpp"
-#include "pen/motors.hpp"
-#include "pen/pens.hpp"
-#include "pen/redundancy.hpp"
-#include "pen/wrench_split.hpp"
 
 namespace riffler {
 

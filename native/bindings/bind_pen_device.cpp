@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "bindings/bindings.hpp"
-#include "pen/kinematics.hpp"
-#include "pen/open_error.hpp"
+#include "pen/arms/kinematics.hpp"
+#include "pen/hid/open_error.hpp"
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
 #include "pen/registry.hpp"
-#include "pen/simulated_device.hpp"
+#include "pen/simulated/simulated_device.hpp"
 
 namespace riffler {
 namespace {

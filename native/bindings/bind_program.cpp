@@ -11,11 +11,11 @@
 #include "nc/edit.hpp"
 #include "nc/follow.hpp"
 #include "nc/limits.hpp"
-#include "nc/machines.hpp"
-#include "nc/option_texts.hpp"
+#include "nc/machine/machines.hpp"
+#include "nc/machine/option_texts.hpp"
 #include "nc/program.hpp"
-#include "nc/reader.hpp"
-#include "nc/writer.hpp"
+#include "nc/read/reader.hpp"
+#include "nc/write/writer.hpp"
 #include "verify/motion_check.hpp"
 
 namespace riffler {

@@ -4,7 +4,7 @@
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
-#include "dexel/file.hpp"
+#include "dexel/file/file.hpp"
 #include "haptics/material.hpp"
 #include "pen/pointer.hpp"
 #include "session/journal_sink.hpp"

@@ -4,8 +4,8 @@
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_report.hpp"
 #include "bindings/task.hpp"
-#include "dexel/from_mesh.hpp"
-#include "nc/reader.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
+#include "nc/read/reader.hpp"
 
 namespace riffler {
 

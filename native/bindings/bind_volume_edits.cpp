@@ -3,7 +3,7 @@
 #include "bindings/volume_class.hpp"
 #include "dexel/clip.hpp"
 #include "dexel/contains.hpp"
-#include "dexel/from_mesh.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/grown.hpp"
 #include "dexel/parts.hpp"
 #include "dexel/quadrics.hpp"

@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
+#include "base/progress.hpp"
 #include "bindings/gil.hpp"
 #include "collide/contact.hpp"
 #include "geom/pose.hpp"
-#include "geom/progress.hpp"
 #include "geom/vec.hpp"
 #include "nc/options.hpp"
 #include "plan/orientation.hpp"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/background.hpp"
 #include "bindings/bindings.hpp"
-#include "geom/background.hpp"
 
 namespace riffler {
 

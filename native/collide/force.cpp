@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geom/block_pool.hpp"
+#include "base/block_pool.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/lanes.hpp"
+#include "base/lanes.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {

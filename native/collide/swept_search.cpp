@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.hpp"
 #include "geom/math.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <limits>
 
+#include "base/block_pool.hpp"
 #include "collide/deadline.hpp"
 #include "collide/drift.hpp"
 #include "collide/outline_runs.hpp"
-#include "geom/block_pool.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "dexel/boolean.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 

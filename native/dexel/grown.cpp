@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

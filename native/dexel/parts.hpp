@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 
 namespace riffler {
 

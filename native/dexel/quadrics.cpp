@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/parallel.hpp"
 #include "dexel/joiner.hpp"
 #include "geom/interval.hpp"
 #include "geom/math.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 

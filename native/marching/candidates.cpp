@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geom/each_once.hpp"
+#include "base/sort_unique.hpp"
 #include "marching/mesh_state.hpp"
 
 namespace riffler::marching {

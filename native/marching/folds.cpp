@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geom/each_once.hpp"
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
+#include "base/sort_unique.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "geom/each_once.hpp"
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
+#include "base/sort_unique.hpp"
 
 namespace riffler::marching {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/each_once.hpp"
+#include "base/sort_unique.hpp"
 #include "marching/mesh_state.hpp"
 
 namespace riffler::marching {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "geom/each_once.hpp"
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
+#include "base/sort_unique.hpp"
 #include "marching/cases.hpp"
 #include "marching/surface.hpp"
 

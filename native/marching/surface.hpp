@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "marching/bricks.hpp"
 #include "marching/diagonal.hpp"
 #include "marching/float_grid.hpp"

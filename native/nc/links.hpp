@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "collide/collider.hpp"
-#include "nc/way_out.hpp"
+#include "nc/retract_path.hpp"
 
 namespace riffler {
 

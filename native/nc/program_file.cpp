@@ -6,11 +6,11 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "dexel/planes.hpp"
-#include "geom/bytes.hpp"
-#include "geom/error.hpp"
-#include "geom/io.hpp"
-#include "geom/parallel.hpp"
+#include "base/bytes.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
+#include "base/parallel.hpp"
+#include "base/planes.hpp"
 
 namespace riffler {
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "haptics/safety.hpp"
+#include "pen/hid/open_error.hpp"
 #include "pen/hid_model.hpp"
-#include "pen/open_error.hpp"
 #include "pen/published.hpp"
 
 namespace riffler {

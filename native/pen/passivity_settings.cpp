@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "pen/geometry.hpp"
+#include "pen/arms/geometry.hpp"
 
 namespace riffler {
 
@@ -73,7 +73,8 @@ double resolution(const ArmBounds& arm, const ArmTraits& joints) {
   return std::hypot(arm.lever[0] * joints.step[0], arm.lever[1] * joints.step[1] + arm.lever[2] * joints.step[2]);
 }
 
-/// s: a frame of USB out, the frame in which the motors have it, and the report of it (pen/simulated_cable.hpp).
+/// s: a frame of USB out, the frame in which the motors have it, and the report of it
+/// (pen/simulated/simulated_cable.hpp).
 constexpr double kLatency = 2e-3;
 
 }  // namespace

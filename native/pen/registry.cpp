@@ -4,12 +4,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pen/hid_handle.hpp"
+#include "pen/hid/hid_handle.hpp"
 #include "pen/hid_pen.hpp"
-#include "pen/polhem_model.hpp"
-#include "pen/riffler_model.hpp"
-#include "pen/simulated_device.hpp"
-#include "pen/spacemouse_model.hpp"
+#include "pen/models/polhem_model.hpp"
+#include "pen/models/riffler_model.hpp"
+#include "pen/models/spacemouse_model.hpp"
+#include "pen/simulated/simulated_device.hpp"
 
 namespace riffler {
 namespace {

@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "pen/compensation.hpp"
+#include "pen/arms/compensation.hpp"
 #include "pen/device.hpp"
-#include "pen/hid_list.hpp"
+#include "pen/hid/hid_list.hpp"
+#include "pen/hid/open_error.hpp"
 #include "pen/hid_model.hpp"
-#include "pen/open_error.hpp"
-#include "pen/rate_control.hpp"
+#include "pen/models/rate_control.hpp"
 
 namespace riffler {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "plan/contact_location.hpp"
 #include "plan/lift.hpp"
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "mesh/closest.hpp"
 #include "mesh/orient.hpp"
 #include "mesh/smooth_normals.hpp"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "plan/point_lift.hpp"
 
 namespace riffler {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "geom/math.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 

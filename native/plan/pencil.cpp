@@ -5,8 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "mesh/orient.hpp"
 #include "mesh/smooth.hpp"
 #include "plan/contact_location.hpp"

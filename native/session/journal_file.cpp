@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geom/error.hpp"
-#include "geom/io.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
 #include "session/journal_records.hpp"
 
 namespace riffler {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "session/journal.hpp"
 
 namespace riffler {

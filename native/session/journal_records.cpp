@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 
 namespace riffler::journal_format {
 

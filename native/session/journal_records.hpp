@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/bytes.hpp"
+#include "base/bytes.hpp"
 #include "session/journal.hpp"
 
 namespace riffler::journal_format {

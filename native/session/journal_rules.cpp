@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 #include "nc/limits.hpp"
 #include "nc/program.hpp"
 

@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "dexel/file.hpp"
-#include "dexel/soften.hpp"
-#include "session/cuttable.hpp"
+#include "dexel/file/file.hpp"
+#include "dexel/smooth/smooth_dabs.hpp"
+#include "session/masked_stock.hpp"
 #include "sweep/carve.hpp"
 
 namespace riffler {

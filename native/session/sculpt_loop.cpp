@@ -7,8 +7,8 @@
 #include <thread>
 #include <utility>
 
-#include "geom/numbers.hpp"
-#include "geom/thread_time.hpp"
+#include "base/check.hpp"
+#include "base/thread_time.hpp"
 #include "haptics/coupling.hpp"
 
 namespace riffler {

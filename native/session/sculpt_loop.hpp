@@ -8,13 +8,13 @@
 #include <optional>
 #include <vector>
 
-#include "geom/ring.hpp"
-#include "haptics/held_over.hpp"
+#include "base/ring.hpp"
 #include "haptics/limits.hpp"
 #include "haptics/passivity.hpp"
 #include "haptics/safety.hpp"
 #include "haptics/sculpt_step.hpp"
 #include "haptics/workspace.hpp"
+#include "haptics/wrench_extrapolator.hpp"
 #include "pen/capability.hpp"
 #include "pen/driver_loop.hpp"
 #include "session/stroke_sink.hpp"

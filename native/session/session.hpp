@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "geom/block_pool.hpp"
-#include "geom/own_thread.hpp"
+#include "base/block_pool.hpp"
+#include "base/own_thread.hpp"
 #include "pen/device.hpp"
-#include "session/cuttable.hpp"
+#include "session/masked_stock.hpp"
 #include "session/sculpt_loop.hpp"
 
 namespace riffler {

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "marching/mesher.hpp"
-#include "pen/riffler_model.hpp"
-#include "pen/simulated_transport.hpp"
+#include "pen/models/riffler_model.hpp"
+#include "pen/simulated/simulated_transport.hpp"
 #include "session/journal_rules.hpp"
 #include "stress/checks.hpp"
 #include "tool/cutters.hpp"

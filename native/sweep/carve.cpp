@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 #include "sweep/clay.hpp"
 #include "sweep/grid_carver.hpp"
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
 #include "geom/pose.hpp"
-#include "geom/progress.hpp"
 #include "sweep/convex_group.hpp"
 #include "tool/tool.hpp"
 

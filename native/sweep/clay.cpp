@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "dexel/boolean.hpp"
-#include "geom/parallel.hpp"
 #include "sweep/clay_tile.hpp"
 #include "sweep/tile_cutter.hpp"
 

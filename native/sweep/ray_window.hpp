@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "base/lanes.hpp"
 #include "dexel/tile.hpp"
-#include "geom/lanes.hpp"
-#include "sweep/first_look.hpp"
+#include "sweep/quick_reject.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geom/each_once.hpp"
+#include "base/sort_unique.hpp"
 
 namespace riffler {
 

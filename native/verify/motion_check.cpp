@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <map>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "nc/links.hpp"
 #include "verify/verification.hpp"
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "verify/simulate.hpp"
 
 namespace riffler {

@@ -8,7 +8,7 @@
 #include "nc/edit.hpp"
 #include "nc/follow.hpp"
 #include "nc/program_file.hpp"
-#include "nc/writer.hpp"
+#include "nc/write/writer.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::follow_test {

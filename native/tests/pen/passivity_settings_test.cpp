@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "pen/arm.hpp"
-#include "pen/motors.hpp"
+#include "pen/arms/arm.hpp"
+#include "pen/arms/motors.hpp"
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 

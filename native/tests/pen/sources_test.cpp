@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include "pen/hid_descriptor.hpp"
-#include "pen/hid_handle.hpp"
-#include "pen/hid_list.hpp"
+#include "pen/hid/hid_descriptor.hpp"
+#include "pen/hid/hid_handle.hpp"
+#include "pen/hid/hid_list.hpp"
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
 #include "stress/random.hpp"

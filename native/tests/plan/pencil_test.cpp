@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 #include "mesh/closest.hpp"
 #include "plan/parts.hpp"
 #include "tool/cutters.hpp"

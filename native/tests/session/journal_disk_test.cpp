@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "geom/io.hpp"
+#include "base/io.hpp"
 #include "session/journal_file.hpp"
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"

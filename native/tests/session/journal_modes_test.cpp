@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "dexel/file.hpp"
-#include "dexel/soften.hpp"
-#include "geom/error.hpp"
+#include "base/error.hpp"
+#include "dexel/file/file.hpp"
+#include "dexel/smooth/smooth_dabs.hpp"
 #include "session/journal_file.hpp"
 #include "session/journal_records.hpp"
 #include "session/replay.hpp"

@@ -11,9 +11,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "geom/bytes.hpp"
-#include "geom/error.hpp"
-#include "geom/io.hpp"
+#include "base/bytes.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
 #include "session/journal_file.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 #include "session/journal_file.hpp"
 #include "session/journal_records.hpp"
 #include "support/error_of.hpp"

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dexel/file.hpp"
+#include "base/error.hpp"
+#include "dexel/file/file.hpp"
 #include "dexel/volumes.hpp"
-#include "geom/error.hpp"
 #include "haptics/sculpt_step.hpp"
 #include "session/journal_stream.hpp"
 #include "support/error_of.hpp"

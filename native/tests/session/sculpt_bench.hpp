@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "pen/simulated_bench.hpp"
+#include "pen/simulated/simulated_bench.hpp"
 #include "session/journal_rules.hpp"
 #include "session/sculpt_loop.hpp"
 

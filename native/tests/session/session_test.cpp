@@ -12,7 +12,7 @@
 #include "marching/mesher.hpp"
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
-#include "pen/simulated_device.hpp"
+#include "pen/simulated/simulated_device.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
