@@ -30,12 +30,12 @@ namespace fs = std::filesystem;
 
 /// Where links lead, to what need not be there.
 fs::path followed(const fs::path& path) {
-  constexpr int kMostLinks = 40;  // as Linux has it
+  constexpr int kMaxLinks = 40;  // as Linux has it
   fs::path at = path;
   std::error_code error;
   for (int k = 0; fs::is_symlink(fs::symlink_status(at, error)); ++k) {
     const fs::path to = fs::read_symlink(at, error);
-    if (error || k == kMostLinks) fail(path, "a link that leads nowhere");
+    if (error || k == kMaxLinks) fail(path, "a link that leads nowhere");
     at = to.is_absolute() ? to : at.parent_path() / to;
   }
   return at;

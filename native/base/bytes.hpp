@@ -62,9 +62,9 @@ T get(ByteView bytes, std::size_t at) {
 }
 
 /// Takes a record apart; std::invalid_argument where it is shorter or longer than its content.
-class ByteTaker {
+class ByteReader {
  public:
-  explicit ByteTaker(ByteView bytes) : bytes_(bytes) {}
+  explicit ByteReader(ByteView bytes) : bytes_(bytes) {}
 
   ByteView raw(std::uint64_t size) {
     if (size > bytes_.size()) throw std::invalid_argument("a record that is too short for its content");

@@ -24,7 +24,7 @@ fs::path settings_folder() {
   return {};
 }
 
-const ShippedText* shipped(const DescriptionShelf& shelf, std::string_view name) {
+const ShippedText* shipped(const DescriptionCatalog& shelf, std::string_view name) {
   const auto at =
       std::find_if(shelf.shipped.begin(), shelf.shipped.end(), [&](const ShippedText& s) { return s.name == name; });
   return at == shelf.shipped.end() ? nullptr : &*at;
@@ -36,7 +36,7 @@ std::string text_of(const fs::path& path) {
 }
 
 /// The user's files, in the order of their folders and names; of two with one name the first.
-std::vector<fs::path> own_files(const DescriptionShelf& shelf) {
+std::vector<fs::path> own_files(const DescriptionCatalog& shelf) {
   std::vector<fs::path> out;
   for (const fs::path& folder : own_folders(shelf)) {
     std::error_code error;
@@ -55,7 +55,7 @@ DescriptionText read(const fs::path& path) {
   return {path.stem().string(), path.filename().string(), text_of(path)};
 }
 
-std::string own_summary(const DescriptionShelf& shelf, const fs::path& path) {
+std::string own_summary(const DescriptionCatalog& shelf, const fs::path& path) {
   if (shipped(shelf, path.stem().string()))
     return std::string("not used: a ") + shelf.kind + " of this name comes with Riffler; rename " + path.string();
   try {
@@ -67,7 +67,7 @@ std::string own_summary(const DescriptionShelf& shelf, const fs::path& path) {
 
 }  // namespace
 
-std::vector<fs::path> own_folders(const DescriptionShelf& shelf) {
+std::vector<fs::path> own_folders(const DescriptionCatalog& shelf) {
   std::vector<fs::path> out;
 #ifdef _WIN32
   constexpr char kApart = ';';
@@ -87,7 +87,7 @@ std::vector<fs::path> own_folders(const DescriptionShelf& shelf) {
   return out;
 }
 
-std::vector<DescriptionEntry> list_descriptions(const DescriptionShelf& shelf) {
+std::vector<DescriptionEntry> list_descriptions(const DescriptionCatalog& shelf) {
   std::vector<DescriptionEntry> out;
   for (const ShippedText& s : shelf.shipped)
     out.push_back({std::string(s.name), shelf.summary(s.toml, std::string(s.name) + ".toml")});
@@ -98,7 +98,7 @@ std::vector<DescriptionEntry> list_descriptions(const DescriptionShelf& shelf) {
   return out;
 }
 
-DescriptionText find_description(const DescriptionShelf& shelf, std::string_view name, const std::string& what) {
+DescriptionText find_description(const DescriptionCatalog& shelf, std::string_view name, const std::string& what) {
   if (const ShippedText* found = shipped(shelf, name))
     return {std::string(name), std::string(name) + ".toml", std::string(found->toml)};
   if (name.ends_with(".toml")) return read(fs::path(name));

@@ -22,7 +22,7 @@ struct DescriptionText {
   std::string name, file, toml;  // file: base name, for messages
 };
 
-struct DescriptionShelf {
+struct DescriptionCatalog {
   const char* kind;      // "machine"
   const char* variable;  // of the environment: folders, apart as in PATH
   const char* folder;    // in riffler/ of the user's folder for settings
@@ -32,13 +32,13 @@ struct DescriptionShelf {
 };
 
 /// The folders of `variable`, then the one among the user's settings.
-std::vector<std::filesystem::path> own_folders(const DescriptionShelf& shelf);
+std::vector<std::filesystem::path> own_folders(const DescriptionCatalog& shelf);
 
 /// All of them, ours first, then every *.toml in own_folders(); of a file that cannot be read the description says why.
-std::vector<DescriptionEntry> list_descriptions(const DescriptionShelf& shelf);
+std::vector<DescriptionEntry> list_descriptions(const DescriptionCatalog& shelf);
 
 /// `name` is one of the list, or the path of a .toml file. Throws std::invalid_argument that names `what` was asked for
 /// and the known ones, FormatError where the file cannot be read.
-DescriptionText find_description(const DescriptionShelf& shelf, std::string_view name, const std::string& what);
+DescriptionText find_description(const DescriptionCatalog& shelf, std::string_view name, const std::string& what);
 
 }  // namespace riffler

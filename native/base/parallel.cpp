@@ -17,14 +17,14 @@ namespace riffler {
 
 namespace {
 
-constexpr int kMostThreads = 256;
+constexpr int kMaxThreads = 256;
 std::atomic<int> chosen_count{0};  // 0: nobody has chosen
 
 }  // namespace
 
 void set_thread_count(std::optional<int> count) {
-  if (count && (*count < 1 || *count > kMostThreads))
-    throw std::invalid_argument("threads must be 1 to " + std::to_string(kMostThreads) + ", not " +
+  if (count && (*count < 1 || *count > kMaxThreads))
+    throw std::invalid_argument("threads must be 1 to " + std::to_string(kMaxThreads) + ", not " +
                                 std::to_string(*count));
   chosen_count.store(count.value_or(0), std::memory_order_relaxed);
 }
@@ -34,7 +34,7 @@ int thread_count() {
   if (const char* text = std::getenv("RIFFLER_THREADS")) {
     char* end = nullptr;
     const long wanted = std::strtol(text, &end, 10);
-    if (end != text && *end == '\0' && wanted >= 1) return static_cast<int>(std::min(wanted, long{kMostThreads}));
+    if (end != text && *end == '\0' && wanted >= 1) return static_cast<int>(std::min(wanted, long{kMaxThreads}));
   }
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -44,7 +44,7 @@ int thread_count() {
 
 namespace {
 
-/// Whether all processors are busy: this thread is one of several that run a parallel_for, or a OneThread says so.
+/// Whether all processors are busy: this thread is one of several that run a parallel_for, or a SerialScope says so.
 thread_local bool busy = false;
 
 struct Job;
@@ -135,9 +135,9 @@ void still_wanted() {
   }
 }
 
-OneThread::OneThread() : before_(std::exchange(busy, true)) {}
+SerialScope::SerialScope() : before_(std::exchange(busy, true)) {}
 
-OneThread::~OneThread() {
+SerialScope::~SerialScope() {
   busy = before_;
 }
 

@@ -31,12 +31,12 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
 void still_wanted();
 
 /// As long as it lives, parallel calls of this thread start no others: the caller knows that all processors are busy.
-class OneThread {
+class SerialScope {
  public:
-  OneThread();
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-  ~OneThread();
+  SerialScope();
+  SerialScope(const SerialScope&) = delete;
+  SerialScope& operator=(const SerialScope&) = delete;
+  ~SerialScope();
 
  private:
   bool before_;

@@ -147,7 +147,7 @@ void PlaneReader::plane(std::size_t n) {
   std::uint32_t size = 0;
   std::memcpy(&size, take(sizeof size).data(), sizeof size);
   const auto deflated = take(size);
-  if (n / kMostDeflated > deflated.size()) fail("a plane is too short for its count");
+  if (n / kMaxDeflated > deflated.size()) fail("a plane is too short for its count");
   plane_.resize(n);
   z_stream& stream = inflater_->stream;
   inflateReset(&stream);

@@ -71,6 +71,6 @@ class PlaneReader {
 };
 
 /// Deflate shrinks nothing by more than this factor (zlib technical details: "Maximum Compression Factor", 1030.3).
-inline constexpr std::size_t kMostDeflated = 1032;
+inline constexpr std::size_t kMaxDeflated = 1032;
 
 }  // namespace riffler

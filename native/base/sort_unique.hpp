@@ -8,7 +8,7 @@ namespace riffler {
 
 /// Sorts a list and drops what stands in it again.
 template <class T>
-void each_once(std::vector<T>& list) {
+void sort_unique(std::vector<T>& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }

@@ -108,7 +108,7 @@ HapticRun haptic_run(const HapticOptions& o) {
     if (k % o.period == 0) {
       const double dt = o.period * kTick;
       const Pose before = scene.grip(k * kTick - dt);
-      const Stretch way = stretch(grip, before);
+      const PoseError way = pose_error(grip, before);
       const double start = thread_seconds();
       const SculptStep::Result r = step.step(grip, {1 / dt * way.translation, 1 / dt * way.rotation}, dt);
       out.seconds.push_back(thread_seconds() - start);

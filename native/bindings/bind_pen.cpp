@@ -139,17 +139,17 @@ py::array_t<double> noticed(const PenKinematics& pen, const Doubles& counts) {
                 {6});
 }
 
-const char* name_of(Reach reach) {
+const char* name_of(ReachResult reach) {
   switch (reach) {
-    case Reach::Reached:
+    case ReachResult::Reached:
       return "reached";
-    case Reach::TooFar:
+    case ReachResult::TooFar:
       return "too far";
-    case Reach::TooNear:
+    case ReachResult::TooNear:
       return "too near";
-    case Reach::OnAxis:
+    case ReachResult::OnAxis:
       return "on axis";
-    case Reach::Limits:
+    case ReachResult::Limits:
       return "limits";
     default:
       return "not finite";

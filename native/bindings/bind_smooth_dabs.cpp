@@ -17,31 +17,31 @@ std::vector<Vec3> to_centres(Doubles array) {
   return to_vec3s(array, "centres");
 }
 
-Softened soften_dabs(SharedVolume& self, const Doubles& centres, double radius, double strength, SharedVolume* protect,
-                     const py::object& progress) {
+SmoothResult smooth_brush(SharedVolume& self, const Doubles& centres, double radius, double strength,
+                          SharedVolume* protect, const py::object& progress) {
   const std::vector<Vec3> dabs = to_centres(centres);
-  SoftenOptions options{radius, strength, nullptr, to_progress(progress)};
+  SmoothOptions options{radius, strength, nullptr, to_progress(progress)};
   std::optional<Volume> kept;  // which may be `self`
   if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);
   const NoGil release;
-  return soften(writing.volume, dabs, options);
+  return smooth_dabs(writing.volume, dabs, options);
 }
 
 }  // namespace
 
-void bind_soften(py::module_& m) {
-  py::class_<Softened>(m, "Softened", "What each dab of a smooth brush did; arrays with one number per dab.")
+void bind_smooth_dabs(py::module_& m) {
+  py::class_<SmoothResult>(m, "Softened", "What each dab of a smooth brush did; arrays with one number per dab.")
       .def_property_readonly(
-          "removed", [](const Softened& s) { return take<double>(std::vector<double>(s.removed)); },
+          "removed", [](const SmoothResult& s) { return take<double>(std::vector<double>(s.removed)); },
           "(n,) mm³ taken away.")
       .def_property_readonly(
-          "added", [](const Softened& s) { return take<double>(std::vector<double>(s.added)); }, "(n,) mm³ put on.")
-      .def("__len__", [](const Softened& s) { return s.removed.size(); });
+          "added", [](const SmoothResult& s) { return take<double>(std::vector<double>(s.added)); }, "(n,) mm³ put on.")
+      .def("__len__", [](const SmoothResult& s) { return s.removed.size(); });
 
   py::reinterpret_borrow<VolumeClass>(m.attr("Volume"))
-      .def("soften", &soften_dabs, py::arg("centres"), py::arg("radius"),
-           py::arg("strength") = SoftenOptions{}.strength, py::arg("protect") = py::none(),
+      .def("soften", &smooth_brush, py::arg("centres"), py::arg("radius"),
+           py::arg("strength") = SmoothOptions{}.strength, py::arg("protect") = py::none(),
            py::arg("progress") = py::none(),
            R"(Smooths the surface by dabs of a round brush at ``centres`` (n, 3) or (3,), one after the other.
 

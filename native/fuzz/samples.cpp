@@ -74,7 +74,7 @@ Samples journal_samples() {
   stroke.poses = {{{1, 1, 2}, kUp}, {{5, 4, 1.5}, kUp}};
   stroke.times = {0, 0.5};
   journal.add_stroke(stroke);
-  journal.take_back(1);
+  journal.undo(1);
   return {to_bytes(journal), to_bytes(Journal())};
 }
 

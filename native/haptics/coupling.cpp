@@ -79,15 +79,15 @@ double CouplingSettings::capacity(double longest) const {
          turn_stiffness * spring(kPi, max_turn, kPi).energy;
 }
 
-Stretch stretch(const Pose& device, const Pose& tool) {
+PoseError pose_error(const Pose& device, const Pose& tool) {
   return {device.tip - tool.tip, turn(tool.axis, device.axis)};
 }
 
-Stretch stretch(const Placement& device, const Placement& tool) {
+PoseError pose_error(const RigidFrame& device, const RigidFrame& tool) {
   return {device.point - tool.point, rotation_vector(device.axes * glm::transpose(tool.axes))};
 }
 
-CouplingWrenches couple(const CouplingSettings& settings, const Stretch& stretch, const Twist& device,
+CouplingWrenches couple(const CouplingSettings& settings, const PoseError& stretch, const Twist& device,
                         const Twist& tool) {
   const double length = glm::length(stretch.translation), angle = std::min(glm::length(stretch.rotation), kPi);
   const Law pull = spring(length, settings.max_stretch, std::numeric_limits<double>::infinity());

@@ -25,7 +25,7 @@ Pose moved(const Pose& from, const Twist& way) {
 
 /// As a displacement about `from`'s tip.
 Twist way_between(const Pose& from, const Pose& to) {
-  const Stretch s = stretch(to, from);
+  const PoseError s = pose_error(to, from);
   return {s.translation, s.rotation};
 }
 
@@ -110,7 +110,7 @@ void SculptStep::place(const Pose& pose) {
 /// Where everything that is known now balances, as a displacement of the tool.
 Twist SculptStep::balanced(const Part& part) const {
   const CouplingSettings& c = settings_.coupling;
-  const Stretch ahead = stretch(part.grip, tool_);
+  const PoseError ahead = pose_error(part.grip, tool_);
   // The spring as it is at this stretch: where it pulls less than in proportion, it is softer.
   const CouplingWrenches pull = couple(c, ahead, {}, {});
   const auto stiffness = [](double force, double length, double small) { return length > 0 ? force / length : small; };
@@ -232,7 +232,7 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
       parts = k + 1, result.shortened = true;  // what is left in one
   }
   grip_ = grip;
-  const Stretch ahead = stretch(grip, tool_);
+  const PoseError ahead = pose_error(grip, tool_);
   const Twist at_grip{rate_.linear + glm::cross(rate_.angular, ahead.translation), rate_.angular};
   result.on_grip = couple(settings_.coupling, ahead, twist, at_grip).on_device;
   result.tool = tool_, result.depth_bound = bound_;

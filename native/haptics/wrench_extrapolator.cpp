@@ -18,7 +18,7 @@ Wrench within(const Wrench& w, const Bounds& bounds, double times = 1) {
 
 }  // namespace
 
-void HeldOverSettings::validate() const {
+void WrenchExtrapolatorSettings::validate() const {
   require_not_negative("ahead", ahead);
   require_positive("fade", fade);
   require_not_negative("rate.linear", rate.linear);
@@ -28,22 +28,22 @@ void HeldOverSettings::validate() const {
   if (ahead > fade) throw std::invalid_argument("ahead must be at most fade");
 }
 
-HeldOver::HeldOver(const HeldOverSettings& settings) : settings_(settings) {
+WrenchExtrapolator::WrenchExtrapolator(const WrenchExtrapolatorSettings& settings) : settings_(settings) {
   settings.validate();
 }
 
-void HeldOver::reset() {
+void WrenchExtrapolator::reset() {
   out_ = last_ = slope_ = {};
   age_ = 0, begun_ = false;
 }
 
-Wrench HeldOver::towards(const Wrench& goal, double dt) {
+Wrench WrenchExtrapolator::towards(const Wrench& goal, double dt) {
   const Wrench whole = goal - out_, change = within(whole, settings_.rate, dt);
   out_ = change == whole ? goal : out_ + change;
   return out_;
 }
 
-Wrench HeldOver::stepped(const Wrench& wrench, double dt) {
+Wrench WrenchExtrapolator::stepped(const Wrench& wrench, double dt) {
   if (!finite(wrench) || !(dt > 0)) return missed(dt);
   const Wrench now = within(wrench, settings_.most);
   const double since = age_ + dt;
@@ -52,7 +52,7 @@ Wrench HeldOver::stepped(const Wrench& wrench, double dt) {
   return towards(now, dt);
 }
 
-Wrench HeldOver::missed(double dt) {
+Wrench WrenchExtrapolator::missed(double dt) {
   if (!(dt > 0) || !std::isfinite(dt)) return out_;
   age_ += dt;
   // The slope falls on a straight line to nothing at `ahead`; all of it on one to nothing at `fade`.

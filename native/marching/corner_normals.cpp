@@ -32,7 +32,7 @@ std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> 
             if (const std::size_t m = all.index(i, j, k); !std::binary_search(own.begin(), own.end(), m))
               out.push_back(m);
   }
-  each_once(out);
+  sort_unique(out);
   return out;
 }
 

@@ -75,7 +75,7 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
   });
 }
 
-Program retimed(const Program& program, double factor) {
+Program scale_feeds(const Program& program, double factor) {
   if (!(factor > 0) || !std::isfinite(factor)) throw std::invalid_argument("factor must be positive and finite");
   return copied(program, [&](Move& move) { move.feed *= factor; });
 }
@@ -101,7 +101,7 @@ Program joined(std::span<const Program* const> programs) {
   return out;
 }
 
-Program retooled(const Program& program, const std::map<int, int>& numbers) {
+Program renumber_tools(const Program& program, const std::map<int, int>& numbers) {
   const auto renamed = [&](int number) {
     const auto at = numbers.find(number);
     return at == numbers.end() ? number : at->second;

@@ -36,7 +36,7 @@ Box3 ToolEnvelope::swept_box(const Pose& from, const Pose& to) const {
   return box.grown(radius + length * angle * angle / 8 + 1e-9 * (1 + length));
 }
 
-std::vector<Pose> way_out(const Pose& pose, const ToolEnvelope& reach, const Space& space) {
+std::vector<Pose> retract_path(const Pose& pose, const ToolEnvelope& reach, const ClearanceZone& space) {
   const Vec3& o = pose.axis;
   const double top = space.top;
   const double up = o.z > 0 ? (top - pose.tip.z) / o.z : std::numeric_limits<double>::infinity();

@@ -21,13 +21,13 @@ struct ToolEnvelope {
   Box3 swept_box(const Pose& from, const Pose& to) const;
 };
 
-struct Space {
+struct ClearanceZone {
   Box3 box;    ///< all tips and what is occupied, grown by the clearance
   double top;  ///< z of the tip in rapids from cut to cut
 };
 
 /// Where the tip goes from `pose` to safe height with the axis kept: first along the axis out of the space, last the
 /// point at safe height.
-std::vector<Pose> way_out(const Pose& pose, const ToolEnvelope& reach, const Space& space);
+std::vector<Pose> retract_path(const Pose& pose, const ToolEnvelope& reach, const ClearanceZone& space);
 
 }  // namespace riffler

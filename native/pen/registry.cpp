@@ -94,7 +94,7 @@ std::unique_ptr<Pen> open_one(const PenFamily& family, const HidInfo& info, cons
 std::unique_ptr<Pen> open_kind(const PenFamily& family, const PenOptions& options) {
   std::optional<OpenError> first;
   for (const HidInfo& info : list_hid()) {
-    if (!family.claims(info)) continue;
+    if (!family.matches(info)) continue;
     try {
       return open_one(family, info, options);
     } catch (const OpenError& error) {
@@ -132,7 +132,7 @@ std::span<const PenFamily> pen_families() {
 
 const PenFamily* family_of(const HidInfo& info) {
   for (const PenFamily& family : kFamilies)
-    if (family.claims(info)) return &family;
+    if (family.matches(info)) return &family;
   return nullptr;
 }
 

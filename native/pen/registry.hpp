@@ -26,7 +26,7 @@ struct PenOptions {
 struct PenFamily {
   const char* kind;
   const char* what;
-  bool (*claims)(const HidInfo& info);
+  bool (*matches)(const HidInfo& info);
   /// False where other makers' devices have the same numbers and nothing in them tells which it is: such a device is
   /// opened where its kind is asked for by name, and never tried by itself. Pushing a stranger's motors is no test.
   bool tried;

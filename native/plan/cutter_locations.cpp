@@ -15,7 +15,7 @@ namespace riffler {
 
 namespace {
 
-constexpr int kMostInserted = 100'000;
+constexpr int kMaxInserted = 100'000;
 
 constexpr const char* kOf[] = {"the cutter meets the part", "the shank meets the part", "the holder meets the part",
                                "a fixture is in the way"};
@@ -42,8 +42,8 @@ void check(const PencilPath& path, const LocationRule& rule) {
   require_tolerance(rule.tolerance);
   if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
     throw std::invalid_argument("max_lift must be finite and not negative");
-  if (rule.max_inserted < 0 || rule.max_inserted > kMostInserted)
-    throw std::invalid_argument("max_inserted must be from 0 to " + std::to_string(kMostInserted));
+  if (rule.max_inserted < 0 || rule.max_inserted > kMaxInserted)
+    throw std::invalid_argument("max_inserted must be from 0 to " + std::to_string(kMaxInserted));
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
 }
 

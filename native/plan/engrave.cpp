@@ -18,7 +18,7 @@ namespace riffler {
 namespace {
 
 constexpr double kNothing = 1e-3;  // of the tolerance: a piece of curve too short to be divided
-constexpr std::size_t kMostPoints = 10'000'000, kPointsAReport = 1024;
+constexpr std::size_t kMaxPoints = 10'000'000, kPointsAReport = 1024;
 constexpr int kBridges = 6;  // 64 points over one edge
 
 struct OnPart {
@@ -91,7 +91,7 @@ class Sheet {
   }
 
   static void append(const OnPart& to, std::vector<OnPart>& out) {
-    if (out.size() >= kMostPoints)
+    if (out.size() >= kMaxPoints)
       bad("a curve of more than ten million points: take a larger tolerance or turn, or check the units");
     if (out.size() % kPointsAReport == 0) still_wanted();
     if (to.point != out.back().point || to.normal != out.back().normal) out.push_back(to);

@@ -62,7 +62,7 @@ class Climb {
   Range blocked() const {
     const Vec3 d = now_.point - pose_.tip;
     const double up = glm::dot(d, pose_.axis), z = up - at_, rho = glm::length(d - up * pose_.axis);
-    const GrownColumns::Column column = columns_.at(rho, z);
+    const OffsetToolColumns::Column column = columns_.at(rho, z);
     // A fixture is as deep as it is thick where no point of it is in the tool: then no more than its depth is known.
     return column.covered ? Range{up - column.high, up - column.low}
                           : Range{at_, at_ + rule_.clearance - now_.distance};
@@ -85,7 +85,7 @@ class Climb {
   const Assembly& assembly_;
   const Pose pose_;
   const LiftRule& rule_;
-  const GrownColumns columns_;
+  const OffsetToolColumns columns_;
   Collider::Nearest now_{};
   double at_ = 0;
   Lift out_;

@@ -14,7 +14,7 @@ double PencilPath::length() const {
 
 namespace {
 
-constexpr double kMostPoints = 1e7;
+constexpr double kMaxPoints = 1e7;
 
 Vec3 between(const Vec3& a, const Vec3& b, double t) {
   return a + t * (b - a);
@@ -31,8 +31,7 @@ Vec3 normal_between(const Vec3& a, const Vec3& b, double t) {
 
 PencilPath divided(const PencilPath& path, double step) {
   if (!(step > 0) || !std::isfinite(step)) throw std::invalid_argument("step must be positive and finite");
-  if (path.length() / step > kMostPoints)
-    throw std::invalid_argument("step is too short: more than ten million points");
+  if (path.length() / step > kMaxPoints) throw std::invalid_argument("step is too short: more than ten million points");
   PencilPath out;
   out.radius = path.radius, out.closed = path.closed;
   const std::size_t n = path.size();

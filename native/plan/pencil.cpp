@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kWidestStep = 10;    // radii: beside a valley
 constexpr double kLargestBall = 100;  // sizes of the part
-constexpr double kMostCells = 1e9;    // of the net
+constexpr double kMaxCells = 1e9;     // of the net
 
 /// The lengths that a search goes by, mm.
 struct Scales {
@@ -288,7 +288,7 @@ void check_sizes(const Mesh& part, double radius, double spacing) {
   const double size = glm::length(bounds(part).size());
   if (radius > kLargestBall * size)
     throw std::invalid_argument("tool: the ball's radius is more than 100 times the part's size: check the units");
-  if (area(part) > kMostCells * spacing * spacing)
+  if (area(part) > kMaxCells * spacing * spacing)
     throw std::invalid_argument(
         "tool: the ball is too small for the part, which it would have to be laid on more than a billion "
         "times: check the units");

@@ -72,8 +72,8 @@ class JournalRules {
   void add_stroke(const JournalStroke& stroke);
   void extend_stroke(const JournalRows& rows);
   /// n from 1: of those that count, and of those taken back since the last stroke was added.
-  void take_back(std::size_t n);
-  void bring_back(std::size_t n);
+  void undo(std::size_t n);
+  void redo(std::size_t n);
 
   const std::optional<JournalStock>& stock() const { return stock_; }
   const std::map<int, std::string>& tools() const { return tools_; }

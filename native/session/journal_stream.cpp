@@ -135,9 +135,9 @@ bool JournalStream::write_next(std::uint64_t end) {
 void JournalStream::write_count(int strokes) {
   try {
     if (strokes < 0)
-      writer_.take_back(static_cast<std::size_t>(-strokes));
+      writer_.undo(static_cast<std::size_t>(-strokes));
     else
-      writer_.bring_back(static_cast<std::size_t>(strokes));
+      writer_.redo(static_cast<std::size_t>(strokes));
     unsynced_ = ended_ = true;
   } catch (const std::invalid_argument& e) {
     const std::scoped_lock lock(told_);

@@ -11,7 +11,7 @@ namespace {
 constexpr double kMargin = 1e-8;
 }  // namespace
 
-FirstLook::FirstLook(const StraightBody& b) {
+QuickReject::QuickReject(const StraightBody& b) {
   const SweptShape &first = b.pieces[0], &next = b.pieces[1];
   const bool ball = first.ball && (b.count == 1 || !next.round);
   double z0 = first.z0, size = 0;
@@ -36,7 +36,8 @@ FirstLook::FirstLook(const StraightBody& b) {
   }
 }
 
-FirstLook::FirstLook(const ConvexGroup& group, const Motion& motion, double t0, double t1, const Footprint& footprint) {
+QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double t0, double t1,
+                         const Footprint& footprint) {
   const Pose poses[2] = {motion.at(t0), motion.at(t1)};
   if (!(poses[0].axis.z > 0 && poses[1].axis.z > 0)) return;
   kind = Kind::Planes;
@@ -59,7 +60,7 @@ FirstLook::FirstLook(const ConvexGroup& group, const Motion& motion, double t0, 
       angle * moved / 4 + per_depth * (beside + std::abs(height) + std::abs(foot[1][2] - foot[0][2])) + kMargin * moved;
 }
 
-void FirstLook::set_plane(int k, const Vec3& at, const Vec3& up) {
+void QuickReject::set_plane(int k, const Vec3& at, const Vec3& up) {
   for (int i = 0; i < 3; ++i) foot[k][i] = at[i], normal[k][i] = up[i];
 }
 

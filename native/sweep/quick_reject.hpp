@@ -12,7 +12,7 @@
 
 namespace riffler {
 
-struct FirstLook {
+struct QuickReject {
   enum class Kind : unsigned char { None, Ball, BallAndFlank, Planes } kind = Kind::None;
   /// A ball on a straight way.
   double from[3], way[3];  ///< of its centre
@@ -26,9 +26,9 @@ struct FirstLook {
   double foot[2][3], normal[2][3];
   double slack, per_depth;
 
-  FirstLook() = default;
-  explicit FirstLook(const StraightBody& body);
-  FirstLook(const ConvexGroup& group, const Motion& motion, double t0, double t1, const Footprint& footprint);
+  QuickReject() = default;
+  explicit QuickReject(const StraightBody& body);
+  QuickReject(const ConvexGroup& group, const Motion& motion, double t0, double t1, const Footprint& footprint);
 
  private:
   void set_plane(int k, const Vec3& at, const Vec3& up);

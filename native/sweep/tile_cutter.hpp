@@ -53,7 +53,7 @@ class TileCutter {
   TileResult result_;
   std::uint32_t last_move_ = ~0U;
   const Step* step_ = nullptr;
-  std::array<PieceShape, ConvexGroup::kMost> shapes_;  // of the step, where normals are stored
+  std::array<PieceShape, ConvexGroup::kMax> shapes_;  // of the step, where normals are stored
   std::size_t shape_count_ = 0;
   const Motion* motion_ = nullptr;
 };

@@ -71,7 +71,7 @@ std::vector<double> levels(const std::vector<OutlineEdge>& curves) {
         if (low < z && z < high) out.push_back(z);
     }
   }
-  each_once(out);
+  sort_unique(out);
   return out;
 }
 

@@ -15,7 +15,7 @@ namespace riffler {
 namespace {
 
 constexpr std::size_t kGrain = 32;
-constexpr std::size_t kMostEvaluations = 200'000;
+constexpr std::size_t kMaxEvaluations = 200'000;
 
 const Tool& tool_of(const Program& program, std::size_t row) {
   const int number = program.tool()[row];
@@ -58,7 +58,7 @@ void refuse_collisions(const Program& program, const MachineMotion& motion, cons
           const Shape& shape = shapes.at(program.tool()[step.row]);
           if (!shape.reach.swept_box(step.from, step.to).overlaps(around)) continue;
           ++looked;
-          const Swept found = collider.sweep(shape.assembly, Motion(step.from, step.to), -tolerance, kMostEvaluations);
+          const Swept found = collider.sweep(shape.assembly, Motion(step.from, step.to), -tolerance, kMaxEvaluations);
           if (found.answer == Swept::Answer::Clear) continue;
           for (std::size_t known = first; k < known && !first.compare_exchange_weak(known, k);) {
           }

@@ -86,7 +86,7 @@ Header Reader::header() const {
 /// Before anything is allocated: the tiles' map and the spans must be such as this many bytes can hold.
 void Reader::check_affordable(const Header& header) const {
   const Frame& frame = header.frame;
-  const double most = static_cast<double>(kMostDeflated) * static_cast<double>(bytes_.size());
+  const double most = static_cast<double>(kMaxDeflated) * static_cast<double>(bytes_.size());
   double places = 0;
   for (const Axis axis : parse_directions(frame.directions)) {
     const Vec3 size = to_local(axis, frame.box).size() / frame.pitch;

@@ -153,7 +153,7 @@ Boundary find_boundary(const Mesh& mesh) {
 std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, double tolerance) {
   std::vector<int> rim;
   for (const std::vector<int>& loop : boundary.loops) rim.insert(rim.end(), loop.begin(), loop.end());
-  each_once(rim);
+  sort_unique(rim);
   NearPoints near(tolerance, rim.size());
   std::vector<std::pair<int, Vec3>> moved;
   for (const int k : rim)

@@ -209,7 +209,7 @@ void Descent::add_wedge(const Vec3& a, const Vec3& from, double sign) {
 }
 
 void Descent::push(Batch& batch, const Vec3& a, const Vec3& e, const Vec3& w, double endless) {
-  if (batch.count == Batch::kMost) flush(batch);
+  if (batch.count == Batch::kMax) flush(batch);
   const double values[] = {a.x, a.y, a.z, e.x, e.y, e.z, w.x, w.y, w.z, endless};
   for (int k = 0; k < 10; ++k) batch.arrays[k][batch.count] = values[k];
   ++batch.count;

@@ -123,10 +123,10 @@ class Descent {
 
   /// Sources of one kind that wait for their sum.
   struct Batch {
-    static constexpr std::size_t kMost = 64;
+    static constexpr std::size_t kMax = 64;
 
     bool dipoles;
-    double arrays[10][kMost];  // SourceArrays
+    double arrays[10][kMax];  // SourceArrays
     std::size_t count = 0;
   };
   void push(Batch& batch, const Vec3& a, const Vec3& e, const Vec3& w, double endless);

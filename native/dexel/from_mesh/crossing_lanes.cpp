@@ -71,7 +71,7 @@ class Group {
   HWY_INLINE Group(const Projection& projection, const Vec3i* corners, const std::uint32_t* triangles,
                    std::size_t count)
       : projection_(projection), nv_(set(projection.nv())) {
-    std::int64_t index[3][kMost], name[kMost];
+    std::int64_t index[3][kMax], name[kMax];
     for (std::size_t k = 0; k < hn::Lanes(kD); ++k) {
       const std::uint32_t triangle = triangles[std::min(k, count - 1)];
       for (int q = 0; q < 3; ++q) index[q][k] = corners[triangle][q];
@@ -111,7 +111,7 @@ class Group {
   }
 
  private:
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMax = 8;
 
   /// ⌈v⌉ clamped to [0, nv]; true where rounding may have made it wrong.
   HWY_INLINE M columns(V v, V& ceiling) const {
@@ -123,8 +123,8 @@ class Group {
 
   /// What rounding does not tell.
   HWY_NOINLINE void decide(M unsure, M below, V row, V v_whole, V v_part, V& c_whole, V& c_part) const {
-    double rows[kMost], v[2][kMost], c[2][kMost], which[kMost], lower[kMost];
-    std::int64_t low[kMost], middle[kMost], high[kMost];
+    double rows[kMax], v[2][kMax], c[2][kMax], which[kMax], lower[kMax];
+    std::int64_t low[kMax], middle[kMax], high[kMax];
     hn::StoreU(row, kD, rows);
     hn::StoreU(v_whole, kD, v[0]), hn::StoreU(v_part, kD, v[1]);
     hn::StoreU(c_whole, kD, c[0]), hn::StoreU(c_part, kD, c[1]);
@@ -152,14 +152,14 @@ class Group {
       const V part = hn::Min(hn::Max(hn::Div(sub(column, v), divisor), zero()), set(1));
       const V t = hn::IfThenZeroElse(level, part);
       const I place = hn::ConvertTo(kI, add(offset, column));
-      double heights[kMost];
-      std::int64_t names[kMost];
-      std::uint8_t bits[kMost];
+      double heights[kMax];
+      std::int64_t names[kMax];
+      std::uint8_t bits[kMax];
       hn::StoreU(add(z, mul(t, rise)), kD, heights);
       hn::StoreU(hn::Or(hn::ShiftLeft<BandCrossings::kColumnShift>(place), name), kI, names);
       hn::StoreMaskBits(kD, some, bits);
       // All lanes are written, and the place moves on where one holds something: no jump to foresee.
-      const auto [to_z, to_name] = out.room(kMost);
+      const auto [to_z, to_name] = out.room(kMax);
       std::size_t count = 0;
       for (std::size_t k = 0; k < hn::Lanes(kD); ++k) {
         to_z[count] = heights[k], to_name[count] = names[k];

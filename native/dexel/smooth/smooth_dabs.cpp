@@ -19,7 +19,7 @@ namespace {
 
 using TilePtr = std::shared_ptr<const Tile>;
 
-void check(const Volume& volume, std::span<const Vec3> centres, const SoftenOptions& options) {
+void check(const Volume& volume, std::span<const Vec3> centres, const SmoothOptions& options) {
   if (volume.frame().directions != "xyz")
     throw std::invalid_argument(
         "soften needs a volume of directions \"xyz\", whose ends have normals; this one has \"" +
@@ -73,7 +73,7 @@ double length_without(std::span<const Span> a, std::span<const Span> b) {
 
 class Dab {
  public:
-  Dab(const Volume& volume, const Vec3& centre, const SoftenOptions& options, const Progress& progress)
+  Dab(const Volume& volume, const Vec3& centre, const SmoothOptions& options, const Progress& progress)
       : volume_(volume), options_(options), pitch_(volume.frame().pitch), centre_(centre) {
     // Rays change no farther out than a gap between points and a move; the field there looks as far again.
     const double margin = 5 * pitch_;
@@ -119,7 +119,7 @@ class Dab {
   }
 
   const Volume& volume_;
-  const SoftenOptions& options_;
+  const SmoothOptions& options_;
   double pitch_;
   Vec3 centre_;
   bool moves_ = false;
@@ -128,7 +128,7 @@ class Dab {
 };
 
 /// What one dab takes and puts on, mm³; true where it changed anything.
-bool apply_dab(Volume& volume, const Vec3& centre, const SoftenOptions& options, const Progress& progress,
+bool apply_dab(Volume& volume, const Vec3& centre, const SmoothOptions& options, const Progress& progress,
                double& removed, double& added) {
   Stats stats;
   stats.moves = 1;
@@ -158,9 +158,9 @@ bool apply_dab(Volume& volume, const Vec3& centre, const SoftenOptions& options,
 
 }  // namespace
 
-Softened soften(Volume& volume, std::span<const Vec3> centres, const SoftenOptions& options) {
+SmoothResult smooth_dabs(Volume& volume, std::span<const Vec3> centres, const SmoothOptions& options) {
   check(volume, centres, options);
-  Softened out{std::vector<double>(centres.size()), std::vector<double>(centres.size())};
+  SmoothResult out{std::vector<double>(centres.size()), std::vector<double>(centres.size())};
   if (options.strength == 0) return out;
   Volume work = volume;
   bool changed = false;

@@ -9,7 +9,7 @@
 
 namespace riffler {
 
-struct SoftenOptions {
+struct SmoothOptions {
   /// mm, of the brush: what lies beyond it stays as it is.
   double radius = 5;
   /// 0 … 1: the share of the way to the smoothed surface, at the brush's centre.
@@ -20,7 +20,7 @@ struct SoftenOptions {
 };
 
 /// What each dab took away and put on, mm³, of the rays that define Volume::volume().
-struct Softened {
+struct SmoothResult {
   std::vector<double> removed, added;
 };
 
@@ -30,6 +30,6 @@ struct Softened {
 /// stay shared. Throws std::invalid_argument for a volume of one direction, centres that are not finite (naming the
 /// row), a radius that is not positive, a strength beyond 0 … 1, protect on another grid. Cancelled leaves the volume
 /// unchanged.
-Softened soften(Volume& volume, std::span<const Vec3> centres, const SoftenOptions& options = {});
+SmoothResult smooth_dabs(Volume& volume, std::span<const Vec3> centres, const SmoothOptions& options = {});
 
 }  // namespace riffler

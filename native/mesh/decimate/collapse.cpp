@@ -19,7 +19,7 @@ constexpr double kTurn = 0.2;
 constexpr double kThin = 1e-4;
 // At a vertex: a collapse looks at all of them, and where one fan is all of a mesh, that is its square. The edges round
 // such a fan go first.
-constexpr int kMostSpokes = 512;
+constexpr int kMaxSpokes = 512;
 
 bool turned(const Vec3& was, const Vec3& is) {
   const double dot = glm::dot(was, is);
@@ -28,7 +28,7 @@ bool turned(const Vec3& was, const Vec3& is) {
 
 }  // namespace
 
-bool Collapse::prepare(const Placement& placement) {
+bool Collapse::prepare(const CollapseTarget& placement) {
   half_ = placement.half;
   from_ = mesh_.from_vertex_handle(half_), to_ = mesh_.to_vertex_handle(half_);
   from_point_ = to_vec3(mesh_.point(from_)), to_point_ = to_vec3(mesh_.point(to_));
@@ -48,7 +48,7 @@ bool Collapse::prepare(const Placement& placement) {
 bool Collapse::has_few_spokes(VertexHandle v) const {
   const HalfedgeHandle start = mesh_.halfedge_handle(v);
   HalfedgeHandle spoke = start;
-  for (int n = 0; n < kMostSpokes; ++n) {
+  for (int n = 0; n < kMaxSpokes; ++n) {
     spoke = mesh_.opposite_halfedge_handle(mesh_.prev_halfedge_handle(spoke));
     if (spoke == start) return true;
   }

@@ -22,7 +22,7 @@ class Collapse {
 
   /// False where the mesh would not stay a manifold, a border would leave its line of vertices, or a triangle would
   /// turn over, lose its area or fold onto a neighbour.
-  bool prepare(const Placement& placement);
+  bool prepare(const CollapseTarget& placement);
   void commit();
 
   /// Calls visit(half-edge that starts at v) once for each.

@@ -85,7 +85,7 @@ class Worker {
       const EdgeQueue::Entry entry = queue_.pop();
       const EdgeHandle edge(entry.edge);
       if (costs_[edge] != entry.cost || mesh_.status(edge).deleted()) continue;
-      const Placement place = costs_.place(edge);
+      const CollapseTarget place = costs_.place(edge);
       if ((!check_ || check_->find_anchor(place)) && collapse_.prepare(place) && (!check_ || check_->allow(collapse_)))
         commit(patches);
       else
@@ -198,7 +198,7 @@ class Decimation {
 /// twice as wide each time: in the end everything stays.
 void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::vector<int>& kept) {
   kept.insert(kept.end(), far.begin(), far.end());
-  each_once(kept);
+  sort_unique(kept);
   std::vector<char> stays(half_edges.source.size(), 0);
   for (const int v : kept) stays[v] = 1;
   std::vector<int> belt;
@@ -214,7 +214,7 @@ void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::v
     for (const int v : belt) stays[v] = 1;
     kept.insert(kept.end(), belt.begin(), belt.end());
   }
-  each_once(kept);
+  sort_unique(kept);
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ void EdgeCosts::add_faces_of(VertexHandle v) {
 }
 
 void EdgeCosts::refresh(EdgeHandle edge) {
-  const Placement placement = place(edge, false);
+  const CollapseTarget placement = place(edge, false);
   cost_[edge.idx()] = placement.half.is_valid() ? static_cast<float>(placement.cost) : kNever;
 }
 
@@ -98,7 +98,7 @@ void EdgeCosts::put_off(EdgeHandle edge) {
 }
 
 /// A vertex on a border keeps to the border's vertices, one that is fixed stays.
-Placement EdgeCosts::place(EdgeHandle edge, bool rounded) const {
+CollapseTarget EdgeCosts::place(EdgeHandle edge, bool rounded) const {
   HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
   const VertexHandle a = mesh_.from_vertex_handle(half), b = mesh_.to_vertex_handle(half);
   Kind from = kind_[a.idx()], to = kind_[b.idx()];
@@ -114,7 +114,7 @@ Placement EdgeCosts::place(EdgeHandle edge, bool rounded) const {
   const double scale = scale_of(qa.weight() + qb.weight());
   const auto cost = [&](const Vec3& at) { return scale * std::max(0.0, qa(at) + qb(at)); };
   const double length2 = glm::dot(q - p, q - p), extra = kLength * length2 * length2;
-  Placement best;
+  CollapseTarget best;
   if (from_may_go) best = {half, q, false, cost(q) + extra};
   if (to_may_go)
     if (const double other = cost(p) + extra; !from_may_go || other < best.cost)
@@ -122,7 +122,7 @@ Placement EdgeCosts::place(EdgeHandle edge, bool rounded) const {
   return best;
 }
 
-Placement EdgeCosts::free_place(HalfedgeHandle half, bool rounded) const {
+CollapseTarget EdgeCosts::free_place(HalfedgeHandle half, bool rounded) const {
   const VertexHandle a = mesh_.from_vertex_handle(half), b = mesh_.to_vertex_handle(half);
   const Vec3 p = to_vec3(mesh_.point(a)), q = to_vec3(mesh_.point(b)), middle = 0.5 * (p + q), arm = 0.5 * (q - p);
   Quadric sum = quadric_[a.idx()];
@@ -135,8 +135,8 @@ Placement EdgeCosts::free_place(HalfedgeHandle half, bool rounded) const {
   const double slope = 2 * glm::dot(g, arm), at_end = at_middle + glm::dot(arm, sum.times(arm)) - std::abs(slope);
   const bool to_b = slope <= 0;
   // Rounding may take a sum a little below 0.
-  Placement best{to_b ? half : mesh_.opposite_halfedge_handle(half), to_b ? q : p, false,
-                 scale * std::max(0.0, at_end) + extra};
+  CollapseTarget best{to_b ? half : mesh_.opposite_halfedge_handle(half), to_b ? q : p, false,
+                      scale * std::max(0.0, at_end) + extra};
   if (!(weight > 0)) return best;
   const double hold = kHold * weight;
   const Vec3 d = sum.solved(-g, hold);

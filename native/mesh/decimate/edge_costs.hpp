@@ -10,7 +10,7 @@
 namespace riffler {
 
 /// The vertex at which `half` starts goes, the one where it ends is then at `point`.
-struct Placement {
+struct CollapseTarget {
   OpenMesh::HalfedgeHandle half;  // invalid where the edge has to stay
   Vec3 point{0};
   bool between = false;  // `point` is not that of the end
@@ -25,7 +25,7 @@ class EdgeCosts {
   EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain, const Progress& progress = {});
 
   /// The cheapest place for the two ends of `edge`: a vertex's, or one that a file can hold.
-  Placement place(OpenMesh::EdgeHandle edge) const { return place(edge, true); }
+  CollapseTarget place(OpenMesh::EdgeHandle edge) const { return place(edge, true); }
   /// The last cost computed; infinite where the edge has to stay or was put off.
   float operator[](OpenMesh::EdgeHandle edge) const { return cost_[edge.idx()]; }
   /// Computes the cost of `edge` anew.
@@ -38,8 +38,8 @@ class EdgeCosts {
   enum Kind : char { Free, Border, Fixed };
 
   void add_faces_of(OpenMesh::VertexHandle v);
-  Placement place(OpenMesh::EdgeHandle edge, bool rounded) const;
-  Placement free_place(OpenMesh::HalfedgeHandle half, bool rounded) const;
+  CollapseTarget place(OpenMesh::EdgeHandle edge, bool rounded) const;
+  CollapseTarget free_place(OpenMesh::HalfedgeHandle half, bool rounded) const;
 
   const HalfEdgeMesh& mesh_;
   Vec3 centre_;

@@ -18,10 +18,10 @@ using Segment = SurfaceMap::Segment;
 constexpr int kNearDepth = 24;
 
 /// And into how many pieces, for a depth of 24 is no bound on work: what needs more counts as far.
-constexpr int kMostPieces = 1 << 12;
+constexpr int kMaxPieces = 1 << 12;
 
 /// Pieces of all faces together that are held at a time.
-constexpr std::size_t kMostHeld = 1 << 22;
+constexpr std::size_t kMaxHeld = 1 << 22;
 
 /// How many times the tolerance pieces along a rim may measure at first.
 constexpr double kCoarse = 32;
@@ -90,7 +90,7 @@ Mesh mesh_of(const std::vector<std::array<Vec3, 3>>& triangles) {
 template <class Points, class Neighbours>
 std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<std::array<Vec3, 3>>& place,
                        double reach, const Points& points, const Neighbours& for_each_neighbour) {
-  each_once(seeds);
+  sort_unique(seeds);
   std::vector<char> seen(n, 0);
   for (const int t : seeds) seen[t] = 1;
   const Closest closest(mesh_of(place));
@@ -124,7 +124,7 @@ std::vector<int> MapCheck::far_vertices(const Progress& progress) {
   std::vector<int> result;
   check_holes(result, part(progress, 0.8, 0.9));
   check_faces(result, part(progress, 0.9, 1));
-  each_once(result);
+  sort_unique(result);
   return result;
 }
 
@@ -212,7 +212,7 @@ std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::v
   const Closest closest(mesh_of(surface));
   const auto look = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      int pieces = kMostPieces;
+      int pieces = kMaxPieces;
       result[i] = triangle_near(closest, place[i][0], place[i][1], place[i][2], -1, kNearDepth, pieces);
       still_wanted();
     }
@@ -270,7 +270,7 @@ std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double s
   std::vector<char> result(doubt.size(), 1);
   std::vector<std::vector<Corners>> pieces(doubt.size());
   const int most =
-      static_cast<int>(std::clamp<std::size_t>(kMostHeld / std::max<std::size_t>(1, doubt.size()), 64, kMostPieces));
+      static_cast<int>(std::clamp<std::size_t>(kMaxHeld / std::max<std::size_t>(1, doubt.size()), 64, kMaxPieces));
   const auto divide = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       int left = most;

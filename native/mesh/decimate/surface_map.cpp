@@ -17,7 +17,7 @@ using OpenMesh::VertexHandle;
 /// How often a triangle and its edges may be divided.
 constexpr int kDepth = 24;
 /// And into how many pieces: a triangle lies over a few faces, and what crumbles is not mapped.
-constexpr std::size_t kMostImages = 4096;
+constexpr std::size_t kMaxImages = 4096;
 
 Vec3 nearest_of_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
@@ -290,7 +290,7 @@ std::optional<Vec3> SurfaceMap::common_vertex(int f, int g, int h) const {
 
 bool SurfaceMap::map_triangle(const Spot& a, const Spot& b, const Spot& c, int depth,
                               std::vector<Image>& images) const {
-  if (images.size() > kMostImages) return false;
+  if (images.size() > kMaxImages) return false;
   if (a.face == b.face && b.face == c.face) {
     images.push_back({a.face, a.to, b.to, c.to});
     return true;

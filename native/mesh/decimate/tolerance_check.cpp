@@ -115,7 +115,7 @@ void ToleranceCheck::find_normal(const Collapse& c) {
 }
 
 /// Walks over the old surface, from the nearer of both anchors, as long as it comes nearer to the new vertex.
-bool ToleranceCheck::find_anchor(const Placement& place) {
+bool ToleranceCheck::find_anchor(const CollapseTarget& place) {
   if (!place.half.is_valid()) return false;
   anchor_ = traces_.anchor[half_edges_.mesh.to_vertex_handle(place.half).idx()], anchor_distance_ = 0;
   if (!place.between) return true;

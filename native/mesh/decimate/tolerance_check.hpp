@@ -58,7 +58,7 @@ class ToleranceCheck {
       : traces_(traces), half_edges_(traces.half_edges), tolerance_(tolerance) {}
 
   /// Finds where on the old surface a new vertex belongs, before its collapse is prepared; false where that is far.
-  bool find_anchor(const Placement& place);
+  bool find_anchor(const CollapseTarget& place);
   /// Whether the collapse that was prepared then keeps to the tolerance.
   bool allow(const Collapse& collapse);
   /// Before the collapse that was last allowed is carried out.

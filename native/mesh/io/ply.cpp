@@ -115,8 +115,8 @@ class HeaderReader {
     Element element;
     element.name = scan_.token_in_line();
     // Files have two or three; this many are looked at again and again without being slow.
-    constexpr std::size_t kMostElements = 1000;
-    if (header_.elements.size() == kMostElements) scan_.fail("more than 1000 elements");
+    constexpr std::size_t kMaxElements = 1000;
+    if (header_.elements.size() == kMaxElements) scan_.fail("more than 1000 elements");
     for (const Element& other : header_.elements)
       if (other.name == element.name) scan_.fail("element " + in_quotes(element.name) + " twice");
     const std::string_view word = scan_.token_in_line();

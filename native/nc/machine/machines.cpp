@@ -9,7 +9,7 @@ namespace riffler {
 
 namespace {
 
-DescriptionShelf shelf() {
+DescriptionCatalog shelf() {
   return {"machine", "RIFFLER_MACHINES", "machines", shipped_machines(), machine_summary};
 }
 

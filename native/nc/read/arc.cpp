@@ -63,7 +63,7 @@ Arc arc_about(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwi
   const Arc arc = between(from, to, centre, clockwise);
   if (std::abs(arc.r1 - arc.r0) > miss) fail_miss(std::abs(arc.r1 - arc.r0));
   if (!(arc.r0 > 0 && arc.r1 > 0)) throw std::invalid_argument("an arc of radius 0");
-  if (!(std::min(arc.r0, arc.r1) >= kLeastRadius))
+  if (!(std::min(arc.r0, arc.r1) >= kMinRadius))
     throw std::invalid_argument("an arc about its centre with a radius below 0.00127 mm");
   return arc;
 }

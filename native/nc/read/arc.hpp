@@ -22,12 +22,12 @@ struct Arc {
 /// What an arc's end may miss its circle by, mm: stricter than LinuxCNC, which takes 0.028 and more.
 inline constexpr double kArcMiss = 0.005;
 /// The same where the arc is given by its radius, and the least radius about a given centre: LinuxCNC's.
-inline constexpr double kRadiusMiss = 0.00254, kLeastRadius = 0.00127;
+inline constexpr double kRadiusMiss = 0.00254, kMinRadius = 0.00127;
 /// Ends nearer to each other than this (mm) are one point, and the arc a full circle.
 inline constexpr double kFullCircle = 1e-6;
 
 /// Throw std::invalid_argument saying what is wrong: the end misses the circle by more than `miss` (mm), a
-/// radius below kLeastRadius or 0, a full circle by its radius. `radius` < 0 is the arc of more than half a turn.
+/// radius below kMinRadius or 0, a full circle by its radius. `radius` < 0 is the arc of more than half a turn.
 Arc arc_about(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise, double miss = kArcMiss);
 Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwise, double miss = kRadiusMiss);
 /// The arc that leaves `from` along `direction`, of any length. Throws also where there is no direction or `to` lies

@@ -145,7 +145,7 @@ CutterCompensation::Element CutterCompensation::arc_element(const Joints& to, co
   const double by = -side() * sense * offset_.radius;
   out.arc = arc;
   out.arc->r0 += by, out.arc->r1 += by;
-  if (std::min(out.arc->r0, out.arc->r1) < kLeastRadius)
+  if (std::min(out.arc->r0, out.arc->r1) < kMinRadius)
     fail_fit(out,
              "the inside arc of radius " + number_text(std::min(arc.r0, arc.r1)) + " mm is not larger than the tool");
   out.start = arc.centre + out.arc->r0 * out_first, out.end = arc.centre + out.arc->r1 * out_last;

@@ -120,7 +120,7 @@ void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   const double radius = glm::length(from), start = std::atan2(from.y, from.x);
   if (words.radius.given && !(std::abs(words.radius.from(radius, unit_) - radius) <= arc_miss_))
     place_.fail("CP with another radius than that of its start");
-  if (!(radius >= kLeastRadius)) place_.fail("an arc of radius 0");
+  if (!(radius >= kMinRadius)) place_.fail("an arc of radius 0");
   double sweep = words.angle.value * kDegree;
   if (!(std::abs(words.angle.value) <= kMaxAngle)) place_.fail("PA is out of range");
   if (words.angle.incremental) {

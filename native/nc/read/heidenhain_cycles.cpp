@@ -237,7 +237,7 @@ void HeidenhainInterpreter::bore() {
   const bool climb = !values_.has(351) || values_.needed(351, "the kind of milling") >= 0;
   stand_[2] = Stand::Given;
   move_to({centre.x, centre.y, clear}, rotary_, rapid);
-  if (radius > kLeastRadius) {
+  if (radius > kMinRadius) {
     move_to({centre.x + radius, centre.y, clear}, rotary_, cut);
     // Whole turns of at most the infeed, and one at the ground.
     const double turns = std::ceil((clear - bottom) / pitch - 1e-9), sense = climb ? 1 : -1;

@@ -144,9 +144,9 @@ bool NcInterpreter::moves_in_part(bool rapid) {
 
 /// Rapids before every linear axis has been named end where nobody knows; a feed move takes the others for 0.
 void NcInterpreter::begin_or_wait(bool rapid) {
-  constexpr std::size_t kMost = 1000;  // rows; who moves on and on without Z has taken it for 0
+  constexpr std::size_t kMax = 1000;  // rows; who moves on and on without Z has taken it for 0
   const bool named = std::find(stand_.begin(), stand_.begin() + 3, Stand::Start) == stand_.begin() + 3;
-  begun_ = named || !rapid || rows_->held() > kMost;
+  begun_ = named || !rapid || rows_->held() > kMax;
   if (begun_)
     rows_->release(!named);
   else

@@ -13,8 +13,8 @@ bool is_skipped(std::string_view kind) {
 }  // namespace
 
 void NoteList::add(std::string_view kind, int line, const std::string& message) {
-  constexpr std::ptrdiff_t kMostAlike = 20;
-  if (std::ranges::count(notes_, kind, &Note::kind) < kMostAlike)
+  constexpr std::ptrdiff_t kMaxAlike = 20;
+  if (std::ranges::count(notes_, kind, &Note::kind) < kMaxAlike)
     notes_.push_back({std::string(kind), line, message});
   else if (is_skipped(kind))
     ++more_skipped_;

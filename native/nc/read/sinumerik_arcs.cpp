@@ -57,7 +57,7 @@ Arc SinumerikInterpreter::plane_arc(const SinumerikWords& words, const Vec2& fro
   if (centred) {
     const Vec2 centre = centre_of(words, from), arm = from - centre;
     const double start = std::atan2(arm.y, arm.x), radius = glm::length(arm);
-    if (!(radius >= kLeastRadius)) place_.fail("an arc of radius 0");
+    if (!(radius >= kMinRadius)) place_.fail("an arc of radius 0");
     const Arc out{centre, radius, radius, start, clockwise ? -sweep : sweep};
     to[u] = out.at(1).x, to[v] = out.at(1).y;
     return out;

@@ -63,9 +63,9 @@ void SinumerikInterpreter::leave_part(const NcRowWords& words) {
 
 /// Where rapids end before X, Y and Z have all been named is not known; a feed move takes the others for 0.
 void SinumerikInterpreter::begin_or_wait(bool rapid) {
-  constexpr std::size_t kMost = 1000;  // rows; a program that goes on without one of them has taken it for 0
+  constexpr std::size_t kMax = 1000;  // rows; a program that goes on without one of them has taken it for 0
   const bool named = !has_stand(stand_, Stand::Start);
-  begun_ = named || !rapid || rows_->held() > kMost;
+  begun_ = named || !rapid || rows_->held() > kMax;
   if (begun_)
     rows_->release(!named);
   else

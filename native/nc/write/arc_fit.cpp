@@ -95,7 +95,7 @@ class Fitter {
         if (found) arc = found;  // the last that works is the longest
         return found.has_value();
       };
-      const std::size_t n = longest(kLeastArcMoves, most, works);
+      const std::size_t n = longest(kMinArcMoves, most, works);
       if (n > reach.moves) reach.moves = n, reach.arc = arc;
     }
     return reach;
@@ -113,7 +113,7 @@ class Fitter {
     const std::size_t end = at + reach.moves;
     if (2 * reach.line < reach.moves || end + 1 >= points_.size()) return false;
     const std::size_t from = at + reach.line, count = end + reach_from(end).moves - from;
-    return line_fits(moves(from, count)) || (count >= kLeastArcMoves && arc_over(from, count));
+    return line_fits(moves(from, count)) || (count >= kMinArcMoves && arc_over(from, count));
   }
 
   FittedPiece arc_piece(std::size_t at, const Reach& reach) {
@@ -131,7 +131,7 @@ class Fitter {
 }  // namespace
 
 std::vector<FittedPiece> fit_arcs(std::span<const Vec3> points, double tolerance, std::size_t* looked_at) {
-  if (!(tolerance >= kLeastFitTolerance) || !std::isfinite(tolerance))
+  if (!(tolerance >= kMinFitTolerance) || !std::isfinite(tolerance))
     throw std::invalid_argument("tolerance must be finite and at least 0.00002 mm");
   for (std::size_t row = 0; row < points.size(); ++row)
     if (!finite(points[row])) throw std::invalid_argument("points, row " + std::to_string(row) + ": not finite");

@@ -21,9 +21,9 @@ struct FittedPiece {
 };
 
 /// Arcs stand for at least so many moves.
-inline constexpr std::size_t kLeastArcMoves = 3;
+inline constexpr std::size_t kMinArcMoves = 3;
 /// The least tolerance, mm: coordinates are written with 5 decimals.
-inline constexpr double kLeastFitTolerance = 2e-5;
+inline constexpr double kMinFitTolerance = 2e-5;
 
 /// Few lines and arcs that are within `tolerance` (mm) of the polyline through `points`, and it of them, in order:
 /// what is beside a point of the one is a point of the other, and neither goes back where the other does not. Moves
@@ -31,7 +31,7 @@ inline constexpr double kLeastFitTolerance = 2e-5;
 /// piece goes as far as it can be made to go, the line where both go equally far. Takes time in proportion to n log n.
 ///
 /// Of fewer than two points nothing. Throws std::invalid_argument naming the row of a point that is not finite, or a
-/// tolerance of less than kLeastFitTolerance. `looked_at`: added to, the number of points looked at.
+/// tolerance of less than kMinFitTolerance. `looked_at`: added to, the number of points looked at.
 std::vector<FittedPiece> fit_arcs(std::span<const Vec3> points, double tolerance, std::size_t* looked_at = nullptr);
 
 }  // namespace riffler

@@ -81,9 +81,9 @@ class Chord {
   /// The x whose radius is neither too small nor too large, and whose sweep 4 atan x is not too large.
   Range limits() const {
     const auto of_radius = [&](double r) { return half_ / (r + std::sqrt((r - half_) * (r + half_))); };
-    if (!(half_ > kSamePoint && half_ < kMostArcRadius)) return {0, -1};
-    const double most = std::tan(kMostArcSweep / 4);
-    return {of_radius(kMostArcRadius), half_ < kLeastArcRadius ? std::min(most, of_radius(kLeastArcRadius)) : most};
+    if (!(half_ > kSamePoint && half_ < kMaxArcRadius)) return {0, -1};
+    const double most = std::tan(kMaxArcSweep / 4);
+    return {of_radius(kMaxArcRadius), half_ < kMinArcRadius ? std::min(most, of_radius(kMinArcRadius)) : most};
   }
 
   /// The x of circles within `tolerance` of all points, within `range`.

@@ -11,7 +11,7 @@ namespace riffler {
 
 /// Radii (mm) and the sweep (rad) of arcs that controls compute without trouble: from 180° on the centre follows badly
 /// from rounded ends, and a circle of many metres is a straight line to them.
-inline constexpr double kLeastArcRadius = 0.01, kMostArcRadius = 1e4, kMostArcSweep = 3.05;
+inline constexpr double kMinArcRadius = 0.01, kMaxArcRadius = 1e4, kMaxArcSweep = 3.05;
 /// Points nearer to each other than this (mm) are one: nobody has gone back who went back by less.
 inline constexpr double kSamePoint = 1e-9;
 

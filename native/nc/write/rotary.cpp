@@ -270,7 +270,7 @@ class Chooser {
   /// turn either way. `dead`: whether one of them cannot go on.
   Stands tied(std::size_t row, const Pose& from, const Pose& to, const Stands& before, bool passes_pole,
               bool* dead) const {
-    constexpr double kMost = 270;  // deg of the free axis at the pole
+    constexpr double kMax = 270;  // deg of the free axis at the pole
     Stands next;
     std::array<std::optional<Step>, 2> steps;  // of the stands before by branch, where it stays
     for (std::uint32_t k = 0; k < before.size(); ++k) {
@@ -289,7 +289,7 @@ class Chooser {
             if (!passes_pole || !machine_.range(machine_.free_joint()).limited()) break;
             const std::size_t j = machine_.free_joint();
             stand.joints[j] += turn;
-            if (std::abs(stand.joints[j] - before[k].joints[j]) > kMost) continue;
+            if (std::abs(stand.joints[j] - before[k].joints[j]) > kMax) continue;
             stand.joints = machine_.with_tip(stand.joints, to.tip);
           }
           if (!within(stand.joints)) continue;

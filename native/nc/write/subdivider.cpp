@@ -43,8 +43,8 @@ bool Subdivider::fits(const Motion& motion, const Part& part, bool free) const {
   // tolerance, so is what lies between the samples within the whole of it.
   constexpr int kSamples = 9;
   // Whole turns look like rest from one sample to the next.
-  constexpr double kMostTurned = 120;  // deg
-  if (machine_.joint_words() && rotary_way(part.j0, part.j1) > kMostTurned) return false;
+  constexpr double kMaxTurned = 120;  // deg
+  if (machine_.joint_words() && rotary_way(part.j0, part.j1) > kMaxTurned) return false;
   for (int i = 1; i <= kSamples; ++i) {
     const double s = i / (kSamples + 1.0), t = part.t0 + s * (part.t1 - part.t0);
     const Pose is = machine_.pose(mix(part.j0, part.j1, s));
@@ -97,7 +97,7 @@ const std::vector<Joints>& Subdivider::split(const Pose& a, const Joints& ja, co
                                              bool free) {
   // 2^40 parts of one move cannot be told apart in doubles; where the rotary axes are continuous it never comes to
   // that. What they cannot do continuously must not become one long block.
-  constexpr double kLeast = 0x1p-40;
+  constexpr double kMin = 0x1p-40;
   out_.clear();
   // What may go any way has no great circle to keep to, and may have opposite ends.
   const Motion motion(a, free ? Pose{b.tip, a.axis} : b);
@@ -111,7 +111,7 @@ const std::vector<Joints>& Subdivider::split(const Pose& a, const Joints& ja, co
       out_.push_back(part.j1);
       continue;
     }
-    if (part.t1 - part.t0 <= kLeast)
+    if (part.t1 - part.t0 <= kMin)
       throw std::invalid_argument("the rotary axes of machine " + machine_.name() +
                                   " cannot follow the axis within axis_tolerance");
     const double middle = (part.t0 + part.t1) / 2;

@@ -64,7 +64,7 @@ class Writer {
       const bool away = program_.at_machine()[row] != 0, rapid = program_.rapid()[row] != 0;
       const Pose& pose = program_.poses()[row];
       if (row > 0 && away != away_ && pose.tip.z < whole_space().top) {
-        std::vector<Pose> out = way_out(pose, reach(row), whole_space());
+        std::vector<Pose> out = retract_path(pose, reach(row), whole_space());
         if (!away) std::reverse(out.begin(), out.end());
         for (const Pose& p : out) by_pose(row, p, away || rapid || p.tip.z >= whole_space().top);
       }
@@ -234,9 +234,9 @@ class Writer {
 
   /// Along the axis and up to safe height, the rotary axes at rest. `to`: where they will turn there.
   void leave(std::size_t row, const Joints& to, Subdivider& splitter) {
-    const Space high = space(row, to);
+    const ClearanceZone high = space(row, to);
     if (before_.tip.z >= high.top) return;
-    for (const Pose& p : way_out(before_, reach(row), high)) straight(row, p, true, splitter);
+    for (const Pose& p : retract_path(before_, reach(row), high)) straight(row, p, true, splitter);
   }
 
   /// At safe height, the tip held, the rotary axes to `to`; over `pose` and down to it: fast where the row is a rapid,
@@ -244,9 +244,9 @@ class Writer {
   void arrive(std::size_t row, const Pose& pose, const Joints& to, bool was_there, Subdivider& splitter) {
     constexpr double kGap = 1;  // mm that the tool comes back in feed
     const bool rapid = program_.rapid()[row] != 0;
-    const Space high = space(row, to);
+    const ClearanceZone high = space(row, to);
     std::vector<Pose> in;
-    if (pose.tip.z < high.top) in = way_out(pose, reach(row), high);
+    if (pose.tip.z < high.top) in = retract_path(pose, reach(row), high);
     if (const Joints turned = machine_->with_tip(to, before_.tip); turned != *stands_)
       go(row, {before_.tip, pose.axis}, turned, true, splitter);
     if (!in.empty() && in.back().tip == before_.tip) in.pop_back();
@@ -276,14 +276,14 @@ class Writer {
     return ToolEnvelope(shape == program_.tools.end() ? nullptr : &shape->second);
   }
 
-  const Space& whole_space() {
+  const ClearanceZone& whole_space() {
     if (!space_) space_ = space_of_all();
     return *space_;
   }
 
   /// High enough for what hangs below the tip while the rotary axes turn to `to`.
-  Space space(std::size_t row, const Joints& to) {
-    Space out = whole_space();
+  ClearanceZone space(std::size_t row, const Joints& to) {
+    ClearanceZone out = whole_space();
     out.top += reach(row).below_tip(lowest_axis(*stands_, to));
     return out;
   }
@@ -298,7 +298,7 @@ class Writer {
     return lowest;
   }
 
-  Space space_of_all() const {
+  ClearanceZone space_of_all() const {
     constexpr double kClearance = 10;
     Box3 box;
     double top = -std::numeric_limits<double>::infinity();
@@ -330,16 +330,16 @@ class Writer {
   /// What the machine makes of a block: stretches in which the rotary axes turn so little that the tool's axis keeps to
   /// a great circle.
   void record(std::size_t row, const std::optional<Joints>& from, const Joints& to, bool rapid) {
-    constexpr double kTurn = 1;          // deg: the axis is then within 4e-5 rad of the circle
-    constexpr double kAbove = 200;       // mm: from where a tool comes down for the first time, at least
-    constexpr double kMostParts = 7200;  // twenty turns
+    constexpr double kTurn = 1;         // deg: the axis is then within 4e-5 rad of the circle
+    constexpr double kAbove = 200;      // mm: from where a tool comes down for the first time, at least
+    constexpr double kMaxParts = 7200;  // twenty turns
     if (!from) {
       Joints above = to;
       above[2] += kAbove;
       report_.motion.push_back({row, machine_->pose(above), machine_->pose(to), rapid, true});
       return;
     }
-    const int parts = std::max(1, static_cast<int>(std::ceil(std::min(kMostParts, rotary_way(*from, to) / kTurn))));
+    const int parts = std::max(1, static_cast<int>(std::ceil(std::min(kMaxParts, rotary_way(*from, to) / kTurn))));
     Pose last = machine_->pose(*from);
     for (int k = 1; k <= parts; ++k) {
       const Pose next = machine_->pose(k < parts ? mix(*from, to, static_cast<double>(k) / parts) : to);
@@ -384,8 +384,8 @@ class Writer {
 
   /// Where the rotary axes turn much more than the tool.
   void note_passage(std::size_t row, double tool, double rotary) {
-    constexpr double kTimes = 5, kLeast = 10;  // deg
-    if (!(rotary > kTimes * tool && rotary > kLeast)) return;
+    constexpr double kTimes = 5, kMin = 10;  // deg
+    if (!(rotary > kTimes * tool && rotary > kMin)) return;
     if (!report_.passages.empty() && report_.passages.back().last + 1 >= row) {
       PolePassage& last = report_.passages.back();
       last.last = row, last.tool += tool, last.rotary += rotary, last.slowed = std::max(last.slowed, slowest_);
@@ -439,7 +439,7 @@ class Writer {
   Pose before_;                       // of the program, there
   bool arcs_ = false, away_ = false;  // away: the last row is at a position of the machine
   std::optional<double> safe_height_;
-  std::optional<Space> space_;
+  std::optional<ClearanceZone> space_;
   std::optional<int> tool_;
   double spindle_ = 0, last_feed_ = 0, slowest_ = 1;
 };

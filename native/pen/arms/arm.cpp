@@ -27,9 +27,11 @@ ArmInverse arm_angles(const ArmLinks& links, const Vec3& end) noexcept {
   const double y = end.y - links.shoulder, out = std::hypot(end.x, y), distance = std::hypot(out, end.z);
   if (!std::isfinite(distance)) return inverse;
   const double straight = links.upper + links.fore, folded = std::abs(links.upper - links.fore);
-  inverse.reach = distance > straight ? Reach::TooFar : distance < folded ? Reach::TooNear : Reach::Reached;
+  inverse.reach = distance > straight ? ReachResult::TooFar
+                  : distance < folded ? ReachResult::TooNear
+                                      : ReachResult::Reached;
   // A point of the upright axis is reached, but from any side.
-  if (inverse.reach == Reach::Reached && (out == 0 || distance == 0)) inverse.reach = Reach::OnAxis;
+  if (inverse.reach == ReachResult::Reached && (out == 0 || distance == 0)) inverse.reach = ReachResult::OnAxis;
   // sin and cos of θ2 − θ3 from the law of cosines, in factors: no digits are lost near the straight and folded arm.
   const double two = 2 * links.upper * links.fore;
   const double less = (straight - distance) * (straight + distance) / two;  // 1 − sin

@@ -27,7 +27,7 @@ inline Vec3 joint_torques(const ArmPosture& posture, const Vec3& force) noexcept
 /// det J / (L1 L2 (L1 + L2)) but for the sign of the joints' order.
 double arm_dexterity(const ArmLinks& links, const Vec3& angles) noexcept;
 
-enum class Reach : unsigned char {
+enum class ReachResult : unsigned char {
   Reached,
   TooFar,     // beyond the straight arm
   TooNear,    // nearer to the shoulder than the folded arm
@@ -38,7 +38,7 @@ enum class Reach : unsigned char {
 
 struct ArmInverse {
   Vec3 angles{0};  // of the nearest reach where there is none
-  Reach reach = Reach::NotFinite;
+  ReachResult reach = ReachResult::NotFinite;
 };
 
 /// The angles at which the end is at `end`, with the fore arm on the hand's side of the upper arm, as at home:

@@ -13,11 +13,11 @@ namespace riffler {
 
 namespace {
 
-constexpr double kSquare = 1e-6;      // by which axes may miss unit length and right angles
-constexpr double kLongest = 1e4;      // mm: of a link, far beyond what a desk holds
-constexpr double kHeaviest = 100;     // kg: nobody holds more
-constexpr double kMostInertia = 1e9;  // kg·mm²
-constexpr double kMostAmperes = 32;   // reports carry mA in 16 bits
+constexpr double kSquare = 1e-6;     // by which axes may miss unit length and right angles
+constexpr double kLongest = 1e4;     // mm: of a link, far beyond what a desk holds
+constexpr double kHeaviest = 100;    // kg: nobody holds more
+constexpr double kMaxInertia = 1e9;  // kg·mm²
+constexpr double kMaxAmperes = 32;   // reports carry mA in 16 bits
 
 std::string in_digits(double value) {
   char text[32];
@@ -93,7 +93,7 @@ class PenReader : TomlReader {
     pen_.grip_tolerance = positive(table, "tolerance", kLongest);
     if (!(pen_.grip_tolerance < pen_.grip_length)) fail(needed(table, "tolerance"), "tolerance must be below length");
     pen_.grip_mass = positive(table, "mass", kHeaviest);
-    pen_.grip_inertia = positive(table, "inertia", kMostInertia);
+    pen_.grip_inertia = positive(table, "inertia", kMaxInertia);
     needed(table, "tip");
     pen_.tip = word(table, "tip", {"R", "L"}, "") == "R" ? Arm::R : Arm::L;
   }
@@ -102,8 +102,8 @@ class PenReader : TomlReader {
 
   void probe(const toml::table& table) {
     allow(table, {"steps", "home", "sign"});
-    pen_.probe_steps = static_cast<double>(whole(needed(table, "steps"), "steps", 1, kMostSteps));
-    pen_.probe_home = static_cast<std::int32_t>(whole(needed(table, "home"), "home", -kMostHome, kMostHome));
+    pen_.probe_steps = static_cast<double>(whole(needed(table, "steps"), "steps", 1, kMaxSteps));
+    pen_.probe_home = static_cast<std::int32_t>(whole(needed(table, "home"), "home", -kMaxHome, kMaxHome));
     pen_.probe_sign = sign_of(plus_or_minus(needed(table, "sign")));
   }
 
@@ -150,12 +150,12 @@ class PenReader : TomlReader {
     // A line of the encoder gives four counts: both edges of two tracks.
     each("lines", [&](PenChannel& c, const toml::node& n, const std::string& key) {
       c.steps = 4 * static_cast<double>(whole(n, key, 1, 1000000)) * c.ratio;
-      if (c.steps > static_cast<double>(kMostSteps))
-        fail(n, key + ": more than " + std::to_string(kMostSteps) + " counts per turn of the joint");
+      if (c.steps > static_cast<double>(kMaxSteps))
+        fail(n, key + ": more than " + std::to_string(kMaxSteps) + " counts per turn of the joint");
     });
     each("sign", [&](PenChannel& c, const toml::node& n, const std::string&) { c.sign = sign_of(plus_or_minus(n)); });
     each("home", [&](PenChannel& c, const toml::node& n, const std::string& key) {
-      c.home = static_cast<std::int32_t>(whole(n, key, -kMostHome, kMostHome));
+      c.home = static_cast<std::int32_t>(whole(n, key, -kMaxHome, kMaxHome));
     });
     each("low", [&](PenChannel& c, const toml::node& n, const std::string& key) { c.low = angle(n, key); });
     each("high", [&](PenChannel& c, const toml::node& n, const std::string& key) {
@@ -166,7 +166,7 @@ class PenReader : TomlReader {
       c.torque_constant = positive(n, key, 1e6);
     });
     each("peak_current", [&](PenChannel& c, const toml::node& n, const std::string& key) {
-      c.peak_current = positive(n, key, kMostAmperes);
+      c.peak_current = positive(n, key, kMaxAmperes);
     });
     each("continuous_current", [&](PenChannel& c, const toml::node& n, const std::string& key) {
       c.continuous_current = positive(n, key, c.peak_current);
@@ -180,7 +180,7 @@ class PenReader : TomlReader {
       if (c.joint == 0 && c.gravity != 0) fail(n, key + " must be 0: joint 1 turns about the upright");
     });
     each("inertia", [&](PenChannel& c, const toml::node& n, const std::string& key) {
-      c.inertia = positive(n, key, kMostInertia);
+      c.inertia = positive(n, key, kMaxInertia);
     });
     each("resistance",
          [&](PenChannel& c, const toml::node& n, const std::string& key) { c.resistance = positive(n, key, 1e6); });
@@ -262,7 +262,7 @@ class PenReader : TomlReader {
                                                    in_digits(middle.y) + " " + in_digits(middle.z) + ", is outside");
   }
 
-  static constexpr std::int64_t kMostSteps = 1 << 24, kMostHome = 1 << 30;
+  static constexpr std::int64_t kMaxSteps = 1 << 24, kMaxHome = 1 << 30;
   PenGeometry pen_;
 };
 

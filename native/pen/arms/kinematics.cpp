@@ -119,7 +119,7 @@ PenInverse PenKinematics::inverse(const Pose& pose) const noexcept {
   for (const Arm arm : {Arm::R, Arm::L}) {
     ArmInverse found = arm_angles(geometry_.arms[index(arm)], arm == Arm::L ? middle + half : middle - half);
     for (int k = 0; k < 3; ++k) found.angles[k] = within_a_turn(found.angles[k]);
-    if (found.reach == Reach::Reached && !within_limits(arm, found.angles)) found.reach = Reach::Limits;
+    if (found.reach == ReachResult::Reached && !within_limits(arm, found.angles)) found.reach = ReachResult::Limits;
     out.angles[index(arm)] = found.angles, out.reach[index(arm)] = found.reach;
   }
   return out;

@@ -36,8 +36,8 @@ struct PenSpeed {
 
 struct PenInverse {
   JointAngles angles{};
-  std::array<Reach, 2> reach{Reach::NotFinite, Reach::NotFinite};  // R, L
-  bool reached() const { return reach[0] == Reach::Reached && reach[1] == Reach::Reached; }
+  std::array<ReachResult, 2> reach{ReachResult::NotFinite, ReachResult::NotFinite};  // R, L
+  bool reached() const { return reach[0] == ReachResult::Reached && reach[1] == ReachResult::Reached; }
 };
 
 class PenKinematics {

@@ -6,7 +6,7 @@ namespace riffler {
 
 namespace {
 
-DescriptionShelf shelf() {
+DescriptionCatalog shelf() {
   return {"pen", "RIFFLER_PENS", "pens", shipped_pens(), pen_summary};
 }
 

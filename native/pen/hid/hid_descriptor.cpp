@@ -23,7 +23,7 @@ enum Item : std::uint8_t {
   kUsage = 0x08,
 };
 constexpr std::uint8_t kLongItem = 0xFE;
-constexpr std::uint64_t kMostBits = 8 * 4096;  // of a report: HID_MAX_BUFFER_SIZE of Linux was 4096 for long
+constexpr std::uint64_t kMaxBits = 8 * 4096;  // of a report: HID_MAX_BUFFER_SIZE of Linux was 4096 for long
 
 struct Globals {
   std::uint32_t page = 0, size = 0, id = 0, count = 0;
@@ -105,7 +105,7 @@ class Parser {
   void add(std::array<std::uint64_t, 256>& bits) {
     usage_ = 0;
     bits[now_.id] += static_cast<std::uint64_t>(now_.size) * now_.count;
-    if (bits[now_.id] > kMostBits) fail("a report that is too long");
+    if (bits[now_.id] > kMaxBits) fail("a report that is too long");
   }
 
   void finish() {

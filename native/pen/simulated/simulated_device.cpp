@@ -50,7 +50,7 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
   pen->hand().follow([hand](double seconds) { return hand->wish(seconds); });
   auto losses = std::make_shared<Losses>();
   pen->on_sense = [losses](riffler_pen_sensors& sensors) { losses->take(sensors); };
-  const auto clock = std::make_shared<PatientClock>();
+  const auto clock = std::make_shared<StallTolerantClock>();
   const double start = clock->now();
   auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
   auto model = std::make_shared<RifflerModel>(*transport, compensation);
@@ -67,7 +67,8 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
 
 SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
                                  std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
-                                 Driver::Open open, const DriverSettings& driver, std::shared_ptr<PatientClock> clock)
+                                 Driver::Open open, const DriverSettings& driver,
+                                 std::shared_ptr<StallTolerantClock> clock)
     : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver, clock),
       hand_(std::move(hand)),
       losses_(std::move(losses)),

@@ -13,8 +13,8 @@ namespace riffler {
 inline constexpr const char* kSimulatedKind = "simulated";
 inline constexpr const char* kSimulatedWhat = "Riffler's pen without hardware, moved by a hand of its own";
 
-/// Its time is a PatientClock's: no force is taken away from a hand that this machine moves because the machine is
-/// busy.
+/// Its time is a StallTolerantClock's: no force is taken away from a hand that this machine moves because the machine
+/// is busy.
 class SimulatedDevice final : public HidPen {
  public:
   /// Homed. Its hand goes round on a curve (hand_on_a_curve) until it is told where to go.
@@ -38,11 +38,11 @@ class SimulatedDevice final : public HidPen {
   struct Losses;
   SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses, std::shared_ptr<HidModel> model,
                   std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver,
-                  std::shared_ptr<PatientClock> clock);
+                  std::shared_ptr<StallTolerantClock> clock);
 
   std::shared_ptr<Hand> hand_;
   std::shared_ptr<Losses> losses_;
-  std::shared_ptr<PatientClock> clock_;
+  std::shared_ptr<StallTolerantClock> clock_;
 };
 
 }  // namespace riffler

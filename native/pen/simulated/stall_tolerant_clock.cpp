@@ -9,22 +9,22 @@
 
 namespace riffler {
 
-PatientClock::PatientClock(double most)
-    : PatientClock(most, {steady_seconds, [](double seconds) {
-                            std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-                          }}) {}
+StallTolerantClock::StallTolerantClock(double most)
+    : StallTolerantClock(most, {steady_seconds, [](double seconds) {
+                                  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+                                }}) {}
 
-PatientClock::PatientClock(double most, System system)
+StallTolerantClock::StallTolerantClock(double most, System system)
     : system_(std::move(system)), most_(most), seen_(system_.now()), time_(seen_) {}
 
-void PatientClock::wait(double seconds) noexcept {
+void StallTolerantClock::wait(double seconds) noexcept {
   if (!(seconds > 0)) return;
   now();
   system_.wait(seconds);
   pass(seconds + most_);
 }
 
-double PatientClock::pass(double most) noexcept {
+double StallTolerantClock::pass(double most) noexcept {
   const double now = system_.now(), since = now - std::exchange(seen_, now);
   time_.store(last() + std::clamp(since, 0.0, most), std::memory_order_relaxed);
   return last();

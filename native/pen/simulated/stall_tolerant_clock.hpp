@@ -11,7 +11,7 @@ namespace riffler {
 /// The system's seconds, but no more than `most` from one look to the next beside what was waited for. Where the thread
 /// that looks is kept from running, the rest of that time has not been: everything goes on more slowly, nothing is
 /// late.
-class PatientClock final : public Clock {
+class StallTolerantClock final : public Clock {
  public:
   /// The system's clock and its waiting; for tests another one's.
   struct System {
@@ -19,8 +19,8 @@ class PatientClock final : public Clock {
     std::function<void(double)> wait;
   };
 
-  explicit PatientClock(double most = 5e-4);
-  PatientClock(double most, System system);
+  explicit StallTolerantClock(double most = 5e-4);
+  StallTolerantClock(double most, System system);
 
   // By one thread.
   double now() noexcept override { return pass(most_); }

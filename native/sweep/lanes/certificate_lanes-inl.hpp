@@ -31,7 +31,7 @@ HWY_INLINE Plane choose(M m, const Plane& a, const Plane& b) {
 /// of what was found.
 struct Sample {
   V t;
-  Stretch hit;
+  RayIntervals hit;
   Plane below, above;
   V depth;  ///< halvings of the part's time
 };
@@ -78,7 +78,7 @@ class Certificate {
     const M nearer = both(missed, hn::Lt(hn::Add(p.h0, hn::Mul(p.h1, kept.other)), set(-b_.aside)));
     if (none(nearer)) return p;
     V height = zero();
-    Plane along = plane(pose.from_tip, BesideLanes(b_, pose).find(nearer, height), kept.direction);
+    Plane along = plane(pose.from_tip, SeparatingPlaneLanes(b_, pose).find(nearer, height), kept.direction);
     along.h0 = height;
     return choose(nearer, along, p);
   }

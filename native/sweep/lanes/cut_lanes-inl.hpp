@@ -68,7 +68,7 @@ HWY_INLINE Group group_at(const RayWindow& w, int row, int column) {
 
 /// Lanes in which the first look sees all material out of reach.
 template <bool kFlank>
-HWY_INLINE M under_ball(const FirstLook& look, double u, const Group& g) {
+HWY_INLINE M under_ball(const QuickReject& look, double u, const Group& g) {
   const V x = set(u - look.from[0]), y = hn::Sub(g.v, set(look.from[1])), z = hn::Sub(g.far, set(look.from[2]));
   const auto dot = [](V a, V b, V c, const double* d) {
     return hn::Add(hn::Add(hn::Mul(a, set(d[0])), hn::Mul(b, set(d[1]))), hn::Mul(c, set(d[2])));
@@ -83,7 +83,7 @@ HWY_INLINE M under_ball(const FirstLook& look, double u, const Group& g) {
   return both(out,
               both(hn::Le(rise, zero()), hn::Ge(hn::Mul(rise, rise), hn::Mul(square, set(look.lean * look.lean)))));
 }
-HWY_INLINE M under_planes(const FirstLook& look, double u, const Group& g) {
+HWY_INLINE M under_planes(const QuickReject& look, double u, const Group& g) {
   V most = set(-kInfinity);
   for (int k = 0; k < 2; ++k) {
     const double* foot = look.foot[k];
@@ -126,16 +126,16 @@ HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
   Candidate found[kTileRays];
   int n = 0;
   switch (w.look.kind) {
-    case FirstLook::Kind::None:
+    case QuickReject::Kind::None:
       n = find_groups(w, [](double, const Group&) { return no_lane(); }, found);
       break;
-    case FirstLook::Kind::Ball:
+    case QuickReject::Kind::Ball:
       n = find_groups(w, [&](double u, const Group& g) { return under_ball<false>(w.look, u, g); }, found);
       break;
-    case FirstLook::Kind::BallAndFlank:
+    case QuickReject::Kind::BallAndFlank:
       n = find_groups(w, [&](double u, const Group& g) { return under_ball<true>(w.look, u, g); }, found);
       break;
-    case FirstLook::Kind::Planes:
+    case QuickReject::Kind::Planes:
       n = find_groups(w, [&](double u, const Group& g) { return under_planes(w.look, u, g); }, found);
       break;
   }
@@ -183,7 +183,7 @@ HWY_INLINE void add_force(RayWindow& w, const V (&p)[3], const V (&force)[3], in
 }
 
 /// Takes `cut` from the lanes of `mask`; `t_near` and `t_far` are the motion's t at its ends.
-HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, Stretch cut, V t_near, V t_far) {
+HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayIntervals cut, V t_near, V t_far) {
   // A cut thinner than what vanishes is none: it would leave two spans that touch.
   const M touched = both(both(mask, hn::Gt(hn::Sub(cut.far, cut.near), set(w.thinnest))),
                          both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.near)));

@@ -16,7 +16,7 @@ class HitLanes : private AxisView {
   using AxisView::AxisView;
 
   /// What the group covers of the rays; `active` lanes only. A far end above `high` need not be exact.
-  Stretch find(M active, V high) {
+  RayIntervals find(M active, V high) {
     out_ = nothing();
     for (std::size_t k = b_.count; k-- > 0;) {  // the upper pieces are simple and often make `far` known
       const PieceShape& s = b_.pieces[k];
@@ -33,13 +33,13 @@ class HitLanes : private AxisView {
  private:
   static constexpr double kArrived = 1e-13;  // of the size: where Newton's method has arrived
 
-  void add(M hit, Stretch s) {
+  void add(M hit, RayIntervals s) {
     out_.near = min(out_.near, pick(hit, s.near, set(kInfinity)));
     out_.far = max(out_.far, pick(hit, s.far, set(-kInfinity)));
   }
 
   /// {s : (q2) s² + 2 q1 s + q0 ≤ 0} on the nappe whose radius is positive; `grow`: how it widens along the ray.
-  static Stretch inside(V q2, V q1, V q0, V grow, bool cone) {
+  static RayIntervals inside(V q2, V q1, V q0, V grow, bool cone) {
     const V disc = hn::Sub(hn::Mul(q1, q1), hn::Mul(q2, q0));
     const V q = hn::Neg(hn::Add(q1, with_sign(sqrt(max(disc, zero())), q1)));
     const M flat = hn::Eq(q, zero()), straight = hn::Eq(q2, zero());
@@ -50,7 +50,7 @@ class HitLanes : private AxisView {
     const M whole = both(flat, straight);
     const V low = pick(whole, pick(hn::Le(q0, zero()), set(-kInfinity), set(kInfinity)), min(a, other));
     const V high = pick(whole, pick(hn::Le(q0, zero()), set(kInfinity), set(-kInfinity)), max(a, other));
-    Stretch out = where(either(whole, hn::Ge(disc, zero())), {low, high});
+    RayIntervals out = where(either(whole, hn::Ge(disc, zero())), {low, high});
     if (!cone) return out;
     const M open = hn::Lt(q2, zero()), up = hn::Gt(grow, zero());
     // Steeper than the flank, a ray stays inside of one nappe beyond a root.
@@ -66,8 +66,8 @@ class HitLanes : private AxisView {
       radius = hn::Add(radius, hn::Mul(set(s.slope), hn::Sub(z_, set(s.z0))));
       q1 = hn::Sub(q1, hn::Mul(radius, grow)), q2 = hn::Sub(q2, hn::Mul(grow, grow));
     }
-    const Stretch round = inside(q2, q1, hn::Sub(c_, hn::Mul(radius, radius)), grow, s.slope != 0);
-    const Stretch at = common(round, slab(s.z0, s.z1));
+    const RayIntervals round = inside(q2, q1, hn::Sub(c_, hn::Mul(radius, radius)), grow, s.slope != 0);
+    const RayIntervals at = common(round, slab(s.z0, s.z1));
     add(both(hn::Lt(at.near, at.far), both(hn::Gt(at.near, set(-kInfinity)), hn::Lt(at.far, set(kInfinity)))), at);
   }
 
@@ -90,7 +90,7 @@ class HitLanes : private AxisView {
     M open = mask, hit = no_lane();
     const double size = std::abs(s.e) + s.r;
     const V slack = set(1e-13 * size * s.r);
-    for (int i = 0; i < kMostSteps && !none(open); ++i) {
+    for (int i = 0; i < kMaxSteps && !none(open); ++i) {
       const V grow = hn::Add(hn::Mul(a_, at), b1_), z = hn::Sub(z_at(at), set(s.zc));
       const V square = hn::Add(hn::Mul(at, hn::Add(grow, b1_)), c_);
       const V rho = max(sqrt(max(square, zero())), set(1e-150)), out = max(hn::Sub(rho, set(s.e)), zero());
@@ -116,12 +116,12 @@ class HitLanes : private AxisView {
   }
 
   void round(const PieceShape& s, M active, V high) {
-    const Stretch box = box_of(s);
+    const RayIntervals box = box_of(s);
     M mask = both(active, hn::Le(box.near, box.far));
     // What the pieces above cover already need not be found.
     mask = without(mask, both(hn::Le(out_.near, box.near), hn::Ge(out_.far, box.far)));
     if (none(mask)) return;
-    Stretch at = box;
+    RayIntervals at = box;
     const M hit = walk(s, mask, 1, at.near, box.far);
     if (none(hit)) return;
     const M rest = both(hit, hn::Lt(out_.far, min(high, box.far)));
@@ -131,13 +131,13 @@ class HitLanes : private AxisView {
   }
 
   /// The ray inside of the slab and the cylinder about a Round.
-  Stretch box_of(const PieceShape& s) const {
+  RayIntervals box_of(const PieceShape& s) const {
     const double most = s.e + s.r;
-    const Stretch side = inside(a_, b1_, hn::Sub(c_, set(most * most)), zero(), false);
+    const RayIntervals side = inside(a_, b1_, hn::Sub(c_, set(most * most)), zero(), false);
     return common(side, slab(std::max(s.z0, s.zc - s.r), std::min(s.z1, s.zc + s.r)));
   }
 
-  Stretch out_;
+  RayIntervals out_;
 };
 
 }  // namespace riffler::HWY_NAMESPACE

@@ -17,11 +17,11 @@ HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
 /// Items, each of one lane of an Item; its fields are what the function `each(item, f)` calls f with.
-template <class Item, int kMost>
+template <class Item, int kMax>
 class LaneQueue {
  public:
   int count() const { return count_; }
-  bool full() const { return count_ + lanes() > kMost; }
+  bool full() const { return count_ + lanes() > kMax; }
 
   /// Adds the lanes of `mask`.
   void add(M mask, Item& item) {
@@ -50,14 +50,14 @@ class LaneQueue {
   }
 
  private:
-  static constexpr int kRoom = kMost + kLanes;
+  static constexpr int kRoom = kMax + kLanes;
   static constexpr std::size_t kFields = sizeof(Item) / sizeof(V);
   double at_[kFields][kRoom];
   int count_ = 0;
 };
 
 /// A stack of items for each lane; `choose(mask, a, b)` picks between two items.
-template <class Item, int kMost>
+template <class Item, int kMax>
 class LaneStack {
  public:
   M empty() const { return from_bits(~filled_[0] & ((1U << lanes()) - 1)); }
@@ -82,8 +82,8 @@ class LaneStack {
   }
 
  private:
-  Item at_[kMost];
-  unsigned filled_[kMost] = {};  // lanes that have an item at this level
+  Item at_[kMax];
+  unsigned filled_[kMax] = {};  // lanes that have an item at this level
   int top_ = 0;
 };
 

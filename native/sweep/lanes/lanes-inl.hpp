@@ -13,26 +13,26 @@ HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
 /// A stretch of each ray; empty where near > far.
-struct Stretch {
+struct RayIntervals {
   V near, far;
 };
 
-HWY_INLINE Stretch everything() {
+HWY_INLINE RayIntervals everything() {
   return {set(-kInfinity), set(kInfinity)};
 }
-HWY_INLINE Stretch nothing() {
+HWY_INLINE RayIntervals nothing() {
   return {set(kInfinity), set(-kInfinity)};
 }
-HWY_INLINE Stretch where(M m, Stretch s) {
+HWY_INLINE RayIntervals where(M m, RayIntervals s) {
   return {pick(m, s.near, set(kInfinity)), pick(m, s.far, set(-kInfinity))};
 }
-HWY_INLINE Stretch common(Stretch a, Stretch b) {
+HWY_INLINE RayIntervals common(RayIntervals a, RayIntervals b) {
   return {max(a.near, b.near), min(a.far, b.far)};
 }
 
 /// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, by roots that do not cancel. `tangent`: what, as a part of q1²,
 /// rounding may have taken from a double root.
-HWY_INLINE Stretch at_most_zero(double q2, double per_q2, V q1, V q0, double tangent = 0) {
+HWY_INLINE RayIntervals at_most_zero(double q2, double per_q2, V q1, V q0, double tangent = 0) {
   const V square = hn::Mul(q1, q1), disc = hn::Sub(square, hn::Mul(set(q2), q0));
   const M real = hn::Ge(disc, hn::Mul(set(-tangent), square));
   const V q = hn::Neg(hn::Add(q1, with_sign(sqrt(max(disc, zero())), q1)));
@@ -44,20 +44,20 @@ HWY_INLINE Stretch at_most_zero(double q2, double per_q2, V q1, V q0, double tan
   }
   const V a = with_sign(set(kInfinity), q);
   const M all = both(flat, hn::Le(q0, zero()));
-  const Stretch half = where(without(real, flat), {min(a, b), max(a, b)});
+  const RayIntervals half = where(without(real, flat), {min(a, b), max(a, b)});
   return {pick(all, set(-kInfinity), half.near), pick(all, set(kInfinity), half.far)};
 }
-HWY_INLINE Stretch at_most_zero(double q2, V q1, V q0) {
+HWY_INLINE RayIntervals at_most_zero(double q2, V q1, V q0) {
   return at_most_zero(q2, 1 / q2, q1, q0);
 }
 
 /// {s : 0 ≤ at + slope · s ≤ height}; `per_slope` is 1 / slope, or 0 for a slope of nothing.
-HWY_INLINE Stretch slab_by(V at, double per_slope, double height) {
+HWY_INLINE RayIntervals slab_by(V at, double per_slope, double height) {
   if (per_slope == 0) return where(both(hn::Ge(at, zero()), hn::Le(at, set(height))), everything());
   const V r = set(-per_slope), a = hn::Mul(at, r), b = hn::Mul(hn::Sub(at, set(height)), r);
-  return per_slope > 0 ? Stretch{a, b} : Stretch{b, a};
+  return per_slope > 0 ? RayIntervals{a, b} : RayIntervals{b, a};
 }
-HWY_INLINE Stretch slab(V at, double slope, double height) {
+HWY_INLINE RayIntervals slab(V at, double slope, double height) {
   return slab_by(at, std::abs(slope) < 1e-200 ? 0 : 1 / slope, height);
 }
 

@@ -52,7 +52,7 @@ class AxisView {
  protected:
   static constexpr double kLevel = 1e-12;  // the axis counts as square to the rays: a piece that a ray meets there is
                                            // met a moment before and after as well
-  static constexpr int kMostSteps = 24;
+  static constexpr int kMaxSteps = 24;
 
   V z_at(V s) const { return hn::Add(z_, hn::Mul(s, o_.z)); }
   V3 point(V s) const { return {w_.x, w_.y, hn::Add(w_.z, s)}; }
@@ -60,12 +60,12 @@ class AxisView {
   V3 radial(V s) const { return less(point(s), z_at(s), o_); }
 
   /// The ray between two heights over the tip; where it is level, all or nothing.
-  Stretch slab(double low, double high) const {
+  RayIntervals slab(double low, double high) const {
     const V a = hn::Mul(hn::Sub(set(low), z_), per_oz_), b = hn::Mul(hn::Sub(set(high), z_), per_oz_);
-    const Stretch out{min(a, b), max(a, b)};
+    const RayIntervals out{min(a, b), max(a, b)};
     const M level = hn::Le(abs(o_.z), set(kLevel));
     if (none(level)) return out;
-    const Stretch all = where(both(hn::Ge(z_, set(low)), hn::Le(z_, set(high))), everything());
+    const RayIntervals all = where(both(hn::Ge(z_, set(low)), hn::Le(z_, set(high))), everything());
     return {pick(level, all.near, out.near), pick(level, all.far, out.far)};
   }
 

@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {
 
-class BesideLanes : private AxisView {
+class SeparatingPlaneLanes : private AxisView {
  public:
   using AxisView::AxisView;
 
@@ -154,7 +154,7 @@ class BesideLanes : private AxisView {
 
   /// `at` moved to where the ray is between two heights over the tip.
   V clamped(V at, double low, double high) const {
-    const Stretch flat = slab(low, high);
+    const RayIntervals flat = slab(low, high);
     return pick(hn::Gt(flat.near, flat.far), at, max(flat.near, min(flat.far, at)));
   }
 
@@ -198,8 +198,8 @@ class BesideLanes : private AxisView {
   V3 beside_round(const PieceShape& s, V closest, M mask) const {
     if (s.e == 0) return beside_ball(s);
     V at = clamped(closest, std::max(s.z0, s.zc - s.r), std::min(s.z1, s.zc + s.r));
-    Stretch bracket{set(-kInfinity), set(kInfinity)};
-    for (int i = 0; i < kMostSteps; ++i) {
+    RayIntervals bracket{set(-kInfinity), set(kInfinity)};
+    for (int i = 0; i < kMaxSteps; ++i) {
       // Newton's method on the squared distance, which is convex; over the disc itself its normal is right.
       const Gap g = gap(s, at);
       const M open = both(mask, both(hn::Gt(g.out, zero()), hn::Gt(abs(g.rate), set(1e-7))));

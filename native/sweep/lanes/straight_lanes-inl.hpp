@@ -28,7 +28,7 @@ class StraightLanes {
   /// Looks for both ends in the lanes of `mask`, between the heights `low` and `high`, where the material is; an end
   /// beyond them need not be exact.
   void find(M mask, V low, V high) {
-    M met[ConvexGroup::kMost], open = mask;
+    M met[ConvexGroup::kMax], open = mask;
     for (std::size_t k = 0; k < b_.count; ++k) {
       const SweptShape& p = b_.pieces[k];
       met[k] = both(open, both(hn::Lt(low, set(p.ceiling)), hn::Gt(high, set(p.floor))));
@@ -54,7 +54,7 @@ class StraightLanes {
     }
   }
 
-  const Stretch& ends() const { return out_; }
+  const RayIntervals& ends() const { return out_; }
   V near_time() const { return time(near_way_); }
   V far_time() const { return time(far_way_); }
 
@@ -80,7 +80,7 @@ class StraightLanes {
   }
   void add(M good, V s, V way) { add_near(good, s, way), add_far(good, s, way); }
   /// A stretch at one pose, unless it is empty or infinite.
-  void include(Stretch s, double way) {
+  void include(RayIntervals s, double way) {
     const M good = both(hn::Le(s.near, s.far), both(hn::Gt(s.near, set(-kInfinity)), hn::Lt(s.far, set(kInfinity))));
     add_near(good, s.near, set(way)), add_far(good, s.far, set(way));
   }
@@ -105,7 +105,7 @@ class StraightLanes {
     const V p0 = dot(r_.x, b_.m1, r_.y, b_.m2, zc, b_.mo);
     const V a = less(r_.x, p0, b_.m1), b = less(r_.y, p0, b_.m2), c = less(zc, p0, b_.mo);
     const double da = b_.tilt - p1 * b_.m1, db = -p1 * b_.m2, dc = b_.oz - p1 * b_.mo;
-    const Stretch side = at_most_zero(da * da + db * db + dc * dc, dot(a, da, b, db, c, dc), norm2(a, b, c, p.r));
+    const RayIntervals side = at_most_zero(da * da + db * db + dc * dc, dot(a, da, b, db, c, dc), norm2(a, b, c, p.r));
     for (const V s : {side.near, side.far}) {
       const V t = hn::Add(p0, hn::Mul(s, set(p1)));
       M good = on_way(t);
@@ -162,17 +162,17 @@ class StraightLanes {
     return both(on, hn::Le(hn::Add(hn::Mul(out, out), hn::Mul(up, up)), set(p.r * p.r)));
   }
 
-  Stretch slab_at(const SweptShape& p, double way) const {
+  RayIntervals slab_at(const SweptShape& p, double way) const {
     return slab(hn::Sub(r_.z, set(way * b_.mo + p.z0)), b_.oz, p.z1 - p.z0);
   }
 
-  Stretch frustum_at(const SweptShape& p, double way) const {
+  RayIntervals frustum_at(const SweptShape& p, double way) const {
     const V a = hn::Sub(r_.x, set(way * b_.m1)), b = hn::Sub(r_.y, set(way * b_.m2));
     const V k = hn::Add(set(p.r0), hn::Mul(set(p.slope), hn::Sub(r_.z, set(way * b_.mo + p.z0))));
     const double grow = p.slope * b_.oz, q2 = b_.tilt * b_.tilt - grow * grow;
     const V q1 = hn::Sub(hn::Mul(a, set(b_.tilt)), hn::Mul(k, set(grow)));
     const V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(k, k));
-    Stretch side;
+    RayIntervals side;
     if (q2 >= 0) {
       side = at_most_zero(q2, q1, q0);
     } else {
@@ -180,16 +180,16 @@ class StraightLanes {
       const V q = hn::Neg(hn::Add(q1, with_sign(root, q1)));
       const M flat = hn::Eq(q, zero());
       const V s1 = hn::Mul(q, set(1 / q2)), s2 = pick(flat, zero(), hn::Div(q0, pick(flat, set(1), q)));
-      side = grow > 0 ? Stretch{max(s1, s2), set(kInfinity)} : Stretch{set(-kInfinity), min(s1, s2)};
+      side = grow > 0 ? RayIntervals{max(s1, s2), set(kInfinity)} : RayIntervals{set(-kInfinity), min(s1, s2)};
     }
-    const Stretch at = common(side, slab_at(p, way));
+    const RayIntervals at = common(side, slab_at(p, way));
     return where(both(hn::Le(at.near, at.far), both(hn::Gt(at.near, set(-kInfinity)), hn::Lt(at.far, set(kInfinity)))),
                  at);
   }
 
-  Stretch ball_at(const SweptShape& p, V zc, double way) const {
+  RayIntervals ball_at(const SweptShape& p, V zc, double way) const {
     const V a = hn::Sub(r_.x, set(way * b_.m1)), b = hn::Sub(r_.y, set(way * b_.m2)), c = hn::Sub(zc, set(way * b_.mo));
-    Stretch at = at_most_zero(1, hn::Add(hn::Mul(a, set(b_.tilt)), hn::Mul(c, set(b_.oz))), norm2(a, b, c, p.r));
+    RayIntervals at = at_most_zero(1, hn::Add(hn::Mul(a, set(b_.tilt)), hn::Mul(c, set(b_.oz))), norm2(a, b, c, p.r));
     if (p.cut0 || p.cut1) at = common(at, slab_at(p, way));
     return where(hn::Le(at.near, at.far), at);
   }
@@ -215,8 +215,8 @@ class StraightLanes {
     const V b = less(r_.y, t0, b_.m2);
     const double da = ds * b_.tilt - dt * b_.m1, db = -dt * b_.m2;
     const V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), set(radius * radius));
-    const Stretch disc = at_most_zero(da * da + db * db, hn::Add(hn::Mul(a, set(da)), hn::Mul(b, set(db))), q0);
-    const Stretch line = common(disc, slab(t0, dt, b_.way));
+    const RayIntervals disc = at_most_zero(da * da + db * db, hn::Add(hn::Mul(a, set(da)), hn::Mul(b, set(db))), q0);
+    const RayIntervals line = common(disc, slab(t0, dt, b_.way));
     const M good =
         both(hn::Le(line.near, line.far), both(hn::Gt(line.near, set(-kInfinity)), hn::Lt(line.far, set(kInfinity))));
     for (const V l : {line.near, line.far})
@@ -238,7 +238,7 @@ class StraightLanes {
     V q1 = dot(a, da, b, db, k, -dk);
     V q0 = hn::Sub(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(k, k));
     if (q2 < 0) q2 = -q2, q1 = hn::Neg(q1), q0 = hn::Neg(q0);
-    const Stretch roots = at_most_zero(q2, 1 / q2, q1, q0, SweptShape::kTangent);
+    const RayIntervals roots = at_most_zero(q2, 1 / q2, q1, q0, SweptShape::kTangent);
     const M real = hn::Le(roots.near, roots.far);
     for (const V l : {roots.near, roots.far}) {
       const V s = hn::Add(s0, hn::Mul(l, set(ds))), t = hn::Add(t0, hn::Mul(l, set(dt)));
@@ -250,7 +250,7 @@ class StraightLanes {
   const StraightBody& b_;
   SectionRays r_;
   M mask_;  // lanes whose material is at heights that the piece reaches
-  Stretch out_ = nothing();
+  RayIntervals out_ = nothing();
   V near_way_ = zero(), far_way_ = zero();
 };
 
@@ -261,7 +261,7 @@ void cut_straight_with(const StraightBody& body, RayWindow& w) {
     w.hits += hn::CountTrue(kD, g.active);
     StraightLanes<kWays> lanes(body, u, g.v);
     lanes.find(g.active, hn::Sub(max(g.near, set(w.low)), tip), hn::Sub(min(g.far, set(w.high)), tip));
-    const Stretch cut{hn::Add(lanes.ends().near, tip), hn::Add(lanes.ends().far, tip)};
+    const RayIntervals cut{hn::Add(lanes.ends().near, tip), hn::Add(lanes.ends().far, tip)};
     subtract(w, u, g, g.active, cut, lanes.near_time(), lanes.far_time());
   });
 }

@@ -32,7 +32,7 @@ struct Ray {
 
 /// What was found to be taken, and when.
 struct Found {
-  Stretch at;
+  RayIntervals at;
   V t_near, t_far;
 };
 
@@ -44,7 +44,7 @@ struct Open {
 };
 
 template <class F>
-HWY_INLINE void each(Stretch& s, const F& f) {
+HWY_INLINE void each(RayIntervals& s, const F& f) {
   f(s.near), f(s.far);
 }
 template <class F>
@@ -170,7 +170,7 @@ class TurningLanes {
     return good;
   }
 
-  Stretch hits(const Ray& ray, const Pose& pose, M active) {
+  RayIntervals hits(const Ray& ray, const Pose& pose, M active) {
     w_.hits += hn::CountTrue(kD, active);
     return HitLanes(b_, pose).find(active, ray.high);
   }
@@ -184,7 +184,7 @@ class TurningLanes {
 
   /// Joins a hit to what was found, but for lanes in which they lie further apart than an end may miss; returns those.
   /// (Where a tool that moves along the ray only grazes it, hits may be shorter than the steps between them.)
-  M merge(Found& found, V t, Stretch s, M mask) const {
+  M merge(Found& found, V t, RayIntervals s, M mask) const {
     const M hit = both(mask, hn::Lt(s.near, s.far)), fresh = hn::Gt(found.at.near, found.at.far);
     const V gap = max(hn::Sub(s.near, found.at.far), hn::Sub(found.at.near, s.far));
     const M overlap = hn::Le(gap, set(b_.along));
@@ -284,13 +284,13 @@ class TurningLanes {
   }
 
   static constexpr int kGuided = 8;
-  static constexpr int kMostPending = 50;  // kGuided and the most halvings (turning_part.cpp), and one
+  static constexpr int kMaxPending = 50;  // kGuided and the most halvings (turning_part.cpp), and one
   const TurningBody& b_;
   RayWindow& w_;
   Certificate certificate_;
   LaneQueue<Ray, 2 * kLanes> reached_;
   LaneQueue<Open, 16 * kLanes> open_;
-  LaneStack<Sample, kMostPending> pending_;
+  LaneStack<Sample, kMaxPending> pending_;
   // Of the tile's rays: which lose something, and what.
   std::uint32_t taken_[kTileSide] = {};
   double near_[kTileRays + kLanes], far_[kTileRays + kLanes], t_near_[kTileRays + kLanes], t_far_[kTileRays + kLanes];

@@ -47,8 +47,8 @@ Dense dense_force(const Assembly& assembly, const Pose& pose, const Box3& box, d
         const Vec3 p = box.lower + h * Vec3(i + 0.5, j + 0.5, k + 0.5), d = p - pose.tip;
         const double z = glm::dot(d, pose.axis);
         if (!assembly.outline().inside(glm::length(d - z * pose.axis), z)) continue;
-        const Assembly::Stretch* in = nullptr;
-        for (const Assembly::Stretch& s : assembly.stretches())
+        const Assembly::HeightBand* in = nullptr;
+        for (const Assembly::HeightBand& s : assembly.stretches())
           if (!in || z > s.low) in = &s;
         const Vec3 way = pose.tip + 0.5 * (in->low + in->high) * pose.axis - p;
         sum.force += kStiffness * h * h * h / glm::length(way) * way, sum.size += kStiffness * h * h * h;

@@ -241,10 +241,10 @@ TEST(SculptStep, WhateverResistsTheCouplingsEnergyFallsInEveryStep) {
       spin = 0.99 * spin + random.uniform(0, 0.2) * random.direction() - 0.5 * glm::cross(kUp, grip.axis);
       grip.tip += kTick * speed;
       grip.axis = glm::normalize(grip.axis + kTick * glm::cross(spin, grip.axis));
-      const double before = couple(settings.coupling, stretch(grip, step.tool()), {}, {}).energy;
+      const double before = couple(settings.coupling, pose_error(grip, step.tool()), {}, {}).energy;
       const SculptStep::Result r = step.step(grip, {speed, spin}, kTick);
       ASSERT_TRUE(finite(r.on_grip));
-      const double after = couple(settings.coupling, stretch(grip, r.tool), {}, {}).energy;
+      const double after = couple(settings.coupling, pose_error(grip, r.tool), {}, {}).energy;
       ASSERT_LE(after, before + 1e-9 + 1e-6 * before) << constant << ", " << k;
     }
   }

@@ -7,11 +7,11 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::held_over_test {
+namespace riffler::wrench_extrapolator_test {
 namespace {
 
-TEST(HeldOver, PassesOnWhatComesInTime) {
-  HeldOver held;
+TEST(WrenchExtrapolator, PassesOnWhatComesInTime) {
+  WrenchExtrapolator held;
   for (int k = 0; k < 100; ++k) {
     const Wrench w{{std::sin(0.1 * k), 0, 1}, {0, 10, 0}};
     const Wrench out = held.stepped(w, 1e-3);
@@ -21,10 +21,10 @@ TEST(HeldOver, PassesOnWhatComesInTime) {
   }
 }
 
-TEST(HeldOver, NeverJumpsWhicheverStepsAreMissing) {
+TEST(WrenchExtrapolator, NeverJumpsWhicheverStepsAreMissing) {
   stress::Random random(3);
-  const HeldOverSettings s;
-  HeldOver held;
+  const WrenchExtrapolatorSettings s;
+  WrenchExtrapolator held;
   Wrench last, wanted;
   bool out_of_time = false;
   for (int k = 0; k < 100'000; ++k) {
@@ -42,8 +42,8 @@ TEST(HeldOver, NeverJumpsWhicheverStepsAreMissing) {
   }
 }
 
-TEST(HeldOver, GoesOnForAWhileAndIsGoneInTime) {
-  HeldOver held;
+TEST(WrenchExtrapolator, GoesOnForAWhileAndIsGoneInTime) {
+  WrenchExtrapolator held;
   held.stepped({{0.99, 0, 0}, {}}, 1e-3);
   held.stepped({{1, 0, 0}, {}}, 1e-3);
   // 10 N/s goes on: after 1 ms three quarters of 10 mN · 2 ms / 2, and 5 % of the fade.
@@ -53,13 +53,13 @@ TEST(HeldOver, GoesOnForAWhileAndIsGoneInTime) {
   held.missed(1e-3);
   EXPECT_NEAR(held.missed(1e-3).force.x, 0, 1e-12);
   // A single late tick is nothing to be felt: of a ramp, what is missing of the ramp.
-  HeldOver ramp;
+  WrenchExtrapolator ramp;
   for (int k = 0; k < 50; ++k) ramp.stepped({{0.01 * k, 0, 0}, {}}, 1e-3);
   EXPECT_NEAR(ramp.missed(1e-3).force.x, 0.5, 0.05 * 0.5 + 0.005);
 }
 
-TEST(HeldOver, TicksOfNoTimeAndWrenchesThatAreNoneChangeNothing) {
-  HeldOver held;
+TEST(WrenchExtrapolator, TicksOfNoTimeAndWrenchesThatAreNoneChangeNothing) {
+  WrenchExtrapolator held;
   held.stepped({{1, 0, 0}, {}}, 1e-3);
   const Wrench before = held.missed(0);
   EXPECT_EQ(held.missed(-1), before);
@@ -67,8 +67,8 @@ TEST(HeldOver, TicksOfNoTimeAndWrenchesThatAreNoneChangeNothing) {
   EXPECT_EQ(held.stepped({{2, 0, 0}, {}}, 0), before);
   held.reset();
   EXPECT_EQ(held.missed(1e-3), Wrench{});
-  EXPECT_EQ(test::error_of([] { HeldOver h({.fade = 0}); }), "fade must be positive");
-  EXPECT_EQ(test::error_of([] { HeldOver h({.ahead = 1, .fade = 0.1}); }), "ahead must be at most fade");
+  EXPECT_EQ(test::error_of([] { WrenchExtrapolator h({.fade = 0}); }), "fade must be positive");
+  EXPECT_EQ(test::error_of([] { WrenchExtrapolator h({.ahead = 1, .fade = 0.1}); }), "ahead must be at most fade");
 }
 
 TEST(Interpolated, IsAPeriodLate) {
@@ -83,4 +83,4 @@ TEST(Interpolated, IsAPeriodLate) {
 }
 
 }  // namespace
-}  // namespace riffler::held_over_test
+}  // namespace riffler::wrench_extrapolator_test

@@ -93,7 +93,7 @@ TEST(Follow, StaysWithTheProgramThroughEditsAndFiles) {
                       [](const Pose& a, const Pose& b) { return a.tip == b.tip && a.axis == b.axis; });
   };
   EXPECT_TRUE(same(parse_program(to_bytes(p), "p"), 1));
-  EXPECT_TRUE(same(retimed(p, 2), 1) && same(trimmed(p, 0, 2), 1));
+  EXPECT_TRUE(same(scale_feeds(p, 2), 1) && same(trimmed(p, 0, 2), 1));
   EXPECT_TRUE(trimmed(p, 1, 3).via().empty()) << "nothing leads to a first row";
   const Program* two[] = {&p, &p};
   EXPECT_TRUE(same(joined(two), 1) && same(joined(two), 4));

@@ -8,13 +8,13 @@
 #include "support/tilted.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::way_out_test {
+namespace riffler::retract_path_test {
 namespace {
 
 using test::tilted;
 
-Space space() {
-  Space out;
+ClearanceZone space() {
+  ClearanceZone out;
   out.box.add({-50, -40, -30}), out.box.add({50, 40, 20});
   out.top = 60;
   return out;
@@ -37,7 +37,7 @@ TEST(WayOut, BringsTheWholeToolOutAndUpWhateverItsTilt) {
   for (double tilt = 0; tilt <= 180; tilt += 7.5)
     for (double around = 0; around < 360; around += 22.5) {
       const Pose pose{{3, -4, -5}, tilted(tilt, around)};
-      const std::vector<Pose> way = way_out(pose, reach, space());
+      const std::vector<Pose> way = retract_path(pose, reach, space());
       EXPECT_DOUBLE_EQ(way.back().tip.z, 60) << tilt << ' ' << around;
       // The first stretch is along the axis, where the tool has been; after it nothing of the tool is in the space.
       EXPECT_LT(glm::length(glm::cross(way[0].tip - pose.tip, pose.axis)), 1e-9);
@@ -84,4 +84,4 @@ TEST(WayOut, SweptBoxHoldsTheWholeToolOnItsWay) {
 }
 
 }  // namespace
-}  // namespace riffler::way_out_test
+}  // namespace riffler::retract_path_test

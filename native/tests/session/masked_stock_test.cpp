@@ -19,7 +19,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::cuttable_test {
+namespace riffler::masked_stock_test {
 namespace {
 
 const Box3 kBox{{0, 0, 0}, {40, 30, 12}};
@@ -86,7 +86,7 @@ struct Bench {
   }
 
   Volume stock, mask;
-  Cuttable cuttable;
+  MaskedStock cuttable;
   Volume left;
   MoveCarver carver;
   Volume shown;
@@ -121,7 +121,7 @@ Journal journal(const char* directions, CarveMode mode, Masked masks = Masked::Y
   return j;
 }
 
-TEST(Cuttable, WhatLiesInTheMaskStaysAsItIsToTheBitAndTheRestIsAsACarveBesideItLeavesIt) {
+TEST(MaskedStock, WhatLiesInTheMaskStaysAsItIsToTheBitAndTheRestIsAsACarveBesideItLeavesIt) {
   for_each_kind([](const char* directions, CarveMode mode) {
     std::mt19937 random(11);
     Bench bench(directions, mode);
@@ -137,7 +137,7 @@ TEST(Cuttable, WhatLiesInTheMaskStaysAsItIsToTheBitAndTheRestIsAsACarveBesideItL
   });
 }
 
-TEST(Cuttable, WhatIsShownDoesNotDependOnHowOftenSomebodyLooks) {
+TEST(MaskedStock, WhatIsShownDoesNotDependOnHowOftenSomebodyLooks) {
   for_each_kind([](const char* directions, CarveMode mode) {
     std::mt19937 random(12);
     Bench often(directions, mode), seldom(directions, mode);
@@ -150,7 +150,7 @@ TEST(Cuttable, WhatIsShownDoesNotDependOnHowOftenSomebodyLooks) {
   });
 }
 
-TEST(Cuttable, AReplayOfItsStrokesHasTheSameBytesHoweverManyCount) {
+TEST(MaskedStock, AReplayOfItsStrokesHasTheSameBytesHoweverManyCount) {
   for_each_kind([](const char* directions, CarveMode mode) {
     std::mt19937 random(13);
     Bench bench(directions, mode);
@@ -165,12 +165,12 @@ TEST(Cuttable, AReplayOfItsStrokesHasTheSameBytesHoweverManyCount) {
     j = parse_journal(to_bytes(j), "j");
     for (std::size_t k = states.size(); k-- > 0;) {
       EXPECT_EQ(to_bytes(replay(j, kTools)), states[k]) << k;
-      if (k > 0) j.take_back();
+      if (k > 0) j.undo();
     }
   });
 }
 
-TEST(Cuttable, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
+TEST(MaskedStock, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(15);
     Bench bench(directions, CarveMode::Add, Masked::No);
@@ -187,7 +187,7 @@ TEST(Cuttable, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
 }
 
 /// Why such strokes have a kind of their own: a carve that adds begins anew, and what is thinner than 1e-9 h is lost.
-TEST(Cuttable, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
+TEST(MaskedStock, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(17);
     Bench bench(directions, CarveMode::Add, Masked::No);
@@ -205,7 +205,7 @@ TEST(Cuttable, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
   }
 }
 
-TEST(Cuttable, RunsOfStrokesOfTheTwoModesBeginWithTheWholeThatTheLastOneLeft) {
+TEST(MaskedStock, RunsOfStrokesOfTheTwoModesBeginWithTheWholeThatTheLastOneLeft) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(16);
     Journal j = journal(directions, CarveMode::Add);
@@ -223,7 +223,7 @@ TEST(Cuttable, RunsOfStrokesOfTheTwoModesBeginWithTheWholeThatTheLastOneLeft) {
   }
 }
 
-TEST(Cuttable, StrokesOfOtherKindsBeginWithTheWhole) {
+TEST(MaskedStock, StrokesOfOtherKindsBeginWithTheWhole) {
   std::mt19937 random(14);
   for (const CarveMode mode : {CarveMode::Remove, CarveMode::Add}) {
     Bench bench("xyz", mode);
@@ -239,12 +239,12 @@ TEST(Cuttable, StrokesOfOtherKindsBeginWithTheWhole) {
   }
 }
 
-TEST(Cuttable, AMaskOnAnotherGridIsRefused) {
+TEST(MaskedStock, AMaskOnAnotherGridIsRefused) {
   const Volume stock = Volume::block({kBox, 0.4, "z"});
   const Volume mask(Frame{kBox, 0.5, "z"});
   for (const CarveMode mode : {CarveMode::Remove, CarveMode::Add})
-    EXPECT_NE(test::error_of([&] { Cuttable(stock, mode, &mask); }).find("protect"), std::string::npos);
+    EXPECT_NE(test::error_of([&] { MaskedStock(stock, mode, &mask); }).find("protect"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace riffler::cuttable_test
+}  // namespace riffler::masked_stock_test

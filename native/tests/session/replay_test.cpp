@@ -153,9 +153,9 @@ TEST(Replay, SeesOnlyWhatCounts) {
     if (k < 2) fewer.add_stroke(stroke);
   }
   const Volume whole = replay(all, kTools);
-  all.take_back(2);
+  all.undo(2);
   EXPECT_TRUE(test::same_rays(replay(all, kTools), replay(fewer, kTools)));
-  all.bring_back(2);
+  all.redo(2);
   EXPECT_TRUE(test::same_rays(replay(all, kTools), whole));
   EXPECT_FALSE(test::same_rays(replay(fewer, kTools), whole));
 }

@@ -6,7 +6,7 @@
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::first_look_test {
+namespace riffler::quick_reject_test {
 namespace {
 
 std::vector<Pose> lifted(std::vector<Pose> poses, double by) {
@@ -22,7 +22,7 @@ Stats counted(Volume& volume, const Tool& tool, const std::vector<Pose>& poses) 
 
 const std::vector<Pose> kRamp{{{8, 9, 6}, {0, 0, 1}}, {{14, 11, 5}, {0, 0, 1}}};
 
-TEST(FirstLook, ABallOverItsOwnCutTestsNoRay) {
+TEST(QuickReject, ABallOverItsOwnCutTestsNoRay) {
   const Tool tool = cutters::ball(6, 30);
   for (const double lift : {1e-6, 0.001, 0.1}) {
     Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 8}}, 0.1, "z"});
@@ -33,7 +33,7 @@ TEST(FirstLook, ABallOverItsOwnCutTestsNoRay) {
   }
 }
 
-TEST(FirstLook, ABallBelowItsOwnCutTakesFromEveryRay) {
+TEST(QuickReject, ABallBelowItsOwnCutTakesFromEveryRay) {
   const Tool tool = cutters::ball(6, 30);
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 8}}, 0.1, "z"});
   for (const double depth : {0.0, 1e-6, 2e-6}) {
@@ -42,7 +42,7 @@ TEST(FirstLook, ABallBelowItsOwnCutTakesFromEveryRay) {
   }
 }
 
-TEST(FirstLook, OfAShortStepMostRaysThatAreTestedAreCut) {
+TEST(QuickReject, OfAShortStepMostRaysThatAreTestedAreCut) {
   const Tool tool = cutters::ball(20, 60);
   Volume volume = Volume::block({{{0, 0, 0}, {60, 40, 30}}, 0.1, "z"});
   std::vector<Pose> poses{{{15, 20, 20}, {0, 0, 1}}};
@@ -56,7 +56,7 @@ TEST(FirstLook, OfAShortStepMostRaysThatAreTestedAreCut) {
 }
 
 /// A flat end that swings about its tip: lifted a little, it stays off the floor that it cut.
-TEST(FirstLook, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfThat) {
+TEST(QuickReject, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfThat) {
   const Tool tool = cutters::flat(6, 30);
   const auto swing = [](double height) {
     return std::vector<Pose>{{{10, 10, height}, glm::normalize(Vec3(0.05, 0, 1))},
@@ -71,4 +71,4 @@ TEST(FirstLook, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfThat) {
 }
 
 }  // namespace
-}  // namespace riffler::first_look_test
+}  // namespace riffler::quick_reject_test

@@ -16,15 +16,15 @@
 #include "mesh/audit.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::soften_test {
+namespace riffler::smooth_dabs_test {
 namespace {
 
 using test::HalfSpace;
 
-Softened dab(Volume& volume, const Vec3& centre, double radius, double strength = 1) {
-  SoftenOptions options;
+SmoothResult dab(Volume& volume, const Vec3& centre, double radius, double strength = 1) {
+  SmoothOptions options;
   options.radius = radius, options.strength = strength;
-  return soften(volume, std::vector<Vec3>{centre}, options);
+  return smooth_dabs(volume, std::vector<Vec3>{centre}, options);
 }
 
 /// f(place, normal) for every end, in the world frame.
@@ -148,7 +148,7 @@ TEST(Soften, MoreThanHalvesNoiseInOneDab) {
     });
   const double before = roughness(volume, level, 3);
   const Volume rough = volume;
-  const Softened once = dab(volume, {8, 8, level}, 5);
+  const SmoothResult once = dab(volume, {8, 8, level}, 5);
   EXPECT_LT(roughness(volume, level, 3), 0.5 * before);
   EXPECT_GT(once.removed[0], 0);
   EXPECT_GT(once.added[0], 0);
@@ -164,7 +164,7 @@ TEST(Soften, RoundsAnEdgeAlikeOnBothSides) {
   constexpr double h = 0.25;
   Volume volume = Volume::block({{{0, 0, 0}, {16, 10, 10}}, h, "xyz"});
   for (int k = 0; k < 3; ++k) {
-    const Softened s = dab(volume, {8, 0, 0}, 4);
+    const SmoothResult s = dab(volume, {8, 0, 0}, 4);
     EXPECT_GT(s.removed[0], 0);
     EXPECT_LT(s.added[0], 0.1 * s.removed[0]);
   }
@@ -198,7 +198,7 @@ TEST(Soften, MovesNothingByMoreThanAPitchAndNothingBeyondItsRadius) {
   for (const std::vector<HalfSpace>& sides : shapes) {
     Volume volume = test::convex(frame, sides);
     const Volume before = volume;
-    const Softened s = dab(volume, tip, radius);
+    const SmoothResult s = dab(volume, tip, radius);
     EXPECT_GT(s.removed[0], 0);
     EXPECT_LT(s.removed[0], 100);
     expect_sound(volume);
@@ -222,12 +222,12 @@ TEST(Soften, KeepsBothSidesOfAWallThinnerThanItsReach) {
     const HalfSpace front = HalfSpace::at(place, normal), back = HalfSpace::at(place - thickness * normal, -normal);
     const Volume wall = test::convex(frame, {front, back});
     Volume volume = wall;
-    const Softened s = dab(volume, place, 2.5);
+    const SmoothResult s = dab(volume, place, 2.5);
     EXPECT_LT(s.removed[0] + s.added[0], 1e-9);
     // a gap as narrow as that
     Volume gap = Volume::block(frame);
     apply(Boolean::Subtract, gap, wall);
-    const Softened g = dab(gap, place, 2.5);
+    const SmoothResult g = dab(gap, place, 2.5);
     EXPECT_LT(g.removed[0] + g.added[0], 1e-9);
   }
 }
@@ -237,7 +237,7 @@ TEST(Soften, WearsOffTheRimOfAThinWallAndLeavesNoCrumbs) {
   Volume wall = test::convex(frame, {HalfSpace::at({6.3, 0, 0}, {1, 0, 0}), HalfSpace::at({5.7, 0, 0}, {-1, 0, 0}),
                                      HalfSpace::at({0, 0, 11}, {0, 0, 1})});
   for (int k = 0; k < 12; ++k) {
-    const Softened s = dab(wall, {6, 0, 11}, 3);
+    const SmoothResult s = dab(wall, {6, 0, 11}, 3);
     EXPECT_GT(s.removed[0], 0.05);
     EXPECT_LT(s.added[0], 1e-3);
     expect_sound(wall);
@@ -254,13 +254,13 @@ TEST(Soften, StandsAnyPlaceAndSizeOfTheBrush) {
   for (const Vec3& centre : {Vec3(0, 0, 0), Vec3(20, 17, 9), Vec3(10, 17, 9), Vec3(10, 8, 4), Vec3(10, 8, 12)})
     for (const double radius : {1e-3, 0.4, 3.0, 1e6}) {
       Volume volume = block;
-      const Softened s = dab(volume, centre, radius);
+      const SmoothResult s = dab(volume, centre, radius);
       EXPECT_EQ(s.added[0], 0);
       EXPECT_NEAR(block.volume() - volume.volume(), s.removed[0], 1e-9);
       expect_sound(volume);
     }
   Volume volume = block;
-  const Softened far = dab(volume, {-30, 5, 5}, 8);
+  const SmoothResult far = dab(volume, {-30, 5, 5}, 8);
   EXPECT_EQ(far.removed[0], 0);
   EXPECT_EQ(other_tiles(volume, block), 0U);
   EXPECT_EQ(volume.revision(), block.revision());
@@ -270,7 +270,7 @@ TEST(Soften, DoesNothingWithoutStrengthNorOnAPlane) {
   const Frame frame = test::lattice_frame("xyz");
   const Volume before = test::random_volume(frame, 4);
   Volume volume = before;
-  const Softened s = dab(volume, {12, 12, 12}, 8, 0);
+  const SmoothResult s = dab(volume, {12, 12, 12}, 8, 0);
   EXPECT_EQ(s.removed, std::vector<double>{0});
   EXPECT_EQ(other_tiles(volume, before), 0U);
   EXPECT_EQ(volume.revision(), before.revision());
@@ -310,12 +310,12 @@ TEST(Soften, KeepsWhatIsProtectedToTheBit) {
     const Volume before = random ? test::random_volume(test::lattice_frame("xyz"), 2) : Volume::block(frame);
     const Volume mask = random ? test::random_volume(test::lattice_frame("xyz"), 3) : kept;
     Volume volume = before, freely = before;
-    SoftenOptions options;
+    SmoothOptions options;
     options.radius = random ? 3 : 6, options.strength = 1, options.protect = &mask;
     const std::vector<Vec3> centres{{10, 20, 20}, {10, 19, 20}};
-    const Softened s = soften(volume, centres, options);
+    const SmoothResult s = smooth_dabs(volume, centres, options);
     options.protect = nullptr;
-    const Softened t = soften(freely, centres, options);
+    const SmoothResult t = smooth_dabs(freely, centres, options);
     EXPECT_GT(s.removed[0], 0);
     EXPECT_LT(s.removed[0], t.removed[0]);
     EXPECT_NEAR(s.added[0] + s.added[1] - s.removed[0] - s.removed[1], volume.volume() - before.volume(), 1e-8);
@@ -344,9 +344,9 @@ TEST(Soften, GivesTheSameBytesForAnyNumberOfThreads) {
   for (const char* threads : {"1", "2", "4"}) {
     setenv("RIFFLER_THREADS", threads, 1);
     Volume volume = test::random_volume(test::lattice_frame("xyz"), 9);
-    SoftenOptions options;
+    SmoothOptions options;
     options.radius = 2.5, options.strength = 0.8;
-    soften(volume, std::vector<Vec3>{{8, 9, 10}, {10, 9, 10}, {10, 11, 12}}, options);
+    smooth_dabs(volume, std::vector<Vec3>{{8, 9, 10}, {10, 9, 10}, {10, 11, 12}}, options);
     volumes.push_back(std::move(volume));
   }
   unsetenv("RIFFLER_THREADS");
@@ -359,12 +359,12 @@ TEST(Soften, StopsWithoutATraceWhenCancelled) {
   for (const int calls : {0, 1, 3, 7}) {
     Volume volume = before;
     int left = calls;
-    SoftenOptions options;
+    SmoothOptions options;
     options.progress = [&](double share) {
       EXPECT_TRUE(share >= 0 && share <= 1);
       return left-- > 0;
     };
-    EXPECT_THROW(soften(volume, std::vector<Vec3>{{0, 0, 0}, {24, 0, 0}, {24, 24, 0}}, options), Cancelled);
+    EXPECT_THROW(smooth_dabs(volume, std::vector<Vec3>{{0, 0, 0}, {24, 0, 0}, {24, 24, 0}}, options), Cancelled);
     EXPECT_EQ(other_tiles(volume, before), 0U);
     EXPECT_EQ(volume.revision(), before.revision());
     EXPECT_EQ(volume.take_stats().moves, 0U);
@@ -376,9 +376,9 @@ TEST(Soften, NamesWhatIsWrong) {
   const Volume coarse = Volume::block(test::lattice_frame("xyz", 1));
   const auto error = [](Volume& v, const std::vector<Vec3>& centres, double radius, double strength,
                         const Volume* protect) {
-    SoftenOptions options;
+    SmoothOptions options;
     options.radius = radius, options.strength = strength, options.protect = protect;
-    return test::error_of([&] { soften(v, centres, options); });
+    return test::error_of([&] { smooth_dabs(v, centres, options); });
   };
   const double nan = std::nan("");
   EXPECT_EQ(error(one, {{0, 0, 0}}, 5, 1, nullptr),
@@ -392,4 +392,4 @@ TEST(Soften, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::soften_test
+}  // namespace riffler::smooth_dabs_test

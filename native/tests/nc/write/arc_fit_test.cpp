@@ -103,7 +103,7 @@ void expect_whole(std::span<const Vec3> points, const std::vector<FittedPiece>& 
   for (const FittedPiece& piece : pieces) {
     EXPECT_GT(piece.last, at);
     if (piece.arc) {
-      EXPECT_GE(piece.last - at, kLeastArcMoves);
+      EXPECT_GE(piece.last - at, kMinArcMoves);
     }
     at = piece.last;
   }

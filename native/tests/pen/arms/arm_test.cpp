@@ -95,7 +95,7 @@ TEST(PenArm, InverseBringsTheEndBack) {
       const Vec3 angles(random.uniform(-kPi, kPi), third + elbow, third);
       const Vec3 end = end_by_chain(links, angles);
       const ArmInverse found = arm_angles(links, end);
-      ASSERT_EQ(found.reach, Reach::Reached);
+      ASSERT_EQ(found.reach, ReachResult::Reached);
       EXPECT_LT(glm::distance(end_by_chain(links, found.angles), end), 1e-9);
       // The arm that reaches over its own upright axis is another answer, the same end.
       if (arm_dexterity(links, angles) < 1e-3) continue;
@@ -113,7 +113,8 @@ TEST(PenArm, InverseKeepsItsDigitsWhereTheArmIsNearlyStraightOrFolded) {
         const Vec3 angles(0.1, third + side * (kPi / 2 - from), third);
         const Vec3 end = end_by_chain(links, angles);
         const ArmInverse found = arm_angles(links, end);
-        if (found.reach == Reach::TooFar || found.reach == Reach::TooNear) continue;  // by the end's own rounding
+        if (found.reach == ReachResult::TooFar || found.reach == ReachResult::TooNear)
+          continue;  // by the end's own rounding
         EXPECT_LT(glm::distance(end_by_chain(links, found.angles), end), 1e-11) << from << " " << side;
       }
 }
@@ -123,21 +124,21 @@ TEST(PenArm, InverseSaysWhyThereIsNone) {
     return arm_angles(links, from_shoulder + Vec3(0, links.shoulder, 0)).reach;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(reach(kRight, {330.001, 0, 0}), Reach::TooFar);
-  EXPECT_EQ(reach(kRight, {329.999, 0, 0}), Reach::Reached);
-  EXPECT_EQ(reach(kRight, {29.999, 0, 0}), Reach::TooNear);
-  EXPECT_EQ(reach(kRight, {30.001, 0, 0}), Reach::Reached);
-  EXPECT_EQ(reach(kRight, {0, 0, -200}), Reach::OnAxis);
-  EXPECT_EQ(reach(kLeft, {0, 0, 0}), Reach::OnAxis) << "folded on itself";
-  EXPECT_EQ(reach(kLeft, {1e-3, 0, 0}), Reach::Reached);
-  EXPECT_EQ(reach(kRight, {nan, 0, 0}), Reach::NotFinite);
-  EXPECT_EQ(reach(kRight, {0, 1.7e308, 1.7e308}), Reach::NotFinite) << "its distance is not";
+  EXPECT_EQ(reach(kRight, {330.001, 0, 0}), ReachResult::TooFar);
+  EXPECT_EQ(reach(kRight, {329.999, 0, 0}), ReachResult::Reached);
+  EXPECT_EQ(reach(kRight, {29.999, 0, 0}), ReachResult::TooNear);
+  EXPECT_EQ(reach(kRight, {30.001, 0, 0}), ReachResult::Reached);
+  EXPECT_EQ(reach(kRight, {0, 0, -200}), ReachResult::OnAxis);
+  EXPECT_EQ(reach(kLeft, {0, 0, 0}), ReachResult::OnAxis) << "folded on itself";
+  EXPECT_EQ(reach(kLeft, {1e-3, 0, 0}), ReachResult::Reached);
+  EXPECT_EQ(reach(kRight, {nan, 0, 0}), ReachResult::NotFinite);
+  EXPECT_EQ(reach(kRight, {0, 1.7e308, 1.7e308}), ReachResult::NotFinite) << "its distance is not";
 }
 
 TEST(PenArm, BeyondItsReachTheArmPointsThere) {
   const Vec3 far(900, 300, -500);
   const ArmInverse found = arm_angles(kRight, far + Vec3(0, 80, 0));
-  EXPECT_EQ(found.reach, Reach::TooFar);
+  EXPECT_EQ(found.reach, ReachResult::TooFar);
   EXPECT_LT(glm::distance(end_by_chain(kRight, found.angles), 330.0 * glm::normalize(far) + Vec3(0, 80, 0)), 1e-9);
 }
 

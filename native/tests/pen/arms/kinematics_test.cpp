@@ -83,12 +83,12 @@ TEST(PenKinematics, InverseSaysWhichArmCannotAndWhy) {
   const Pose home = pen.posture(pen.home_angles()).pose;
   EXPECT_TRUE(pen.inverse(home).reached());
   const PenInverse far = pen.inverse({{345, 0, 0}, {0, 0, 1}});
-  EXPECT_EQ(far.reach[0], Reach::TooFar);
-  EXPECT_EQ(far.reach[1], Reach::Limits) << "its arm is longer";
-  EXPECT_EQ(pen.inverse({home.tip + Vec3(0, 0, 200), home.axis}).reach[0], Reach::Limits);
-  EXPECT_EQ(pen.inverse({{0, -80, -185}, {0, 0, 1}}).reach[1], Reach::OnAxis);
-  EXPECT_EQ(pen.inverse({home.tip, Vec3(0)}).reach[0], Reach::NotFinite);
-  EXPECT_EQ(pen.inverse({home.tip, Vec3(std::numeric_limits<double>::quiet_NaN())}).reach[1], Reach::NotFinite);
+  EXPECT_EQ(far.reach[0], ReachResult::TooFar);
+  EXPECT_EQ(far.reach[1], ReachResult::Limits) << "its arm is longer";
+  EXPECT_EQ(pen.inverse({home.tip + Vec3(0, 0, 200), home.axis}).reach[0], ReachResult::Limits);
+  EXPECT_EQ(pen.inverse({{0, -80, -185}, {0, 0, 1}}).reach[1], ReachResult::OnAxis);
+  EXPECT_EQ(pen.inverse({home.tip, Vec3(0)}).reach[0], ReachResult::NotFinite);
+  EXPECT_EQ(pen.inverse({home.tip, Vec3(std::numeric_limits<double>::quiet_NaN())}).reach[1], ReachResult::NotFinite);
 }
 
 TEST(PenKinematics, SpeedIsTheDerivativeOfThePose) {
@@ -112,9 +112,9 @@ TEST(PenKinematics, SpeedIsTheDerivativeOfThePose) {
 
 TEST(PenKinematics, AnyStartOfTheCountersIsAsGoodAsThePresets) {
   PenKinematics preset(load_pen("riffler")), homed(load_pen("riffler"));
-  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max(), kLeast = -kMost - 1;
-  const EncoderCounts starts{kMost, kLeast, kMost - 10, kLeast + 10, 0, 123456789};
-  homed.home_at(starts, kMost);
+  constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max(), kMin = -kMax - 1;
+  const EncoderCounts starts{kMax, kMin, kMax - 10, kMin + 10, 0, 123456789};
+  homed.home_at(starts, kMax);
   const EncoderCounts home{0, 0, -5133, 0, 0, 5133};
   stress::Random random(13);
   for (int k = 0; k < 2000; ++k) {
@@ -129,7 +129,7 @@ TEST(PenKinematics, AnyStartOfTheCountersIsAsGoodAsThePresets) {
     EXPECT_EQ(homed.preset(raw), counts);
     EXPECT_EQ(preset.counts(preset.angles(counts)), counts);
   }
-  EXPECT_EQ(homed.probe_angle(kLeast), preset.probe_angle(1));
+  EXPECT_EQ(homed.probe_angle(kMin), preset.probe_angle(1));
 }
 
 TEST(PenKinematics, ProbeTurnsAddUp) {

@@ -10,12 +10,12 @@
 
 #include "pen/simulated/simulated_bench.hpp"
 
-namespace riffler::patient_clock_test {
+namespace riffler::stall_tolerant_clock_test {
 namespace {
 
 using test::GatedStep;
 
-constexpr double kMost = 5e-4;
+constexpr double kMax = 5e-4;
 
 /// A system whose every wait and every `busy`th look takes `late` s longer.
 struct Machine {
@@ -23,13 +23,13 @@ struct Machine {
   int busy = 0, looks = 0;
 
   double now() { return time += busy > 0 && ++looks % busy == 0 ? late : 0; }
-  std::unique_ptr<PatientClock> clock() {
-    return std::make_unique<PatientClock>(
-        kMost, PatientClock::System{[this] { return now(); }, [this](double seconds) { time += seconds + late; }});
+  std::unique_ptr<StallTolerantClock> clock() {
+    return std::make_unique<StallTolerantClock>(
+        kMax, StallTolerantClock::System{[this] { return now(); }, [this](double seconds) { time += seconds + late; }});
   }
 };
 
-TEST(PatientClock, OfAMachineThatKeepsUpIsTheSystems) {
+TEST(StallTolerantClock, OfAMachineThatKeepsUpIsTheSystems) {
   Machine machine;
   const auto clock = machine.clock();
   for (int k = 0; k < 1000; ++k) {
@@ -40,19 +40,19 @@ TEST(PatientClock, OfAMachineThatKeepsUpIsTheSystems) {
   }
 }
 
-TEST(PatientClock, StandsStillWhileTheMachineDoes) {
+TEST(StallTolerantClock, StandsStillWhileTheMachineDoes) {
   Machine machine;
   const auto clock = machine.clock();
   const double start = clock->now();
   machine.time += 3;
-  EXPECT_NEAR(clock->now(), start + kMost, 1e-9);
+  EXPECT_NEAR(clock->now(), start + kMax, 1e-9);
   EXPECT_EQ(clock->now(), clock->last());
   machine.late = 0.05;
   clock->wait(2e-3);
-  EXPECT_NEAR(clock->last(), start + 2 * kMost + 2e-3, 1e-9);
+  EXPECT_NEAR(clock->last(), start + 2 * kMax + 2e-3, 1e-9);
 }
 
-TEST(PatientClock, NeverFallsWhateverItIsAsked) {
+TEST(StallTolerantClock, NeverFallsWhateverItIsAsked) {
   Machine machine;
   const auto clock = machine.clock();
   const double start = clock->now();
@@ -65,15 +65,15 @@ TEST(PatientClock, NeverFallsWhateverItIsAsked) {
 
 /// The whole stack on a machine that stands still for 80 ms again and again: the hand that holds its button is pushed
 /// all the same, and nothing trips. On the system's own time, the same machine lets through nothing for long.
-TEST(PatientClock, NoForceIsLostOnAMachineThatIsLate) {
+TEST(StallTolerantClock, NoForceIsLostOnAMachineThatIsLate) {
   struct Nobody final : Connector {
     void begin() noexcept override {}
     Answer poll(std::unique_ptr<Transport>&, OpenProblem&) noexcept override { return Answer::Pending; }
   };
   const auto pushed = [](double most, int ticks_of_loop) {
     Machine machine{.late = 0.08, .busy = 29};
-    std::shared_ptr<Clock> clock = std::make_shared<PatientClock>(
-        most, PatientClock::System{[&] { return machine.now(); }, [&](double s) { machine.time += s; }});
+    std::shared_ptr<Clock> clock = std::make_shared<StallTolerantClock>(
+        most, StallTolerantClock::System{[&] { return machine.now(); }, [&](double s) { machine.time += s; }});
     auto pen = std::make_shared<SimulatedPen>(SimulatedPenSettings{});
     auto transport = std::make_unique<SimulatedTransport>(pen, clock, clock->now());
     RifflerModel model(*transport);
@@ -91,7 +91,7 @@ TEST(PatientClock, NoForceIsLostOnAMachineThatIsLate) {
     for (int k = 0; k < ticks_of_loop; ++k) loop.tick();
     return std::tuple(static_cast<double>(pushes) / ticks, longest, step.safety.log().count());
   };
-  const auto [share, longest, trips] = pushed(kMost, 4000);
+  const auto [share, longest, trips] = pushed(kMax, 4000);
   EXPECT_GT(share, 0.8);
   EXPECT_LT(longest, 3e-3);
   EXPECT_EQ(trips, 0u);
@@ -99,4 +99,4 @@ TEST(PatientClock, NoForceIsLostOnAMachineThatIsLate) {
 }
 
 }  // namespace
-}  // namespace riffler::patient_clock_test
+}  // namespace riffler::stall_tolerant_clock_test
