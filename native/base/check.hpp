@@ -1,5 +1,5 @@
-// Bounds of the numbers that calls are given, in one place. What is beyond makes no sense as a size of tools and parts,
-// and would ask for work without end. (Of programs and NC code: nc/limits.hpp.)
+// Checks of arguments, and the bounds of numbers that several topics share. A number beyond them makes no sense as a
+// size of tools and parts, and would ask for work without end. (Bounds of programs and NC code: nc/limits.hpp.)
 #pragma once
 
 #include <cmath>
@@ -26,6 +26,29 @@ inline std::string in_figures(double value) {
   return out;
 }
 
+/// std::invalid_argument "NAME MUST" unless `good`. `must`: "must be finite".
+inline void require(bool good, std::string_view name, const char* must) {
+  if (!good) throw std::invalid_argument(std::string(name) + " " + must);
+}
+
+inline constexpr const char* kPositiveAndFinite = "must be positive and finite";
+inline constexpr const char* kFiniteAndNotNegative = "must be finite and not negative";
+
+/// std::invalid_argument "NAME MUST" unless x is positive and finite.
+inline void require_positive(double x, std::string_view name, const char* must = "must be positive") {
+  require(std::isfinite(x) && x > 0, name, must);
+}
+
+/// std::invalid_argument "NAME MUST" unless x is finite and not negative.
+inline void require_not_negative(double x, std::string_view name, const char* must = "must not be negative") {
+  require(std::isfinite(x) && x >= 0, name, must);
+}
+
+/// std::invalid_argument unless x is a positive, finite length in mm.
+inline void require_length(double x, std::string_view name) {
+  require_positive(x, name, "must be a positive length in mm");
+}
+
 /// std::invalid_argument naming the number unless it is finite.
 inline void require_finite(double x, std::string_view name) {
   if (!std::isfinite(x)) throw std::invalid_argument(std::string(name) + " must be finite, not " + in_figures(x));
@@ -37,6 +60,14 @@ inline void require_between(double x, double low, double high, std::string_view 
   if (x >= low && x <= high) return;
   throw std::invalid_argument(std::string(name) + " must be " + what + " in " + unit + ", from " + in_figures(low) +
                               " to " + in_figures(high) + ", not " + in_figures(x));
+}
+
+/// std::invalid_argument unless x is finite and in [low, high]; `high` may be infinite.
+inline void require_between(double x, double low, double high, std::string_view name) {
+  if (std::isfinite(x) && x >= low && x <= high) return;
+  std::string range = "of at least " + std::to_string(low);
+  if (std::isfinite(high)) range = "between " + std::to_string(low) + " and " + std::to_string(high);
+  throw std::invalid_argument(std::string(name) + " must be a number " + range);
 }
 
 /// A tolerance of cutting: mm.

@@ -1,8 +1,9 @@
-// What belongs to the process that made it: threads, and what they wait on.
+// What belongs to the process that made it: threads, what they wait on, and their processor time.
 #pragma once
 
 #include <unistd.h>
 
+#include <ctime>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -70,5 +71,12 @@ class OwnThread {
  private:
   HomeOnly<std::thread> thread_;
 };
+
+/// Processor time of this thread, s: steps are measured by it, so that other work on the machine does not count.
+inline double thread_seconds() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 }  // namespace riffler

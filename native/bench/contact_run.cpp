@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "base/thread_time.hpp"
+#include "base/own_thread.hpp"
 #include "bench/process.hpp"
 #include "collide/collider.hpp"
 #include "reference/surface_distance.hpp"

@@ -5,7 +5,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "base/thread_time.hpp"
+#include "base/check.hpp"
+#include "base/own_thread.hpp"
 #include "bench/contact_scene.hpp"
 #include "haptics/sculpt_step.hpp"
 #include "haptics/wrench_extrapolator.hpp"
@@ -93,7 +94,7 @@ HapticScene scene_of(const HapticOptions& o) {
 
 HapticRun haptic_run(const HapticOptions& o) {
   if (o.period < 1) throw std::invalid_argument("period must be at least 1");
-  if (!(o.speed > 0) || !std::isfinite(o.speed)) throw std::invalid_argument("speed must be positive");
+  require_positive(o.speed, "speed");
   HapticScene scene = scene_of(o);
   SculptSettings settings;
   settings.parts = o.parts, settings.queries = o.queries, settings.memory = o.memory, settings.budget = o.budget;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/check.hpp"
 #include "base/parallel.hpp"
 
 namespace riffler {
@@ -36,7 +37,7 @@ void split(const Corners& t, double most, const Visit& visit) {
 
 double chosen_spacing(const Surface& surface, double spacing) {
   constexpr double kChosen = 1e5, kMax = 5e7;
-  if (!std::isfinite(spacing) || spacing < 0) throw std::invalid_argument("spacing must not be negative or not finite");
+  require_not_negative(spacing, "spacing", "must not be negative or not finite");
   const double area = area_of(surface);
   if (spacing == 0) return area > 0 ? std::sqrt(area / kChosen) : 1;
   if (area / (spacing * spacing) > kMax)

@@ -14,7 +14,7 @@
 #include "nc/machine/machine.hpp"
 #include "nc/program_file.hpp"
 #include "nc/read/reader.hpp"
-#include "pen/arms/geometry.hpp"
+#include "pen/arms/description.hpp"
 #include "pen/hid/hid_descriptor.hpp"
 #include "session/journal_file.hpp"
 #include "verify/slab_packets.hpp"

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 namespace {
@@ -56,19 +58,18 @@ Wrench times(const ContactStiffness& k, const Twist& way) {
 
 void SculptSettings::validate() const {
   coupling.validate();
-  require_positive("coupling.stiffness", coupling.stiffness);
-  require_positive("coupling.turn_stiffness", coupling.turn_stiffness);
-  if (memory) require_positive("memory", *memory);
-  require_not_negative("damping", damping);
-  require_between("parts", parts, 1, 64);
-  require_between("queries", queries, 1, 64);
-  require_not_negative("settled", settled);
-  require_positive("most.linear", most.linear);
-  require_between("most.angular", most.angular, 0, 1);
-  require_positive("rest.linear", rest.linear);
-  require_positive("rest.angular", rest.angular);
-  require_positive("missed", missed);
-  if (budget) require_not_negative("budget", *budget);
+  require_positive(coupling.stiffness, "coupling.stiffness");
+  require_positive(coupling.turn_stiffness, "coupling.turn_stiffness");
+  if (memory) require_positive(*memory, "memory");
+  require_not_negative(damping, "damping");
+  require_between(parts, 1, 64, "parts");
+  require_between(queries, 1, 64, "queries");
+  require_not_negative(settled, "settled");
+  require_positive(most.linear, "most.linear");
+  require_between(most.angular, 0, 1, "most.angular");
+  require_positive(rest, "rest");
+  require_positive(missed, "missed");
+  if (budget) require_not_negative(*budget, "budget");
 }
 
 /// One part of a step.

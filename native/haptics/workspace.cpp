@@ -21,7 +21,7 @@ Mat3 rotation(const Vec3& turn) {
 }  // namespace
 
 void WorkspaceSettings::validate() const {
-  require_positive("scale", scale);
+  require_positive(scale, "scale");
   const Mat3 square = glm::transpose(turn) * turn - Mat3(1);
   double off = 0;
   for (int i = 0; i < 3; ++i) off += glm::length(square[i]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 namespace {
@@ -19,12 +21,10 @@ Wrench within(const Wrench& w, const Bounds& bounds, double times = 1) {
 }  // namespace
 
 void WrenchExtrapolatorSettings::validate() const {
-  require_not_negative("ahead", ahead);
-  require_positive("fade", fade);
-  require_not_negative("rate.linear", rate.linear);
-  require_not_negative("rate.angular", rate.angular);
-  require_not_negative("most.linear", most.linear);
-  require_not_negative("most.angular", most.angular);
+  require_not_negative(ahead, "ahead");
+  require_positive(fade, "fade");
+  require_not_negative(rate, "rate");
+  require_not_negative(most, "most");
   if (ahead > fade) throw std::invalid_argument("ahead must be at most fade");
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/check.hpp"
 #include "nc/limits.hpp"
 #include "tool/outline.hpp"
 
@@ -76,7 +77,7 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
 }
 
 Program scale_feeds(const Program& program, double factor) {
-  if (!(factor > 0) || !std::isfinite(factor)) throw std::invalid_argument("factor must be positive and finite");
+  require_positive(factor, "factor", kPositiveAndFinite);
   return copied(program, [&](Move& move) { move.feed *= factor; });
 }
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <stdexcept>
+
+#include "geom/math.hpp"
 
 namespace riffler {
 
@@ -128,7 +129,7 @@ std::optional<Link> LinkFinder::from_stretch(const Pose& pose, const Vec3& direc
     for (const Pose& from : reached)
       for (const double rise : {1.0, 0.0})
         for (int k = 0; k < kAround; ++k) {
-          const double a = 2 * std::numbers::pi * k / kAround;
+          const double a = 2 * kPi * k / kAround;
           const Vec3 way = glm::normalize(Vec3(std::cos(a), std::sin(a), rise));
           const Pose end = moved(from, aside * reach_.radius * way);
           if (clear(from, end) && clear(end, above(end))) return Link{{from, end, above(end)}, false};

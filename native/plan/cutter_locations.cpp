@@ -38,10 +38,9 @@ std::string why_not_free(const Lift& lift, const LocationRule& rule) {
 void check(const PencilPath& path, const LocationRule& rule) {
   if (path.axes.size() != path.size() || path.axes.empty())
     throw std::invalid_argument("path: has no axes; orient it first");
-  if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
+  require(std::isfinite(rule.clearance), "clearance", "must be finite");
   require_tolerance(rule.tolerance);
-  if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
-    throw std::invalid_argument("max_lift must be finite and not negative");
+  require_not_negative(rule.max_lift, "max_lift", kFiniteAndNotNegative);
   if (rule.max_inserted < 0 || rule.max_inserted > kMaxInserted)
     throw std::invalid_argument("max_inserted must be from 0 to " + std::to_string(kMaxInserted));
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");

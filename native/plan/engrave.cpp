@@ -30,11 +30,9 @@ struct OnPart {
 }
 
 void check(const EngraveOptions& o) {
-  const auto positive = [](double x, const char* name) {
-    if (!(x > 0) || !std::isfinite(x)) bad(std::string(name) + " must be positive and finite");
-  };
   require_tolerance(o.tolerance);
-  positive(o.turn, "turn"), positive(o.reach, "reach");
+  require_positive(o.turn, "turn", kPositiveAndFinite);
+  require_positive(o.reach, "reach", kPositiveAndFinite);
   if (!(o.crease >= 0 && o.crease <= 3.1416)) bad("crease must lie between 0 and π");
   if (!std::isfinite(o.depth)) bad("depth is not finite");
   if (!(std::abs(o.inclination) < 1.57) || !(std::abs(o.tilt) < 1.57))

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "plan/point_lift.hpp"
 
@@ -94,11 +95,9 @@ class Climb {
 }  // namespace
 
 void validate(const LiftRule& rule) {
-  if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
-  if (!(rule.tolerance > 0) || !std::isfinite(rule.tolerance))
-    throw std::invalid_argument("tolerance must be positive and finite");
-  if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
-    throw std::invalid_argument("max_lift must be finite and not negative");
+  require(std::isfinite(rule.clearance), "clearance", "must be finite");
+  require_positive(rule.tolerance, "tolerance", kPositiveAndFinite);
+  require_not_negative(rule.max_lift, "max_lift", kFiniteAndNotNegative);
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
 }
 

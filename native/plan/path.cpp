@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 double PencilPath::length() const {
@@ -30,7 +32,7 @@ Vec3 normal_between(const Vec3& a, const Vec3& b, double t) {
 }  // namespace
 
 PencilPath divided(const PencilPath& path, double step) {
-  if (!(step > 0) || !std::isfinite(step)) throw std::invalid_argument("step must be positive and finite");
+  require_positive(step, "step", kPositiveAndFinite);
   if (path.length() / step > kMaxPoints) throw std::invalid_argument("step is too short: more than ten million points");
   PencilPath out;
   out.radius = path.radius, out.closed = path.closed;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/check.hpp"
 #include "pen/driver.hpp"
 
 namespace riffler {
@@ -24,11 +25,9 @@ void add(JournalStroke& to, const JournalRow& row) {
 
 void check(const JournalStream::Options& options) {
   if (options.rows < 4) throw std::invalid_argument("rows must be 4 or more");
-  const auto positive = [](double value, const char* name) {
-    if (!(std::isfinite(value) && value > 0))
-      throw std::invalid_argument(std::string(name) + " must be positive, in s");
-  };
-  positive(options.drain, "drain"), positive(options.sync, "sync"), positive(options.retry, "retry");
+  constexpr const char* kSeconds = "must be positive, in s";
+  require_positive(options.drain, "drain", kSeconds), require_positive(options.sync, "sync", kSeconds);
+  require_positive(options.retry, "retry", kSeconds);
 }
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();

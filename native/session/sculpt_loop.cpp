@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/check.hpp"
-#include "base/thread_time.hpp"
+#include "base/own_thread.hpp"
 #include "haptics/coupling.hpp"
 
 namespace riffler {

@@ -12,7 +12,7 @@
 #include "base/block_pool.hpp"
 #include "dexel/grid.hpp"
 #include "dexel/stats.hpp"
-#include "sweep/carve.hpp"
+#include "sweep/carve_options.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cutter.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "dexel/grid.hpp"
 #include "dexel/stats.hpp"
-#include "sweep/carve.hpp"
+#include "sweep/carve_options.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cut.hpp"
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 
+#include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "nc/links.hpp"
 #include "verify/verification.hpp"
@@ -36,8 +37,7 @@ const char* kind_of(const MachineStep& step) {
 
 void refuse_collisions(const Program& program, const MachineMotion& motion, const Collider& collider, double tolerance,
                        std::size_t* swept, const Progress& progress) {
-  if (!(std::isfinite(tolerance) && tolerance > 0))
-    throw std::invalid_argument("contact_tolerance must be positive and finite");
+  require_positive(tolerance, "contact_tolerance", kPositiveAndFinite);
   struct Shape {
     Assembly assembly;
     ToolEnvelope reach;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "dexel/from_mesh/field.hpp"
 #include "geom/math.hpp"
 
 namespace riffler {
@@ -22,6 +21,13 @@ constexpr int kWhole = 8;
 constexpr double kLeftOut = 2e-6;
 
 }  // namespace
+
+double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 d = b - a, r = p - a;
+  const double dd = glm::dot(d, d);
+  const double t = dd > 0 ? std::clamp(glm::dot(r, d) / dd, 0.0, 1.0) : 0;
+  return glm::length(r - t * d);
+}
 
 BoundaryPieces::BoundaryPieces(const std::vector<std::vector<Vec3>>& loops) {
   for (const std::vector<Vec3>& loop : loops) {

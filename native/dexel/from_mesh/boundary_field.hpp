@@ -11,6 +11,9 @@
 
 namespace riffler {
 
+/// Distance of p from the segment ab.
+double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
+
 /// The boundary in pieces: directed edges, and loops of so few of them that they are looked at as a whole. Lengths in
 /// cells.
 class BoundaryPieces {

@@ -7,15 +7,6 @@
 
 namespace riffler {
 
-namespace {}  // namespace
-
-double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a, r = p - a;
-  const double dd = glm::dot(d, d);
-  const double t = dd > 0 ? std::clamp(glm::dot(r, d) / dd, 0.0, 1.0) : 0;
-  return glm::length(r - t * d);
-}
-
 void Field::fill(const BoundaryPieces& pieces, const Surroundings& around) {
   around_ = &around, rays_ = 0;
   path_.clear();

@@ -45,7 +45,4 @@ class Field {
   std::vector<PathPoint> path_;
 };
 
-/// Distance of p from the segment ab.
-double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
-
 }  // namespace riffler

@@ -9,6 +9,7 @@
 // clang-format on
 
 #include "base/lanes-inl.hpp"
+#include "geom/math.hpp"
 
 #include <limits>
 
@@ -17,7 +18,6 @@ namespace riffler::HWY_NAMESPACE {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Distances from an edge count as this at least, so that no power of their inverses overflows.
 constexpr double kNearest = 1e-60;
 

@@ -9,6 +9,7 @@
 // clang-format on
 
 #include "base/lanes-inl.hpp"
+#include "geom/math.hpp"
 
 #ifndef RIFFLER_SOURCE_LANES
 #define RIFFLER_SOURCE_LANES
@@ -29,7 +30,6 @@ namespace riffler::HWY_NAMESPACE {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGauss = 0.28867513459481287;  // 1 / (2 √3)
 constexpr int kOrder = kExpansionDegree + 1;
 

@@ -12,7 +12,8 @@
 
 #include "dexel/from_mesh/boundary_field.hpp"
 #include "dexel/from_mesh/field.hpp"
-#include "dexel/from_mesh/openings.hpp"
+#include "dexel/from_mesh/passage.hpp"
+#include "dexel/grid.hpp"
 
 namespace riffler {
 

@@ -6,20 +6,11 @@
 
 #include "base/progress.hpp"
 #include "dexel/from_mesh/crossings.hpp"
+#include "dexel/from_mesh/passage.hpp"
 #include "dexel/grid.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {
-
-/// A column's passage through an opening. With w = n + K and n an integer, |w| > ½ exactly where n plus K rounded to an
-/// integer is not zero. Rounded K changes by `sign` at z, so a passage is one more signed crossing, and all crossings
-/// of a column, from below the part to above it, sum to zero.
-struct Passage {
-  std::int32_t row, column;
-  double z;  ///< mm along the ray
-  std::int32_t sign;
-  PackedNormal normal;  ///< against K's gradient, out of what lies where K is greater; only for grids with normals
-};
 
 /// All passages of the grid's columns, sorted by row, column and z. `loops` is the mesh's boundary.
 std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vector<int>>& loops,

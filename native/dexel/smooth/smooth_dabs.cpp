@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "dexel/boolean.hpp"
 #include "dexel/smooth/moved_field.hpp"
@@ -26,8 +27,7 @@ void check(const Volume& volume, std::span<const Vec3> centres, const SmoothOpti
         volume.frame().directions + "\"");
   for (std::size_t i = 0; i < centres.size(); ++i)
     if (!finite(centres[i])) throw std::invalid_argument("centres, row " + std::to_string(i) + ": not finite");
-  if (!std::isfinite(options.radius) || !(options.radius > 0))
-    throw std::invalid_argument("radius must be a positive length in mm");
+  require_length(options.radius, "radius");
   if (!(options.strength >= 0 && options.strength <= 1)) throw std::invalid_argument("strength must be from 0 to 1");
   if (options.protect) check_same_grid(volume.frame(), options.protect->frame(), "protect");
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/toml.hpp"
-#include "nc/write/post.hpp"
+#include "nc/machine/post_options.hpp"
 
 namespace riffler {
 
@@ -144,9 +144,7 @@ class Describer : TomlReader {
 
   void control(MachineDescription& out, OptionReader& options) const {
     Control& c = out.control;
-    std::vector<std::string_view> languages;
-    for (const PostLanguage& language : post_languages()) languages.push_back(language.name);
-    c.language = word(root(), "control", languages, "rs274");
+    c.language = word(root(), "control", {kLanguages.begin(), kLanguages.end()}, "rs274");
     const std::string own = word(root(), "tool_length", {"G43", "G43.4"}, "G43");
     if (c.language == "rs274") c.tool_length = options.word("tool_length", {"G43", "G43.4"}, own);
     const std::string feed =

@@ -19,7 +19,7 @@ const Vec3 kSpindle(0, 0, 1);
 constexpr double kSingle = 1e-6;
 
 Vec3 turned_about(const Vec3& p, const RotaryAxis& axis, double angle) {
-  return axis.point + turned(p - axis.point, axis.direction, angle);
+  return axis.point + rotate_about(p - axis.point, axis.direction, angle);
 }
 
 std::string show(const Vec3& v) {
@@ -80,7 +80,7 @@ Machine::Turns Machine::turns(const Joints& joints) const {
 
 Vec3 Machine::axis_at(const Turns& t) const {
   Vec3 axis = kSpindle;
-  for (std::size_t k = seen_.size(); k-- > 0;) axis = turned(axis, seen_[k], t[k]);
+  for (std::size_t k = seen_.size(); k-- > 0;) axis = rotate_about(axis, seen_[k], t[k]);
   return axis;
 }
 
@@ -136,7 +136,7 @@ Machine::Turns Machine::angles(const Vec3& axis, int branch, const Turns& near, 
   }
   if (std::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free) {
     // The free axis stays; the other one takes what the axis has in the plane that this gives it.
-    const Turns out{near[0], angle_about(two_.second, kSpindle, turned(axis, two_.first, -near[0]))};
+    const Turns out{near[0], angle_about(two_.second, kSpindle, rotate_about(axis, two_.first, -near[0]))};
     // A pole can lie where no angle of the other one brings the axis.
     if (angle_between(axis_at(out), axis) > 2 * free + kSingle) cannot_reach();
     return out;

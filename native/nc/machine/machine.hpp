@@ -48,7 +48,7 @@ struct RotaryAxis {
 
 /// What reads the code.
 struct Control {
-  std::string language = "rs274";   ///< a name of languages() in nc/write/post.hpp
+  std::string language = "rs274";   ///< one of kLanguages in nc/machine/post_options.hpp
   std::string tool_length = "G43";  ///< block that makes the tool's length count
   std::string note;                 ///< for the header: how the control must be set
   /// How rapids go: "straight"; "independent", each axis at its own rate until it is there; or "unknown".

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "nc/machine/machines.hpp"
-#include "nc/write/post.hpp"
+#include "nc/machine/post_options.hpp"
 
 namespace riffler {
 

@@ -5,10 +5,6 @@
 
 namespace riffler {
 
-Vec3 turned(const Vec3& v, const Vec3& k, double angle) {
-  return std::cos(angle) * v + std::sin(angle) * glm::cross(k, v) + (1 - std::cos(angle)) * glm::dot(k, v) * k;
-}
-
 double angle_about(const Vec3& k, const Vec3& from, const Vec3& to) {
   const Vec3 side = glm::cross(k, from);
   return std::atan2(glm::dot(side, to), glm::dot(glm::cross(side, k), to));

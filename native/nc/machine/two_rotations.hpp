@@ -7,8 +7,6 @@
 
 namespace riffler {
 
-/// v turned by `angle` (rad) about the unit vector k, right-handed.
-Vec3 turned(const Vec3& v, const Vec3& k, double angle);
 /// The angle (rad, −π to π) by which `from` is turned about k to point like `to`, seen along k. 0 where either lies on
 /// k.
 double angle_about(const Vec3& k, const Vec3& from, const Vec3& to);

@@ -7,7 +7,6 @@
 
 #include "nc/limits.hpp"
 #include "nc/read/drill_cycle.hpp"
-#include "nc/units.hpp"
 
 namespace riffler {
 

@@ -9,6 +9,7 @@
 
 #include "nc/limits.hpp"
 #include "nc/machine/machines.hpp"
+#include "nc/machine/post_options.hpp"
 #include "nc/read/apt_cutter.hpp"
 #include "nc/read/apt_cycle.hpp"
 #include "nc/read/apt_lexer.hpp"
@@ -16,8 +17,6 @@
 #include "nc/read/apt_system.hpp"
 #include "nc/read/arc.hpp"
 #include "nc/read/tool_diameters.hpp"
-#include "nc/units.hpp"
-#include "nc/write/post.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "nc/program.hpp"
-#include "nc/read/reader.hpp"
+#include "nc/read/read_options.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <stdexcept>
 
 #include "geom/math.hpp"
@@ -55,7 +54,7 @@ int Arc::chords(double tolerance) const {
   // circles keep their shape.
   const double r = std::max(r0, r1);
   const double half = 2 * std::asin(std::min(1.0, std::sqrt(tolerance / (2 * r))));
-  const double step = std::min(2 * half, std::numbers::pi / 4);
+  const double step = std::min(2 * half, kPi / 4);
   return std::max(1, static_cast<int>(std::min(1e9, std::ceil(std::abs(sweep) / step))));
 }
 
@@ -83,7 +82,7 @@ Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwis
   const Vec2 centre = (from + to) / 2.0 + side * height * left;
   Arc arc = between(from, to, centre, clockwise);
   // A half circle's two senses differ by rounding only: R says that it is one.
-  if (height == 0) arc.sweep = clockwise ? -std::numbers::pi : std::numbers::pi;
+  if (height == 0) arc.sweep = clockwise ? -kPi : kPi;
   return arc;
 }
 

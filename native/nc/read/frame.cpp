@@ -1,13 +1,14 @@
 #include "nc/read/frame.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "geom/math.hpp"
 
 namespace riffler {
 
 Vec2 turned_in_plane(const Vec2& v, double degrees) {
   if (degrees == 0) return v;
-  const double angle = degrees * (std::numbers::pi / 180), c = std::cos(angle), s = std::sin(angle);
+  const double angle = degrees * kDegree, c = std::cos(angle), s = std::sin(angle);
   return {c * v.x - s * v.y, s * v.x + c * v.y};
 }
 

@@ -9,9 +9,8 @@
 #include "nc/limits.hpp"
 #include "nc/machine/header.hpp"
 #include "nc/machine/machines.hpp"
+#include "nc/machine/post_options.hpp"
 #include "nc/read/heidenhain_reader.hpp"
-#include "nc/units.hpp"
-#include "nc/write/post.hpp"
 
 namespace riffler {
 

@@ -20,7 +20,7 @@
 #include "nc/read/heidenhain_values.hpp"
 #include "nc/read/heidenhain_words.hpp"
 #include "nc/read/notes.hpp"
-#include "nc/read/reader.hpp"
+#include "nc/read/read_options.hpp"
 #include "nc/read/rows.hpp"
 #include "nc/read/stand.hpp"
 #include "nc/read/tool_diameters.hpp"

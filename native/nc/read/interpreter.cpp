@@ -7,8 +7,7 @@
 #include "nc/limits.hpp"
 #include "nc/machine/header.hpp"
 #include "nc/machine/machines.hpp"
-#include "nc/units.hpp"
-#include "nc/write/post.hpp"
+#include "nc/machine/post_options.hpp"
 
 namespace riffler {
 

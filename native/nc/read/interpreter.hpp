@@ -18,7 +18,7 @@
 #include "nc/read/frame.hpp"
 #include "nc/read/notes.hpp"
 #include "nc/read/parameters.hpp"
-#include "nc/read/reader.hpp"
+#include "nc/read/read_options.hpp"
 #include "nc/read/rows.hpp"
 #include "nc/read/tool_diameters.hpp"
 #include "nc/read/words.hpp"

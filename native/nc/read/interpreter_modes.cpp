@@ -6,7 +6,6 @@
 #include "nc/limits.hpp"
 #include "nc/machine/machines.hpp"
 #include "nc/read/interpreter.hpp"
-#include "nc/units.hpp"
 
 namespace riffler {
 

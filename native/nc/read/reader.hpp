@@ -7,25 +7,10 @@
 #include <string>
 #include <string_view>
 
-#include "base/progress.hpp"
-#include "nc/options.hpp"
 #include "nc/program.hpp"
+#include "nc/read/read_options.hpp"
 
 namespace riffler {
-
-struct ReadOptions {
-  std::string machine = "tcp";  ///< a name of machines(): what the axis words mean; its control says in which language
-  /// Of the machine, and of the reader:
-  /// "chord_tolerance" (mm, curves as chords; default 0.002); "axis_tolerance" (rad): where it is given, a feed move
-  /// whose rotary axes, moving linearly, leave the great circle between its ends by more becomes several rows; without
-  /// it every block is one row; "block_delete" (default true: lines that begin with / are passed over);
-  /// "unknown": "error" (default) or "skip"; "subroutines": a folder of files name.ngc; "parameters": a file of
-  /// LinuxCNC's parameters (work offsets, G28); "max_turns" of loops and calls (default 1e6), after which a program
-  /// counts as endless.
-  Options options;
-  /// Called from the calling thread, some thousand lines apart, with the share of the text that has been read.
-  Progress progress{};
-};
 
 /// `options` without those of the reader alone: what the same machine takes for other work.
 Options without_reading(Options options);

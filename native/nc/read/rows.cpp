@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "geom/math.hpp"
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
 
@@ -142,7 +142,7 @@ std::vector<Pose> NcRows::dog_leg(const Joints& to) const {
   for (std::size_t k = 3; k < 6; ++k) {
     const double degrees = std::abs(to[k] - at_[k]), rate = machine_->range(k).rate;
     minutes[k] = degrees == 0 ? 0 : std::isfinite(rate) ? degrees / rate : std::max(longest, 1e-9);
-    turn += degrees * (std::numbers::pi / 180);
+    turn += degrees * kDegree;
   }
   std::vector<double> ends(minutes.begin(), minutes.end());
   std::ranges::sort(ends);
@@ -171,7 +171,7 @@ std::vector<Pose> NcRows::dog_leg(const Joints& to) const {
 int NcRows::rotary_parts(const Joints& to) const {
   if (same_turns(at_, to)) return 1;
   double turn = 0;  // rad
-  for (std::size_t k = 3; k < 6; ++k) turn += std::abs(to[k] - at_[k]) * (std::numbers::pi / 180);
+  for (std::size_t k = 3; k < 6; ++k) turn += std::abs(to[k] - at_[k]) * kDegree;
   // The axis's acceleration over the block is at most turn², on its own way as on the great circle: each leaves the
   // chord at even speed by an eighth of it at most.
   if (!machine_->joint_words() && turn * turn / 4 <= axis_bound()) return 1;
@@ -189,7 +189,7 @@ int NcRows::rotary_parts(const Joints& to) const {
       }
     }
     // Two parts at least: a full turn begins and ends at the same axis.
-    if (good && (parts > 1 || turn < std::numbers::pi / 2)) return parts;
+    if (good && (parts > 1 || turn < kPi / 2)) return parts;
   }
   place_.fail("rotary axes turn too far in one block for chord_tolerance or axis_tolerance");
 }

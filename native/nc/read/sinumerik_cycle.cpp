@@ -5,7 +5,6 @@
 #include <string>
 
 #include "nc/limits.hpp"
-#include "nc/units.hpp"
 
 namespace riffler {
 

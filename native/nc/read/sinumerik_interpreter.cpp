@@ -8,9 +8,8 @@
 #include "nc/limits.hpp"
 #include "nc/machine/header.hpp"
 #include "nc/machine/machines.hpp"
+#include "nc/machine/post_options.hpp"
 #include "nc/read/sinumerik_reader.hpp"
-#include "nc/units.hpp"
-#include "nc/write/post.hpp"
 
 namespace riffler {
 

@@ -14,7 +14,7 @@
 
 #include "nc/read/arc.hpp"
 #include "nc/read/notes.hpp"
-#include "nc/read/reader.hpp"
+#include "nc/read/read_options.hpp"
 #include "nc/read/rows.hpp"
 #include "nc/read/sinumerik_cycle.hpp"
 #include "nc/read/sinumerik_frame.hpp"

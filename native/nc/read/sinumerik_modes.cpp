@@ -7,7 +7,6 @@
 #include "nc/limits.hpp"
 #include "nc/read/sinumerik_interpreter.hpp"
 #include "nc/read/tool_diameters.hpp"
-#include "nc/units.hpp"
 
 namespace riffler {
 

@@ -3,36 +3,17 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "nc/machine/machine.hpp"
-#include "nc/options.hpp"
+#include "nc/machine/post_options.hpp"
 
 namespace riffler {
 
 class Tool;
-
-/// How the text is to look; of every post.
-struct PostOptions {
-  int line_numbers = 0;  ///< step of N words; 0: none. Heidenhain counts its blocks whatever it is
-  std::string coolant;   ///< "flood", "mist" or none
-  bool vectors = false;  ///< Heidenhain: LN blocks with the tool's axis, no rotary words
-  /// Machine Z (G53, mm) to which the tool goes before everything, before tool changes and after everything, in place
-  /// of the machine's own way there.
-  std::optional<double> retract;
-  /// Retract first, turn the rotary axes there, then across, then down, where the machine's file says how to retract.
-  /// Otherwise the first block, and the one after a tool change, goes straight from wherever the machine is.
-  bool safe_start = true;
-  std::optional<double> safe_height;  ///< mm, z of the tip above everything; not given: as high as the program goes
-  bool arcs = false;                  ///< straight runs with one axis become G2, G3 within the tolerance
-};
-
-/// `coolant`: what the machine's file says, where the option is not given.
-PostOptions take_post_options(OptionReader& options, const std::string& coolant = "off");
 
 /// One block.
 struct PostBlock {
@@ -88,18 +69,10 @@ class Post {
   std::size_t blocks_ = 0;  ///< with a motion
 };
 
-struct PostLanguage {
-  std::string_view name;
-  std::unique_ptr<Post> (*make)(const Machine& machine, PostOptions options);
-};
-
-/// All of them: a new one is one file and one line in posts.cpp.
-std::span<const PostLanguage> post_languages();
-
 /// std::invalid_argument for a machine whose language is not known.
 std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options);
 
-// The factories, each in its own file.
+// The factories, each in its own file. A new one is one line in posts.cpp and one in kLanguages.
 std::unique_ptr<Post> make_rs274(const Machine& machine, PostOptions options);
 std::unique_ptr<Post> make_heidenhain(const Machine& machine, PostOptions options);
 std::unique_ptr<Post> make_sinumerik(const Machine& machine, PostOptions options);

@@ -1,6 +1,7 @@
 // APT CL file (ISO 4343): tip and axis of every row, for another system's post-processor.
 #include <cmath>
 
+#include "geom/math.hpp"
 #include "nc/number_text.hpp"
 #include "nc/write/post.hpp"
 #include "tool/tool.hpp"
@@ -87,7 +88,7 @@ class Apt final : public Post {
       line("$$ no CUTTER says " + plain(tool.kind()));
       return;
     }
-    const double degrees = flank * 57.29577951308232;
+    const double degrees = flank * kRadian;
     line("CUTTER/" + number_text(d) + ',' + number_text(r) + ',' + number_text(d / 2 - r) + ',' + number_text(r) +
          ",0," + number_text(degrees) + ',' + number_text(tool.length()));
   }

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "geom/directions.hpp"
+#include "geom/math.hpp"
 #include "nc/number_text.hpp"
 #include "nc/write/subdivider.hpp"
 
@@ -42,7 +42,7 @@ double arc_pole_angle(const Vec3& a, const Vec3& b, const Vec3& pole) {
 }
 
 bool opposite(const Pose& a, const Pose& b) {
-  return angle_between(a.axis, b.axis) > std::numbers::pi - 1e-9;
+  return angle_between(a.axis, b.axis) > kPi - 1e-9;
 }
 
 /// One way to stand at a node, and the best way to have come there.

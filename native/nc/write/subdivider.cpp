@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 
 #include "geom/directions.hpp"
+#include "geom/math.hpp"
 
 namespace riffler {
 
@@ -26,7 +26,7 @@ double nearest_to_pole(const Motion& motion, const Vec3& pole) {
     // The cosine to the pole goes as cos(angle t - phase), that to its opposite half a turn later.
     const Vec3 &start = motion.from().axis, ahead = glm::cross(motion.rotation() / motion.angle(), start);
     double phase = std::atan2(glm::dot(ahead, pole), glm::dot(start, pole));
-    if (phase < 0) phase += std::numbers::pi;
+    if (phase < 0) phase += kPi;
     if (phase < motion.angle()) return phase / motion.angle();
   }
   return height(0) >= height(1) ? 0 : 1;

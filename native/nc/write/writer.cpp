@@ -8,6 +8,7 @@
 
 #include "base/io.hpp"
 #include "geom/directions.hpp"
+#include "geom/math.hpp"
 #include "nc/follow.hpp"
 #include "nc/limits.hpp"
 #include "nc/machine/header.hpp"
@@ -22,8 +23,6 @@
 namespace riffler {
 
 namespace {
-
-constexpr double kDegrees = 57.295779513082321;
 
 std::string describe(const Tool& tool) {
   std::string out = tool.kind();
@@ -117,7 +116,7 @@ class Writer {
     const auto& parts = split(row, splitter, to, w.joints, free);
     slowest_ = 1;
     for (std::size_t k = 0; k < parts.size(); ++k) block(row, parts[k], to, k + 1 == parts.size());
-    if (!free) note_passage(row, angle_between(before_.axis, to.axis) * kDegrees, rotary_way(start, w.joints));
+    if (!free) note_passage(row, angle_between(before_.axis, to.axis) * kRadian, rotary_way(start, w.joints));
     before_ = to;
   }
 

@@ -1,10 +1,12 @@
 #include "pen/arms/compensation.hpp"
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 void Compensation::validate() const {
-  require_between("gravity", gravity, 0, 1);
-  require_between("friction", friction, 0, 1);
+  require_between(gravity, 0, 1, "gravity");
+  require_between(friction, 0, 1, "friction");
 }
 
 MotorTorques compensation_torques(const PenGeometry& pen, const Compensation& share, const JointAngles& angles,

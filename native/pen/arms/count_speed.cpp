@@ -1,7 +1,8 @@
 #include "pen/arms/count_speed.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "geom/math.hpp"
 
 namespace riffler {
 
@@ -40,7 +41,7 @@ JointAngles CountSpeed::rates() const noexcept {
   JointAngles out{};
   for (std::size_t k = 0; k < kPenChannels; ++k) {
     const PenChannel& c = channels_[k];
-    out[index(c.arm)][c.joint] = c.sign * counts_per_second(k) / c.steps * 2 * std::numbers::pi;
+    out[index(c.arm)][c.joint] = c.sign * counts_per_second(k) / c.steps * 2 * kPi;
   }
   return out;
 }

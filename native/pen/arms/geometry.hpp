@@ -1,11 +1,10 @@
-// What a pen is: lengths, gears, encoders, motors and limits, read from TOML. docs/pen-geometry.md has the keys.
+// What a pen is: lengths, gears, encoders, motors and limits (pen/arms/description.hpp reads them from TOML).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "geom/vec.hpp"
 
@@ -74,13 +73,5 @@ struct PenGeometry {
   double speed = 0, turn_rate = 0;       // mm/s, rad/s
   double friction_speed = 0;             // rad/s at the motor
 };
-
-/// Throws FormatError naming `file`, the line and what is expected there: for what is not TOML, a key that is missing,
-/// unknown or of the wrong type, a value that cannot be, and for a pen whose numbers contradict each other: ends that
-/// are not the grip's length apart at home, a home outside the limits, a torque beyond the converter's range.
-PenGeometry describe_pen(std::string_view toml, const std::string& file, const std::string& name);
-
-/// Its line for lists. FormatError as above.
-std::string pen_summary(std::string_view toml, const std::string& file);
 
 }  // namespace riffler

@@ -1,7 +1,6 @@
 #include "pen/arms/kinematics.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "geom/math.hpp"
 
@@ -26,7 +25,7 @@ std::int32_t reading(double angle, double steps, int sign, std::int32_t home, st
 
 double within_a_turn(double angle) noexcept {
   const double least = std::remainder(angle, kTwoPi);
-  return least <= -std::numbers::pi ? least + kTwoPi : least;
+  return least <= -kPi ? least + kTwoPi : least;
 }
 
 PenKinematics::PenKinematics(const PenGeometry& geometry)

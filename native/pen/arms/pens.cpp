@@ -1,5 +1,6 @@
 #include "pen/arms/pens.hpp"
 
+#include "pen/arms/description.hpp"
 #include "pen/arms/shipped_pens.hpp"
 
 namespace riffler {

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "pen/hid/hid_lock.hpp"
+#include "pen/hid/hid_list.hpp"
 
 namespace riffler {
 namespace {

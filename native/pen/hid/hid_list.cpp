@@ -9,8 +9,6 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "pen/hid/hid_lock.hpp"
-
 namespace riffler {
 namespace {
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "geom/math.hpp"
 #include "pen/hid/hid_descriptor.hpp"
 
 namespace riffler {
@@ -61,7 +61,7 @@ Vec3 angles_of(const PolhemGeometry& g, const std::array<std::int32_t, 3>& count
   Vec3 out;
   for (int k = 0; k < 3; ++k) {
     const auto j = static_cast<std::size_t>(k);
-    out[k] = g.sign[j] * 2 * std::numbers::pi * counts[j] / (g.counts * g.ratio[j]);
+    out[k] = g.sign[j] * 2 * kPi * counts[j] / (g.counts * g.ratio[j]);
   }
   return out;
 }
@@ -86,7 +86,7 @@ DeviceCapability capability_of(const PolhemGeometry& g) {
     for (int j = 0; j < 3; ++j) {
       const auto k = static_cast<std::size_t>(j);
       const double arm = std::abs(home.jacobian[j][i]);
-      c.resolution = std::max(c.resolution, arm * 2 * std::numbers::pi / (g.counts * g.ratio[k]));
+      c.resolution = std::max(c.resolution, arm * 2 * kPi / (g.counts * g.ratio[k]));
       if (arm > 1e-9) force = std::min(force, g.torque_constant[k] * g.peak_current * g.ratio[k] / arm);
     }
     c.pushes = std::isfinite(force);

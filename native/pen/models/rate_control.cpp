@@ -4,18 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 namespace {
 
 constexpr double kLongestStep = 0.1;
-
-/// Rodrigues' formula; `turn` is a rotation vector.
-Vec3 rotated(const Vec3& v, const Vec3& turn) {
-  const double angle = glm::length(turn);
-  if (angle == 0) return v;
-  const Vec3 n = turn / angle;
-  return std::cos(angle) * v + std::sin(angle) * glm::cross(n, v) + (1 - std::cos(angle)) * glm::dot(n, v) * n;
-}
 
 }  // namespace
 
@@ -57,7 +51,7 @@ void RateControl::advance(double now) noexcept {
   time_ = now;
   pose_.tip += dt * velocity_;
   spin_ += dt * glm::dot(turning_, pose_.axis);
-  pose_.axis = glm::normalize(rotated(pose_.axis, dt * turning_));
+  pose_.axis = glm::normalize(rotate_by(pose_.axis, dt * turning_));
 }
 
 void RateControl::rest() noexcept {

@@ -12,12 +12,12 @@ constexpr std::size_t kQueue = 64;  // as hidraw's
 }
 
 void CableSettings::validate() const {
-  require_between("latency_us", static_cast<double>(latency_us), 0, 1e6);
-  require_between("jitter_us", static_cast<double>(jitter_us), 0, 1e6);
-  require_between("lost", lost, 0, 1);
-  require_between("doubled", doubled, 0, 1);
-  require_between("merged", merged, 0, 1);
-  require_between("lost_out", lost_out, 0, 1);
+  require_between(static_cast<double>(latency_us), 0, 1e6, "latency_us");
+  require_between(static_cast<double>(jitter_us), 0, 1e6, "jitter_us");
+  require_between(lost, 0, 1, "lost");
+  require_between(doubled, 0, 1, "doubled");
+  require_between(merged, 0, 1, "merged");
+  require_between(lost_out, 0, 1, "lost_out");
 }
 
 SimulatedCable::SimulatedCable(const CableSettings& settings) : settings_(settings), random_(settings.seed) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/check.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/simulated/simulated_transport.hpp"
 
@@ -79,8 +80,8 @@ void SimulatedDevice::aim(const HandWish& wish) {
   const double length = glm::length(wish.pose.axis);
   if (!finite(wish.pose.tip)) throw std::invalid_argument("pose: the point must be finite");
   if (!std::isfinite(length) || length == 0) throw std::invalid_argument("pose: the axis must be finite, not zero");
-  if (!std::isfinite(wish.spin)) throw std::invalid_argument("spin must be finite");
-  require_between("grip", wish.grip, 0, 1);
+  require(std::isfinite(wish.spin), "spin", "must be finite");
+  require_between(wish.grip, 0, 1, "grip");
   checked.pose.axis /= length;
   hand_->told.set({checked, false});
 }

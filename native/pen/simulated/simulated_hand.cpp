@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/check.hpp"
 #include "geom/math.hpp"
 
 namespace riffler {
@@ -28,19 +29,17 @@ std::pair<Vec3, Vec3> square_to(const Vec3& axis) {
 }  // namespace
 
 void HandSettings::validate() const {
-  require_between("mass", mass, 0, 100);
-  require_between("inertia", inertia, 0, 1e6);
-  require_between("stiffness.linear", stiffness.linear, 0, 10);
-  require_between("stiffness.angular", stiffness.angular, 0, 1e5);
-  require_between("damping.linear", damping.linear, 0, 1);
-  require_between("damping.angular", damping.angular, 0, 1e4);
-  require_not_negative("strength.linear", strength.linear);
-  require_not_negative("strength.angular", strength.angular);
-  require_positive("haste.linear", haste.linear);
-  require_positive("haste.angular", haste.angular);
-  require_not_negative("tremor", tremor);
-  require_not_negative("tremor_frequency", tremor_frequency);
-  require_between("carries", carries, 0, 1);
+  require_between(mass, 0, 100, "mass");
+  require_between(inertia, 0, 1e6, "inertia");
+  require_between(stiffness.linear, 0, 10, "stiffness.linear");
+  require_between(stiffness.angular, 0, 1e5, "stiffness.angular");
+  require_between(damping.linear, 0, 1, "damping.linear");
+  require_between(damping.angular, 0, 1e4, "damping.angular");
+  require_not_negative(strength, "strength");
+  require_positive(haste, "haste");
+  require_not_negative(tremor, "tremor");
+  require_not_negative(tremor_frequency, "tremor_frequency");
+  require_between(carries, 0, 1, "carries");
 }
 
 HandPath hand_on_a_curve(const Pose& home) {

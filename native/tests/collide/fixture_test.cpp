@@ -1,9 +1,8 @@
 // The force of fixtures beside volumes in closed form and integrated point by point.
 #include "collide/fixture.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 #include "collide/collider.hpp"
 #include "collide/tools.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using stress::Random;
 
-constexpr double kStiffness = 10, kPi = std::numbers::pi;
+constexpr double kStiffness = 10;
 const Box3 kBlock{{0, 0, 0}, {30, 20, 10}};
 
 Collider beside(const Box3& box, double pitch, double spacing, const char* directions = "z") {

@@ -1,16 +1,13 @@
 #include "haptics/coupling.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::coupling_test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Rotation by a rotation vector (Rodrigues).
 Mat3 rotation(const Vec3& v) {

@@ -1,9 +1,8 @@
 // The haptic step against closed forms and against the same balance integrated in very small steps.
 #include "haptics/sculpt_step.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 #include "haptics/passivity.hpp"
 #include "stress/random.hpp"
@@ -17,7 +16,7 @@ namespace {
 
 constexpr auto box = test::box_mesh;
 
-constexpr double kPi = std::numbers::pi, kTick = 1e-3;
+constexpr double kTick = 1e-3;
 const Vec3 kUp(0, 0, 1);
 
 SculptSettings springs_only() {

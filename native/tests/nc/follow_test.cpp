@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "geom/math.hpp"
 #include "nc/edit.hpp"
 #include "nc/follow.hpp"
 #include "nc/program_file.hpp"
@@ -15,8 +15,6 @@ namespace riffler::follow_test {
 namespace {
 
 using test::read_nc_text;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Of a head that tilts by B about y on a table that turns by C: the tool's axis, seen from the part.
 Vec3 axis_at(double b, double c) {

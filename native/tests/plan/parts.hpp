@@ -4,11 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "geom/math.hpp"
 #include "mesh/shapes.hpp"
 
 namespace riffler {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A rotation by `angle` (rad) about `axis`, and then a shift.
 struct PartPlacement {

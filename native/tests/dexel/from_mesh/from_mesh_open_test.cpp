@@ -13,6 +13,7 @@
 #include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/from_mesh/openings.hpp"
 #include "dexel/shapes.hpp"
+#include "geom/math.hpp"
 #include "support/effort.hpp"
 
 namespace riffler::from_mesh_open_test {
@@ -84,7 +85,7 @@ TEST(Boundary, CracksOfRoundingAreJoined) {
 std::vector<Vec3> rim(int n) {
   std::vector<Vec3> loop;
   for (int k = 0; k < n; ++k) {
-    const double a = 2 * std::numbers::pi * k / n;
+    const double a = 2 * kPi * k / n;
     const double r = 20 + 2 * std::sin(5 * a) + 0.05 * (k % 2);
     loop.emplace_back(r * std::cos(a), r * std::sin(a), 6 * std::cos(2 * a) + 0.05 * (k % 3));
   }

@@ -7,6 +7,7 @@
 
 #include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/shapes.hpp"
+#include "geom/math.hpp"
 
 namespace riffler::from_mesh_report_test {
 namespace {
@@ -104,7 +105,7 @@ Mesh band(int half_turns, int n, int across) {
   Mesh m;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j <= across; ++j) {
-      const double a = 2 * std::numbers::pi * i / n, turn = 0.5 * a * half_turns;
+      const double a = 2 * kPi * i / n, turn = 0.5 * a * half_turns;
       const double s = 4.0 * j / across - 2, r = 10 + s * std::cos(turn);
       m.vertices.emplace_back(r * std::cos(a), r * std::sin(a), s * std::sin(turn));
     }
@@ -122,7 +123,7 @@ Mesh klein_bottle(int n, int m) {
   Mesh mesh;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < m; ++j) {
-      const double u = 2 * std::numbers::pi * i / n, v = 2 * std::numbers::pi * j / m;
+      const double u = 2 * kPi * i / n, v = 2 * kPi * j / m;
       const double r = 10 + 4 * (std::cos(u / 2) * std::sin(v) - std::sin(u / 2) * std::sin(2 * v));
       mesh.vertices.emplace_back(r * std::cos(u), r * std::sin(u),
                                  4 * (std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v)));

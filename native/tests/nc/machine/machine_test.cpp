@@ -1,9 +1,9 @@
+#include "geom/math.hpp"
 #include "nc/machine/machines.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "stress/random.hpp"
 #include "support/tilted.hpp"
@@ -12,8 +12,6 @@ namespace riffler::machine_test {
 namespace {
 
 using test::tilted;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::unique_ptr<Machine> linuxcnc(const char* name, Options options = {}) {
   options.emplace("rot_point", std::vector<double>{0, 0, 0});

@@ -1,9 +1,9 @@
 #include "nc/read/apt_reader.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "support/nc_reading.hpp"
@@ -60,7 +60,7 @@ TEST(AptReader, CirclesGoCounterClockwiseAboutTheirAxis) {
     EXPECT_GE(std::hypot(a.x + b.x, a.y + b.y) / 2, 10 - 0.002);
     EXPECT_GT(b.x + b.y, 9.99) << "both quarters lie in the first quadrant";
   }
-  EXPECT_NEAR(way, std::hypot(5 * std::numbers::pi, 2) + 5 * std::numbers::pi, 0.01);
+  EXPECT_NEAR(way, std::hypot(5 * kPi, 2) + 5 * kPi, 0.01);
   EXPECT_EQ(p.poses().back().tip, Vec3(10, 0, 3));
 }
 
@@ -108,7 +108,7 @@ TEST(AptReader, ReadsCreosCommentsAndCirclesWithoutARadius) {
     turned += std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
     EXPECT_GT(b.x + b.y, 9.99);
   }
-  EXPECT_NEAR(turned, std::numbers::pi, 1e-9);
+  EXPECT_NEAR(turned, kPi, 1e-9);
   const Program left = read("CUTCOM/LEFT\nGOTO/1,2,3\nCUTCOM/OFF", {{"cutter_compensation", std::string("ignore")}});
   ASSERT_EQ(left.notes.size(), 1U);
   EXPECT_EQ(left.notes[0].kind, "cutter compensation");

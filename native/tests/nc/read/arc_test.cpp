@@ -1,15 +1,13 @@
 #include "nc/read/arc.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace riffler::arc_test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Vec2 on(double r, double angle) {
   return {r * std::cos(angle), r * std::sin(angle)};

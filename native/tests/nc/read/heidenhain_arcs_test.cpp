@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "geom/math.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::heidenhain_arcs_test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Program read(const std::string& blocks, Options options = {}) {
   return test::read_nc_text("BEGIN PGM T MM\n" + blocks + "\nEND PGM T MM\n", "heidenhain", std::move(options));

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "geom/math.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::heidenhain_cycle_test {
@@ -138,7 +138,7 @@ TEST(HeidenhainCycle, BoresByAHelix) {
       const Vec3 a = p.poses()[row - 1].tip - Vec3(1, 2, 0), b = p.poses()[row].tip - Vec3(1, 2, 0);
       EXPECT_LE(std::hypot(b.x, b.y), 6 + 1e-9);
       lowest = std::min(lowest, b.z);
-      turns += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y) / (2 * std::numbers::pi);
+      turns += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y) / (2 * kPi);
     }
     EXPECT_EQ(lowest, -9);
     EXPECT_NEAR(turns, 5, 1e-9) << "four of 3 mm from above the ground, and one at it";

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "geom/math.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::offsets_test {
@@ -50,8 +50,8 @@ TEST(NcOffsets, ThatChangeLaterMoveWhatComesAfter) {
 
 TEST(NcOffsets, TurnRotaryAxesToo) {
   const Program p = read_nc_text("G0 A10\nG92 A0\nA5\nG10 L2 P1 A1\nA5");
-  EXPECT_NEAR(p.poses()[1].axis.y, -std::sin(15 * std::numbers::pi / 180), 1e-15);
-  EXPECT_NEAR(p.poses()[2].axis.y, -std::sin(16 * std::numbers::pi / 180), 1e-15);
+  EXPECT_NEAR(p.poses()[1].axis.y, -std::sin(15 * kPi / 180), 1e-15);
+  EXPECT_NEAR(p.poses()[2].axis.y, -std::sin(16 * kPi / 180), 1e-15);
 }
 
 TEST(NcOffsets, HomesAreMachinePositions) {

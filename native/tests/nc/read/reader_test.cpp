@@ -1,11 +1,11 @@
 #include "nc/read/reader.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -16,8 +16,6 @@
 
 namespace riffler::reader_test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Program read(const std::string& text, const std::string& machine = "tcp", Options options = {}) {
   return parse_nc(text, "p.ngc", {machine, std::move(options)});

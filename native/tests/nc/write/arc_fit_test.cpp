@@ -1,4 +1,5 @@
 #include "nc/write/arc_fit.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,6 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -22,7 +22,6 @@ namespace {
 using test::error_of;
 
 using Points = std::vector<Vec3>;
-constexpr double kPi = std::numbers::pi;
 
 double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 way = b - a;

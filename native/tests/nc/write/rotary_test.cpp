@@ -1,10 +1,10 @@
 #include "nc/write/rotary.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -21,7 +21,6 @@ using test::tilted;
 using test::angle;
 using test::axis_of;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kAxisTolerance = 0.00175;
 
 std::unique_ptr<Machine> tcp() {

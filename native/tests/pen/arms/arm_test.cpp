@@ -1,18 +1,17 @@
 // One arm: its posture against products of rotations, its Jacobian against differences and virtual work, its inverse.
 #include "pen/arms/arm.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "stress/random.hpp"
 
 namespace riffler::arm_test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr ArmLinks kRight{80, 150, 180}, kLeft{-80, 180, 180};
 
 Vec3 random_angles(stress::Random& random) {

@@ -1,11 +1,11 @@
 // Weight and friction that the motors make up for: within their peaks, behind the gate, and never a source of energy.
 #include "pen/arms/compensation.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "pen/arms/pens.hpp"
 #include "pen/simulated/simulated_bench.hpp"
@@ -112,7 +112,7 @@ double work(double friction) {
                    {}, {0, friction});
   b.run(2);
   const double before = b.pen->arms().energy().hand;
-  b.run(2 * std::numbers::pi);
+  b.run(2 * kPi);
   return b.pen->arms().energy().hand - before;
 }
 

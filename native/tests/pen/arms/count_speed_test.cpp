@@ -1,18 +1,18 @@
 // Speeds from counters: as smooth as the motion is steady, as quick as it changes.
 #include "pen/arms/count_speed.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "support/pens.hpp"
 
 namespace riffler::count_speed_test {
 namespace {
 
-constexpr double kCount = 2 * std::numbers::pi / 48000;  // rad, of joint 2 of R: channel 0
+constexpr double kCount = 2 * kPi / 48000;  // rad, of joint 2 of R: channel 0
 
 EncoderCounts at(double count, std::int32_t start = 0) {
   const auto whole = static_cast<std::int64_t>(std::floor(count));
@@ -79,7 +79,7 @@ TEST(CountSpeed, CountersThatWrapAndTimesThatJumpBackDoNotShow) {
 TEST(CountSpeed, EachChannelIsItsJoints) {
   CountSpeed estimate(load_pen("riffler"));
   for (int k = 0; k < 30; ++k) estimate.add({10 * k, 20 * k, 35 * k, 0, -20 * k, -35 * k}, 0.001 * k);
-  const double s = 2 * std::numbers::pi;
+  const double s = 2 * kPi;
   const JointAngles rates = estimate.rates();
   EXPECT_LT(glm::distance(rates[0], s * Vec3(0.5, 10.0 / 48, 20.0 / 48)), 1e-9);
   EXPECT_LT(glm::distance(rates[1], s * Vec3(-0.5, 0, -20.0 / 48)), 1e-9);

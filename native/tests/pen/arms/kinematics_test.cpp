@@ -1,12 +1,12 @@
 // The whole pen: counters to poses and back, speeds, homing, wraps.
 #include "pen/arms/kinematics.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <type_traits>
 #include <utility>
 
@@ -17,8 +17,6 @@ namespace riffler::kinematics_test {
 namespace {
 
 using test::random_pose;
-
-constexpr double kPi = std::numbers::pi;
 
 /// Calls for the poses that are in reach and within the limits, and sees to it that some are.
 void for_reached(int poses, const PenKinematics& pen, const std::function<void(const Pose&, const PenInverse&)>& call) {

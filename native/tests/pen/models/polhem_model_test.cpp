@@ -1,9 +1,9 @@
 #include "pen/models/polhem_model.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "pen/fake_link.hpp"
 #include "stress/random.hpp"
@@ -62,7 +62,7 @@ TEST(Polhem, ItsJacobianIsThatOfFiniteDifferences) {
 TEST(Polhem, StandsWhereItsArmsDo) {
   const PolhemGeometry& g = *polhem_geometry("woodenhaptics");
   // Upper arm upright, fore arm level: a reach of the fore arm at the height of the shoulder and the upper arm.
-  const PolhemPosture posture = polhem_posture(g, {0, 0, std::numbers::pi / 2});
+  const PolhemPosture posture = polhem_posture(g, {0, 0, kPi / 2});
   EXPECT_LT(glm::length(posture.tip + g.origin - Vec3(245, 0, 285)), 1e-9);
 }
 
@@ -107,7 +107,7 @@ TEST(Polhem, MotorsBalanceTheForceByVirtualWork) {
     arm.model->take(polhem_report(there), 2e-3);
     const double work = glm::dot(force, arm.model->sample(0).pose.tip - at);
     const double torque = 1e-3 * field(arm.out, j) * g.torque_constant[j];
-    EXPECT_NEAR(torque * 2 * std::numbers::pi / g.counts, work, 0.01 * std::abs(work) + 1e-4) << j;
+    EXPECT_NEAR(torque * 2 * kPi / g.counts, work, 0.01 * std::abs(work) + 1e-4) << j;
     arm.model->take(polhem_report(counts), 3e-3);
   }
 }
@@ -134,10 +134,10 @@ TEST(Polhem, CountersOfSixteenBitsUnwrap) {
     a += 5000;
     arm.model->take(polhem_report({static_cast<std::int16_t>(a), 0, 6000, 0, 0, 0, 0}), 1e-3 * (k + 2));
   }
-  const double angle = 2 * std::numbers::pi * 50000 / (2000.0 * 16);
+  const double angle = 2 * kPi * 50000 / (2000.0 * 16);
   const PenSample sample = arm.model->sample(0);
   const Vec3 tip = sample.pose.tip + polhem_geometry("woodenhaptics")->origin;
-  EXPECT_NEAR(std::atan2(tip.y, tip.x), std::remainder(angle, 2 * std::numbers::pi), 1e-9);
+  EXPECT_NEAR(std::atan2(tip.y, tip.x), std::remainder(angle, 2 * kPi), 1e-9);
 }
 
 TEST(Polhem, TheButtonHidesInACounter) {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "geom/math.hpp"
 #include "haptics/limits.hpp"
 #include "haptics/passivity.hpp"
 #include "pen/arms/motors.hpp"
@@ -42,7 +42,7 @@ Touch touch(const Wall& wall) {
   const double surface = home.tip.z - 2;
   SimulatedBench b(settings, [home](double t) {
     HandWish wish{.pose = home};
-    wish.pose.tip.z -= 3 * (1 - std::cos(std::numbers::pi * std::max(0.0, t - 1)));
+    wish.pose.tip.z -= 3 * (1 - std::cos(kPi * std::max(0.0, t - 1)));
     return wish;
   });
   const PenKinematics host(load_pen("riffler"));

@@ -1,4 +1,4 @@
-#include "pen/arms/geometry.hpp"
+#include "pen/arms/description.hpp"
 
 #include <algorithm>
 #include <cmath>

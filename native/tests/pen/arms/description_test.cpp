@@ -1,5 +1,5 @@
 // Pens described in files: what they say, what is wrong with them, and where they are found.
-#include "pen/arms/geometry.hpp"
+#include "pen/arms/description.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "pen/arms/shipped_pens.hpp"
 #include "support/damaged.hpp"
 
-namespace riffler::geometry_test {
+namespace riffler::pen_description_test {
 namespace {
 
 std::string shipped() {
@@ -234,4 +234,4 @@ TEST(Pens, AreFoundByNameAndByPath) {
 }
 
 }  // namespace
-}  // namespace riffler::geometry_test
+}  // namespace riffler::pen_description_test
