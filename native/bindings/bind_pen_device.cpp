@@ -31,7 +31,7 @@ py::dict dict_of(const FoundDevice& found) {
   out["id"] = found.info.id();
   out["serial"] = found.info.serial;
   out["kind"] = found.family == nullptr ? py::object(py::none()) : py::object(py::str(found.family->kind));
-  out["tried"] = found.tried;
+  out["tried"] = found.was_opened;
   out["problem"] =
       found.problem == OpenProblem::None ? py::object(py::none()) : py::object(py::str(problem_text(found.problem)));
   out["text"] = or_none(found.text);

@@ -113,7 +113,7 @@ std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options)
     if (family == nullptr)
       throw OpenError(OpenProblem::UnknownDevice,
                       info.path + ": " + info.name + " (" + info.id() + ") is no device that Riffler knows");
-    if (!family->tried)
+    if (!family->opened_by_search)
       throw OpenError(OpenProblem::UnknownDevice,
                       info.path + ": " + info.id() +
                           " is a number that many boards have; if it is one of these, open it as \"" + family->kind +
@@ -142,8 +142,8 @@ std::vector<FoundDevice> find_devices() {
     FoundDevice& found = out.emplace_back();
     found.info = std::move(info);
     found.family = family_of(found.info);
-    found.tried = found.family != nullptr && found.family->tried;
-    if (!found.tried) {
+    found.was_opened = found.family != nullptr && found.family->opened_by_search;
+    if (!found.was_opened) {
       found.problem = why_not_open(found.info, found.text);
       continue;
     }

@@ -27,9 +27,10 @@ struct PenFamily {
   const char* kind;
   const char* what;
   bool (*matches)(const HidInfo& info);
-  /// False where other makers' devices have the same numbers and nothing in them tells which it is: such a device is
-  /// opened where its kind is asked for by name, and never tried by itself. Pushing a stranger's motors is no test.
-  bool tried;
+  /// Whether the search for devices may open one. False where other makers' devices have the same numbers and nothing
+  /// in them tells which it is: such a device is opened only by the name of its kind. Pushing a stranger's motors is no
+  /// test.
+  bool opened_by_search;
   std::unique_ptr<HidModel> (*make)(Transport& transport, const HidInfo& info, const PenOptions& options);
 };
 
@@ -40,7 +41,7 @@ const PenFamily* family_of(const HidInfo& info);
 struct FoundDevice {
   HidInfo info;
   const PenFamily* family = nullptr;  ///< null: not a device for Riffler
-  bool tried = false;                 ///< it was opened and asked who it is; otherwise only whether it may be opened
+  bool was_opened = false;            ///< and asked who it is; otherwise only whether it may be opened
   OpenProblem problem = OpenProblem::None;
   std::string text;        ///< why it does not open, and what to do
   std::string capability;  ///< of those that opened: what is sensed and pushed
