@@ -9,6 +9,7 @@
 
 #include "pen/arms/compensation.hpp"
 #include "pen/device.hpp"
+#include "pen/driver_loop.hpp"
 #include "pen/hid/hid_list.hpp"
 #include "pen/hid/open_error.hpp"
 #include "pen/hid_model.hpp"
