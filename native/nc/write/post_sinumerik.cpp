@@ -39,7 +39,7 @@ class Sinumerik final : public Post {
   }
 
   void spindle(double speed) override {
-    line(speed == 0 ? "M5" : "S" + number_text(std::abs(speed)) + (speed > 0 ? " M3" : " M4"));
+    line(speed == 0 ? "M5" : std::string("S") + number_text(std::abs(speed)) + (speed > 0 ? " M3" : " M4"));
     turns_ = speed != 0;
   }
 
