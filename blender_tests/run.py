@@ -184,7 +184,7 @@ def native_paths(wheel: Path | None, folder: Path) -> list[str]:
 def newest_wheel() -> Path | None:
     """Of this Python, which is that of the Blenders here; ./dist may hold those of others too."""
     name = f"riffler-*-{package.tag(sys.version_info)}-*.whl"
-    found = [w for place in ("build/wheel", "dist") for w in (ROOT / place).glob(name)]
+    found = [w for place in ("build/wheel/riffler", "dist") for w in (ROOT / place).glob(name)]
     return max(found, key=lambda w: w.stat().st_mtime, default=None)
 
 
@@ -232,7 +232,7 @@ def main() -> int:
     parser.add_argument("--only", default="", help="text in the test's name")
     parser.add_argument("--blender", default="", help="text in the Blender's name, as 4.5")
     parser.add_argument("--mode", choices=("source", "extension", "legacy"), help="one way of installing only")
-    parser.add_argument("--wheel", type=Path, help="default: the newest in build/wheel or dist for this Python")
+    parser.add_argument("--wheel", type=Path, help="default: the newest in build/wheel/riffler or dist for this Python")
     parser.add_argument("--zips", type=Path, help="folder of zips to test; default: made from the wheel")
     parser.add_argument("--no-window", action="store_true", help="headless only")
     parser.add_argument("--no-headless", action="store_true", help="windows only")

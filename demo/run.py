@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # run as a script, not only as `python -m demo.run`
 
 import riffler  # noqa: E402
-from riffler.bench import nc_judge  # noqa: E402
+from riffler_bench import nc_judge  # noqa: E402
 
 from demo import egg, forces, report  # noqa: E402
 

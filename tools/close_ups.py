@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 from riffler import Mesh, Tool, Volume
-from riffler._core import bench
+from riffler_bench import _bench as bench
 
 from shell import ROOT, StepError, main
 

@@ -114,12 +114,13 @@ def network_options() -> list[str]:
 
 
 def install_wheel(path: Path, wheel: Path, key: str) -> None:
-    """Our own wheel, without its dependencies: those are pinned."""
-    stamp = path / ".riffler-wheel"
+    """One of our own wheels, without its dependencies: those are pinned."""
+    package = wheel.name.split("-")[0]
+    stamp = path / f".riffler-wheel-{package}"
     if is_stamped(stamp, key):
         return
     say(f"{path.relative_to(ROOT)}: {wheel.name}")
     stamp.unlink(missing_ok=True)
     run(*pip(path), "install", "--quiet", "--no-index", "--no-deps", "--force-reinstall", wheel)
-    run(path / "bin" / "python", "-c", "import riffler", cwd=Path(os.path.abspath(os.sep)), env=tool_environment())
+    run(path / "bin" / "python", "-c", f"import {package}", cwd=Path(os.path.abspath(os.sep)), env=tool_environment())
     write_stamp(stamp, key)

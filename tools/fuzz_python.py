@@ -113,7 +113,7 @@ MODEL = b"""<?xml version="1.0" encoding="UTF-8"?>
 
 
 def packed(model: bytes) -> bytes:
-    from addon.core.threemf_out import RELATIONS, TYPES
+    from riffler.threemf_writer import RELATIONS, TYPES
 
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -25,7 +25,7 @@ from environments import (
 )
 from linuxcnc import linuxcnc
 from shell import ROOT, VENV, StepError, main, run, say
-from wheel import build_wheel
+from wheel import BENCH, build_wheel
 
 DEMO_BLENDER = "4.5"
 EXTRA_NEEDS = {
@@ -48,6 +48,7 @@ def setup(purpose: str) -> None:
         others = background.submit(other_environments, purpose, versions)
         wheel, key = build_wheel()
         install_wheel(VENV, wheel, key)
+        install_wheel(VENV, *build_wheel(BENCH))
         others.result()
     for version in versions:
         install_wheel(blender_environment(version), wheel, key)

@@ -18,8 +18,7 @@ STUB = ROOT / "native" / "python" / "riffler" / "_core.pyi"
 HEAD = "# Made by `make stubs` from the built module; not to be edited.\n"
 # What is not of the interface, or differs from one build of it to the next.
 FIXES = [
-    (r"^from \. import bench$", "import types"),
-    (r"^__compiler__: str = .*$", "bench: types.ModuleType\n__compiler__: str"),
+    (r"^__compiler__: str = .*$", "__compiler__: str"),
     (r"^__version__: str = .*$", "__version__: str"),
     (r"(?<=def __next__\(self\) -> )\.\.\.:", "Program:"),  # an iterator that is bound before what it gives
     (r"typing_extensions\.Buffer", "collections.abc.Buffer"),  # its name since Python 3.12
@@ -33,7 +32,7 @@ def generate() -> str:
         # A C++ type in a signature, for want of a binding before it, is an error but for the one that FIXES mends.
         run(sys.executable, "-m", "pybind11_stubgen", "riffler._core", "--output-dir", folder, "--exit-code",
             "--ignore-invalid-expressions", "riffler::Program")  # fmt: skip
-        text = Path(folder, "riffler", "_core", "__init__.pyi").read_text()
+        text = Path(folder, "riffler", "_core.pyi").read_text()
     for pattern, plain in FIXES:
         text = re.sub(pattern, plain, text, flags=re.MULTILINE)
     return HEAD + text

@@ -1,6 +1,6 @@
-"""Our own wheel, built in place by scikit-build-core in a kept directory: a second build compiles only what changed.
+"""Our own wheels, built in place by scikit-build-core in kept directories: a second build compiles only what changed.
 
-python tools/wheel.py FOLDER        the wheel with the shared libraries it needs inside, alone in FOLDER
+python tools/wheel.py FOLDER        riffler's wheel with the shared libraries it needs inside, alone in FOLDER
 """
 
 from __future__ import annotations
@@ -10,54 +10,79 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import compiler_cache
 from shell import PYTHON, ROOT, StepError, digest, is_stamped, main, run, say, tool_environment, write_stamp
 
-FOLDER = ROOT / "build" / "wheel"
-# Folders of native/ that do not go into the wheel.
-NOT_SHIPPED = {"tests", "fuzz"}
+
+@dataclass(frozen=True)
+class Distribution:
+    """One of our wheels: `project` has its pyproject.toml, `parts` are the folders of native/ that go into it besides
+    the core's topics."""
+
+    name: str
+    project: Path
+    parts: frozenset[str]
+
+    @property
+    def folder(self) -> Path:
+        return ROOT / "build" / "wheel" / self.name
+
+    @property
+    def pattern(self) -> str:
+        return f"{self.name.replace('-', '_')}-*.whl"
+
+
+RIFFLER = Distribution("riffler", ROOT, frozenset({"python", "bindings"}))
+BENCH = Distribution("riffler-bench", ROOT / "bench", frozenset({"bindings", "bench", "stress", "reference"}))
+# Folders of native/ that are no topics of the core.
+BESIDE = frozenset({"tests", "fuzz", "python", "bindings", "bench", "stress", "reference"})
 # Every Linux has these; anything else that the module links must lie inside the wheel.
 SYSTEM_LIBRARIES = ("linux-vdso.so", "libstdc++.so", "libgcc_s.so", "libc.so", "libm.so", "libz.so", "/lib64/ld-linux",
                     "libpthread.so", "libdl.so", "librt.so")  # fmt: skip
 
 
-def sources() -> list[Path]:
+def sources(distribution: Distribution = RIFFLER) -> list[Path]:
     """Every file that the wheel depends on."""
     files = [ROOT / name for name in ("CMakeLists.txt", "pyproject.toml", "README.md", "LICENSE")]
     files += (ROOT / "cmake").rglob("*.cmake")
     files += (ROOT / "device" / "geometry").glob("*.toml")
     files += (ROOT / "device").rglob("CMakeLists.txt")
     files += (ROOT / "device").rglob("*.[ch]")
-    for topic in (ROOT / "native").iterdir():
-        if topic.is_dir() and topic.name not in NOT_SHIPPED:
-            files += (f for f in topic.rglob("*") if f.is_file() and f.suffix not in {".so", ".pyc"})
+    folders = [f for f in (ROOT / "native").iterdir() if f.is_dir() and f.name not in BESIDE - distribution.parts]
+    if distribution.project != ROOT:
+        folders.append(distribution.project)
+    for folder in folders:
+        files += (f for f in folder.rglob("*") if f.is_file() and f.suffix not in {".so", ".pyc"})
     return files
 
 
-def build_wheel() -> tuple[Path, str]:
+def build_wheel(distribution: Distribution = RIFFLER) -> tuple[Path, str]:
     """The wheel of the present sources and the digest that names them."""
     names = ("CC", "CFLAGS", "CXX", "CXXFLAGS", "LDFLAGS", "CMAKE_ARGS")
     flags = [f"{name}={os.environ.get(name, '')}" for name in names]
     requirements = ROOT / "requirements" / "dev.txt"
-    key = digest([*sources(), requirements], sys.version, *flags)
-    stamp = FOLDER / ".stamp"
-    wheels = list(FOLDER.glob("riffler-*.whl"))
+    key = digest([*sources(distribution), requirements], sys.version, *flags)
+    folder = distribution.folder
+    stamp = folder / ".stamp"
+    wheels = list(folder.glob(distribution.pattern))
     if is_stamped(stamp, key) and len(wheels) == 1:
         return wheels[0], key
-    say("building riffler's wheel")
+    say(f"building {distribution.name}'s wheel")
     stamp.unlink(missing_ok=True)
     for old in wheels:
         old.unlink()
-    FOLDER.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     # The PEP 517 hook that pip would call, called directly: the compiler's progress stays visible.
     hook = "import sys; from scikit_build_core.build import build_wheel; build_wheel(sys.argv[1])"
     arguments = " ".join([os.environ.get("CMAKE_ARGS", ""), *compiler_cache.arguments()])
-    run(PYTHON, "-c", hook, FOLDER, env=tool_environment(CMAKE_GENERATOR="Ninja") | {"CMAKE_ARGS": arguments})
-    wheels = list(FOLDER.glob("riffler-*.whl"))
+    environment = tool_environment(CMAKE_GENERATOR="Ninja") | {"CMAKE_ARGS": arguments}
+    run(PYTHON, "-c", hook, folder, env=environment, cwd=distribution.project)
+    wheels = list(folder.glob(distribution.pattern))
     if len(wheels) != 1:
-        raise StepError(f"expected one wheel in {FOLDER.relative_to(ROOT)}, found {len(wheels)}")
+        raise StepError(f"expected one wheel in {folder.relative_to(ROOT)}, found {len(wheels)}")
     write_stamp(stamp, key)
     return wheels[0], key
 

@@ -4,11 +4,11 @@ import bpy
 import numpy as np
 import riffler
 from bpy_extras.io_utils import ExportHelper
-from riffler import tasks
+from riffler import tasks, threemf_writer
 
 from .. import properties
 from ..bl import live, programs, sculpts
-from ..core import poses, problems, threemf_out
+from ..core import poses, problems
 from ..core import units as names
 from ..core.job import AfterJob, PiecesJob, TaskJob
 from ..translations import local
@@ -122,7 +122,7 @@ class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator, ExportHelper):
 
     def job(self, surface, path, name):
         mesh = surface.vertices, surface.triangles
-        return PiecesJob(threemf_out.pieces(path, *mesh, name), threemf_out.count(*mesh))
+        return PiecesJob(threemf_writer.pieces(path, *mesh, name), threemf_writer.count(*mesh))
 
 
 def placed(surface, matrix):

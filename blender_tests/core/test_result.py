@@ -6,13 +6,14 @@ import zlib
 import numpy as np
 import pytest
 import riffler
+from riffler import threemf_writer
 
-from addon.core import colours, threemf_out
+from addon.core import colours
 from addon.core.job import ChainJob, run_through
 
 
 def write(*mesh):
-    for _ in threemf_out.pieces(*mesh):
+    for _ in threemf_writer.pieces(*mesh):
         pass
 
 

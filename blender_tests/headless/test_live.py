@@ -82,33 +82,37 @@ def corner_keys(vertices, triangles):
 
 
 def test_chunks_are_smooth_from_the_start_and_have_the_normals_of_the_whole():
-    """Before 4.5 Blender makes the normals at a chunk's border from the chunk's own triangles; before 4.1 triangles at
-    sharp edges are flat, and all others smooth."""
     name = sculpt()
     run = work(name)
-    meshes, versions = support.part("bl.meshes"), support.part("bl.versions")
     for k in (None, 1, 7, 14):
         if k is not None:
             stroke(name, k)
-        objects = [ob for ob in support.part("bl.chunks").collection_of(run.mark).objects if "riffler_chunk" in ob]
-        filled = [ob.data for ob in objects if len(ob.data.polygons)]
-        for mesh in filled:
-            smooth = np.empty(len(mesh.polygons), bool)
-            mesh.polygons.foreach_get("use_smooth", smooth)
-            assert smooth.mean() > (0.8 if versions.SMOOTH_BY_POLYGON else 0.999)
-        if not versions.OWN_NORMALS:
-            continue
-        whole = riffler.Mesher(run.volume)
-        vertices, triangles, normals = whole.patch(whole.patches(), normals=meshes.SHARP_ANGLE)
-        expected = dict(zip(corner_keys(vertices / run.mm, triangles), normals, strict=True))
-        for mesh in filled:
-            shown = np.empty((len(mesh.loops), 3), np.float32)
-            mesh.corner_normals.foreach_get("vector", shown.ravel())
-            corners = np.empty(len(mesh.loops), np.int32)
-            mesh.loops.foreach_get("vertex_index", corners)
-            keys = corner_keys(support.coordinates(mesh), corners.reshape(-1, 3))
-            off = np.linalg.norm(shown - [expected[key] for key in keys], axis=1)
-            assert np.degrees(off.max()) < 0.01
+        shaded_as_the_whole(run)
+
+
+def shaded_as_the_whole(run):
+    """Before 4.5 Blender makes the normals at a chunk's border from the chunk's own triangles; before 4.1 triangles at
+    sharp edges are flat, and all others smooth."""
+    meshes, versions = support.part("bl.meshes"), support.part("bl.versions")
+    objects = [ob for ob in support.part("bl.chunks").collection_of(run.mark).objects if "riffler_chunk" in ob]
+    filled = [ob.data for ob in objects if len(ob.data.polygons)]
+    for mesh in filled:
+        smooth = np.empty(len(mesh.polygons), bool)
+        mesh.polygons.foreach_get("use_smooth", smooth)
+        assert smooth.mean() > (0.8 if versions.SMOOTH_BY_POLYGON else 0.999)
+    if not versions.OWN_NORMALS:
+        return
+    whole = riffler.Mesher(run.volume)
+    vertices, triangles, normals = whole.patch(whole.patches(), normals=meshes.SHARP_ANGLE)
+    expected = dict(zip(corner_keys(vertices / run.mm, triangles), normals, strict=True))
+    for mesh in filled:
+        shown = np.empty((len(mesh.loops), 3), np.float32)
+        mesh.corner_normals.foreach_get("vector", shown.ravel())
+        corners = np.empty(len(mesh.loops), np.int32)
+        mesh.loops.foreach_get("vertex_index", corners)
+        keys = corner_keys(support.coordinates(mesh), corners.reshape(-1, 3))
+        off = np.linalg.norm(shown - [expected[key] for key in keys], axis=1)
+        assert np.degrees(off.max()) < 0.01
 
 
 def test_chunks_hang_on_one_go_where_the_sculpt_goes_and_stay_there_without_it():

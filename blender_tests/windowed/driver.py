@@ -83,12 +83,17 @@ class Screen:
                 f"{self.script}/{name}.png is not like its reference: {complaint}. If it is right: {accept}"
             )
 
-    def _shoot(self, name, vary):
-        """What pictures.check says. From outside: Blender's own operator gives a black one from 4.3 on."""
+    def shot(self, name):
+        """A picture of the whole display to be looked at, compared with nothing. From outside: Blender's own operator
+        gives a black one from 4.3 on."""
         path = self.out / self.script / f"{name}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
         subprocess.run(["import", "-window", "root", str(path)], check=True)
         assert path.stat().st_size > 20_000, f"{path} is all but empty"
+
+    def _shoot(self, name, vary):
+        """What pictures.check says."""
+        self.shot(name)
         return pictures.check(self.out, f"{self.script}/{name}", VERSION, self.areas(), vary)
 
     # A Blender that takes simulated events takes no others: a script says REAL_EVENTS = True to be without them, and

@@ -27,6 +27,49 @@ def module(name):
     return support.part(name)
 
 
+def messages(screen):
+    """Lines of Blender's log of messages, the newest last: what popups and the status bar have shown. It has none of
+    what a script calls, only what came by mouse or keyboard, or from work that went on behind the window."""
+    area = next(a for a in screen.window.screen.areas if a.type in ("DOPESHEET_EDITOR", "OUTLINER", "PROPERTIES"))
+    before, area.type = area.type, "INFO"
+    try:
+        shown = area.spaces.active
+        shown.show_report_info = shown.show_report_warning = shown.show_report_error = True
+        shown.show_report_operator = shown.show_report_debug = False
+        with bpy.context.temp_override(window=screen.window, area=area, region=area.regions[-1]):
+            bpy.ops.info.select_all(action="SELECT")
+            bpy.ops.info.report_copy()
+    finally:
+        area.type = before
+    lines = bpy.context.window_manager.clipboard.splitlines()
+    return [line for line in lines if not line.startswith("bpy.")]  # what was called is in it, too
+
+
+class Recorded:
+    """Within it, calls of one of the add-on's functions are kept: (arguments, what was returned)."""
+
+    def __init__(self, part, name):
+        self._part, self._name, self.calls = module(part), name, []
+
+    def __enter__(self):
+        self._function = getattr(self._part, self._name)
+
+        def keeping(*arguments, **more):
+            result = self._function(*arguments, **more)
+            self.calls.append((arguments, result))
+            return result
+
+        setattr(self._part, self._name, keeping)
+        return self
+
+    def __exit__(self, *_):
+        setattr(self._part, self._name, self._function)
+
+    def texts(self):
+        """All texts among the arguments, in the order of the calls."""
+        return [text for arguments, _ in self.calls for text in arguments if isinstance(text, str)]
+
+
 def plain_window():
     """As a person has it, but for what would be in a picture's way."""
     preferences = bpy.context.preferences

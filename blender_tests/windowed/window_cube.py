@@ -80,6 +80,7 @@ def steps(screen):
     assert "Cube Stock" not in bpy.data.objects and not cube().hide_get() and cube().matrix_world == place
     assert bpy.context.scene.unit_settings.scale_length == 1
     yield from off_everything(screen, place)
+    yield from from_the_menu(screen)
     yield from over_another_sculpt(screen)
     yield from bear(screen)
 
@@ -102,6 +103,31 @@ def off_everything(screen, place):
     yield 1.0
     assert cube().matrix_world == place and len(bpy.data.objects) == 3
     yield from answered(screen, "ESC")
+
+
+def from_the_menu(screen):
+    """Shift A, Mesh, Riffler, Sphere, by the arrow keys: a sculpt without facets, which one Ctrl Z takes away."""
+    screen.to_view()
+    yield 0.3
+    screen.key("A", shift=True)
+    yield 0.5
+    for key in MENU:
+        yield from answered(screen, key)
+    screen.shot("menu")
+    yield from answered(screen)
+    yield lambda: "Sphere" in bpy.data.objects
+    ball = bpy.context.object
+    content, mm = support.content(ball), ball.data.riffler.mm_per_unit  # the radius is a unit
+    off = np.linalg.norm(support.coordinates(ball.data).astype(float) * mm, axis=1) - mm
+    assert ball.name == "Sphere" and np.abs(off).max() < 0.01 * content.volume.pitch, np.abs(off).max()
+    assert abs(content.volume.volume / (4 / 3 * np.pi * mm**3) - 1) < 1e-4
+    screen.to_view()
+    screen.key("Z", ctrl=True)
+    yield lambda: "Sphere" not in bpy.data.objects
+    assert bpy.context.scene.unit_settings.scale_length == 1
+
+
+MENU = ("RIGHT_ARROW", "UP_ARROW", "RIGHT_ARROW", "DOWN_ARROW")
 
 
 def over_another_sculpt(screen):

@@ -1,4 +1,5 @@
-"""The panel that stands in for the add-on where the native core does not load."""
+"""The panel that replaces the add-on where the native core does not load: the C library is too old, or there is no
+numpy."""
 
 import sys
 import tempfile
@@ -30,3 +31,30 @@ def steps(screen):
     with screen.override():
         assert bpy.ops.riffler.copy_report() == {"FINISHED"}
     assert "GLIBC_2.38" in bpy.context.window_manager.clipboard
+    yield from without_numpy(screen, folder / "riffler" / "__init__.py")
+
+
+def without_numpy(screen, core):
+    """Debian's Blender without python3-numpy: the panel names that one package."""
+    bpy.ops.preferences.addon_disable(module=support.MODULE)
+    core.write_text("import numpy")
+    for name in [n for n in sys.modules if n.partition(".")[0] == "riffler"]:
+        del sys.modules[name]
+    numpy = {name: sys.modules.pop(name) for name in list(sys.modules) if name.partition(".")[0] == "numpy"}
+    sys.modules["numpy"] = None
+    try:
+        bpy.ops.preferences.addon_enable(module=support.MODULE)
+        yield 1.0
+    finally:
+        del sys.modules["numpy"]
+        sys.modules.update(numpy)
+    with screen.override():
+        assert bpy.ops.riffler.copy_report() == {"FINISHED"}
+    report = bpy.context.window_manager.clipboard
+    assert "No module named 'numpy'" in report or "numpy" in report.splitlines()[1], report
+    remedy = report.partition("How to mend it:\n")[2]
+    own = sys.prefix not in ("/usr", "/usr/local")
+    words = ["Blender from blender.org"] if own else ["sudo apt install python3-numpy\n", "restart Blender"]
+    assert all(word in remedy for word in words), remedy
+    assert own or ("blender.org" not in remedy and "zip" not in remedy), remedy
+    screen.shot("08-without-numpy")

@@ -1,4 +1,5 @@
-"""Work whose file is chosen first: the selector opens, the work goes on behind the window, Esc leaves no file."""
+"""Stock of too few rays and of sizes that make no sense, by the panel's button. Then work whose file is chosen first:
+the selector opens, the work goes on behind the window, Esc leaves no file."""
 
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import harness
 import support
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
+lessons = harness.load(Path(__file__).with_name("lessons.py"))
 # two million triangles: work that can be seen
 STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.15, "directions": "xyz"}
 
@@ -20,8 +22,9 @@ def selectors():
     return [(w, a) for w in bpy.context.window_manager.windows for a in w.screen.areas if a.type == "FILE_BROWSER"]
 
 
-def choose(screen, operator, path, **more):
-    """The operator's button, the file in the selector that comes, and its button: steps to `yield from`."""
+def choose(screen, operator, path, name=None, **more):
+    """The operator's button, the file in the selector that comes, and its button: steps to `yield from`. `name`: if not
+    that of the path."""
     path = Path(path)
     with screen.override():
         assert operator("INVOKE_DEFAULT", **more) == {"RUNNING_MODAL"}
@@ -29,7 +32,7 @@ def choose(screen, operator, path, **more):
     yield 0.5
     window, area = selectors()[0]
     params = area.spaces.active.params
-    params.directory, params.filename = str(path.parent).encode(), path.name
+    params.directory, params.filename = str(path.parent).encode(), path.name if name is None else name
     yield 0.5
     region = next(r for r in area.regions if r.type == "WINDOW")
     with bpy.context.temp_override(window=window, area=area, region=region):
@@ -42,11 +45,96 @@ def steps(screen):
     yield from cut.open_tab(screen)
     with screen.override():
         bpy.ops.riffler.millimetres()
+    yield from of_few_rays(screen)
+    yield from of_odd_sizes(screen)
+    yield from without_a_name(screen)
+    with screen.override():
         bpy.ops.riffler.new_stock(**STOCK)
     yield from written(screen)
     yield from cancelled(screen)
     yield from no_recording(screen)
     yield from recording(screen)
+
+
+def of_few_rays(screen):
+    """Suzanne in millimetres, at a fine pitch: the panel says that there will be no details, and so does what is made;
+    one button mends it."""
+    stock, before = bpy.context.scene.riffler.stock, bpy.context.scene.riffler.tool.dictionary()
+    stock.source, stock.pitch = "OBJECT", 0.06
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    with screen.override():
+        bpy.ops.mesh.primitive_monkey_add("EXEC_DEFAULT", True, size=2)
+        bpy.ops.view3d.view_selected()
+        bpy.ops.ed.undo_push(message="Suzanne")
+    with lessons.Recorded("ui.panels", "lines") as panel:
+        screen.to_view()
+        yield 1.0
+    said = " ".join(panel.texts())
+    assert "Longest side 2.734 mm: only 46 rays, so no details. the cutter is large, 6 mm." in said, said
+    log = len(lessons.messages(screen))
+    yield from lessons.press(screen, "riffler.new_stock")
+    yield lambda: "Suzanne Stock" in bpy.data.objects and not running()
+    said = "\n".join(lessons.messages(screen)[log:])
+    assert "Suzanne Stock has 46 rays along its longest side, so no details: undo, and use Fit Pitch" in said, said
+    screen.to_view()
+    screen.key("Z", ctrl=True)
+    yield lambda: "Suzanne Stock" not in bpy.data.objects
+    yield from lessons.press(screen, "riffler.make_sculpt")
+    yield 0.3
+    screen.shot("few-rays")
+    for value in ("PRESS", "RELEASE"):
+        lessons.event(screen, "RET", value, screen.at)
+    yield lambda: "Suzanne Stock" in bpy.data.objects
+    made, cutter = bpy.data.objects["Suzanne Stock"].data.riffler, bpy.context.scene.riffler.tool.diameter
+    side = max(u - low for low, u in zip(made.lower, made.upper, strict=True))
+    assert side / made.pitch > 120 and side / 12.5 < cutter < side / 4, (side, made.pitch, cutter)
+    screen.to_view()
+    screen.key("Z", ctrl=True)
+    yield lambda: "Suzanne Stock" not in bpy.data.objects
+    assert abs(bpy.context.scene.unit_settings.scale_length - 0.001) < 1e-9
+    bpy.context.scene.riffler.tool.take(before)
+    bpy.data.objects.remove(bpy.data.objects["Suzanne"])
+
+
+NONSENSE = (
+    ({"size": (-5, 60, 30)}, "Size along x is 0.001 mm, less than the pitch of 0.5 mm: make it larger"),
+    ({"size": (100, 60, 30), "pitch": 1000}, "Size along x is 100 mm, less than the pitch of 1000 mm"),
+    ({"size": (0.4, 10, 10), "pitch": 1}, "Size along x is 0.4 mm, less than the pitch of 1 mm"),
+    ({"size": (1e5, 1e5, 1e5), "pitch": 0.001}, "take a coarser pitch"),
+)
+
+
+def of_odd_sizes(screen):
+    """New Stock with fields as somebody has typed them: each is refused by its name, and nothing is made."""
+    stock, there = bpy.context.scene.riffler.stock, len(bpy.data.objects)
+    for fields, words in NONSENSE:
+        stock.source, stock.pitch = "BLOCK", 0.5
+        for name, value in fields.items():
+            setattr(stock, name, value)
+        screen.area.tag_redraw()
+        yield 0.3
+        log = len(lessons.messages(screen))
+        yield from lessons.press(screen, "riffler.new_stock")
+        said = lessons.messages(screen)[log:]
+        assert len(said) == 1 and words in said[0], said
+        assert len(bpy.data.objects) == there
+    screen.shot("sizes")
+    screen.to_view()
+    yield 0.5
+
+
+def without_a_name(screen):
+    """The selector's button with no name: the folder is named, and what to do."""
+    with screen.override():
+        bpy.ops.riffler.new_stock(source="BLOCK", size=(20, 20, 20), pitch=1.0, directions="z")
+    log = len(lessons.messages(screen))
+    yield from choose(screen, bpy.ops.riffler.export_stl, f"{support.out('')}/", name="")
+    yield 0.5
+    said = "\n".join(lessons.messages(screen)[log:])
+    assert "is a folder: give the file a name" in said and not said.startswith(". "), said
+    bpy.data.objects.remove(bpy.data.objects["Stock"])
+    screen.to_view()
+    yield 0.3
 
 
 def written(screen):

@@ -1,6 +1,7 @@
 """A person's mouse and keyboard on a sculpt, from outside, by xdotool: a drag carves, Ctrl Z and Ctrl Shift Z, a drag
 that Esc gives up, Ctrl S; the file is opened again, has the sculpt to the byte, and the next drag carves on."""
 
+import subprocess
 import tempfile
 from pathlib import Path
 
@@ -100,6 +101,7 @@ def steps(screen):
         yield from begin(screen, path)
         yield from carved_and_undone(screen)
         yield from give_up(screen)
+        yield from without_ribs(screen)
         carved = content()
         yield from save(screen, path)
         assert content() == carved
@@ -131,6 +133,54 @@ def give_up(screen):
     screen.button("RELEASE")
     yield 1.0
     assert content() == before and not held()
+
+
+def without_ribs(screen):
+    """Whole pixels of a slow hand, aslant: the tool's way does not turn with each of them, and the groove's floor lies
+    on the hand's own."""
+    a, b = pixel(screen, (8, 24, 20)), pixel(screen, (52, 36, 20))
+    screen.move(*a)
+    yield 0.3
+    screen.button("PRESS")
+    yield held
+    hand = np.linspace(a, b, int(np.abs(b - a).max() / 3)).round().astype(int)
+    words = [w for x, y in hand for w in ("mousemove", x, screen.window.height - 1 - y, "sleep", 0.01)]
+    moving = subprocess.Popen(["xdotool", *map(str, words)])
+    yield lambda: moving.poll() is not None
+    yield 0.2
+    screen.button("RELEASE")
+    yield lambda: not held()
+    yield 0.5
+    ball, depth, ends = 4.0, 1.5, [on_top(screen, at) for at in (a, b)]
+    poses = strokes.module("bl.live").content(bpy.data.objects[NAME]).cuts[-1].poses
+    middles = poses[:, :3] + ball * poses[:, 3:]
+    steps_ = np.diff(middles, axis=0)
+    steps_ = steps_[np.linalg.norm(steps_, axis=1) > 1e-9]
+    way = steps_ / np.linalg.norm(steps_, axis=1)[:, None]
+    turns = np.degrees(np.arccos(np.clip((way[1:] * way[:-1]).sum(axis=1), -1, 1)))[3:-3]
+    assert len(turns) > 30 and turns.max() < 8, np.sort(turns)[-5:]
+    begin, along = ends[0] + (0, 0, ball - depth), ends[1] - ends[0]
+    length = np.linalg.norm(along)
+    surface = np.asarray(strokes.volume().to_mesh().vertices, float) - begin
+    at = surface @ along / length
+    apart = surface - at[:, None] * along / length
+    size = np.linalg.norm(apart, axis=1)
+    rim = np.arccos((ball - depth) / ball)
+    floor = (at > 2) & (at < length - 2) & (np.arccos(np.clip(-apart[:, 2] / size, -1, 1)) < 0.5 * rim)
+    off = (size - ball)[floor & (np.abs(size - ball) < 1)]
+    support.figure(
+        "floor of a slow mouse's groove, off the hand's own, pitches", round(float(np.abs(off).max() / 0.5), 3)
+    )
+    assert len(off) > 300 and np.abs(off).max() <= 0.1 * 0.5, np.abs(off).max()
+
+
+def on_top(screen, at):
+    """The place on the stock's top (mm) at a pixel of the window."""
+    region = screen.region()
+    matrix = np.array(screen.area.spaces.active.region_3d.perspective_matrix)
+    sight = strokes.module("core.sight").Sight(matrix, (region.width, region.height))
+    origin, way = sight.ray(at[0] - region.x, at[1] - region.y)
+    return origin + (20 - origin[2]) / way[2] * way
 
 
 def carve_on(screen):

@@ -111,6 +111,7 @@ def timed_stroke(screen, name, seconds):
     over = ended - told["end"]
     support.figure(f"{name}: from s of hand: lag of a sample p50, p95 (s), samples", table)
     stages = strokes.run().stages
+    assert any(line.startswith("Lag: ") for line in support.part("ui.sculpt_panel").looks(stages))
     figures = [{k: round(v, 1) for k, v in stages.milliseconds().items()}, *np.round(stages.lag())]
     support.figure(f"{name}: ms of a look by stage; behind the hand by the counters, median and longest", figures)
     support.figure(f"{name}: looks; stroke over after the hand, s", [len(watch.shown), round(over, 2)])

@@ -9,6 +9,7 @@ import work
 import support
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
+lessons = harness.load(Path(__file__).with_name("lessons.py"))
 
 
 def progress():
@@ -110,7 +111,11 @@ def stock_of_a_mesh(screen):
     with work.meshes_taken_by(task):
         begin_stock(screen)
         task.share = 0.4
-        yield lambda: abs(progress().percent - 40) < 1e-3
+        with lessons.Recorded("ui.panels", "at_work") as panels:
+            yield lambda: abs(progress().percent - 40) < 1e-3
+            yield 0.5
+        drawn = {cls.__name__ for arguments, draws in panels.calls if draws for cls in arguments[2:]}
+        assert drawn == {"RIFFLER_OT_new_stock"}, "its progress is not in the panel that began it, or in another, too"
         screen.key("ESC")
         yield ended
     assert task.cancelled and "Ball Stock" not in bpy.data.objects and not bpy.data.objects["Ball"].hide_get()

@@ -1,6 +1,7 @@
 """Machining's first minute: a part whose size is asked about, the list of paths with their lines and names, the
 machine's options as fields."""
 
+import re
 from pathlib import Path
 
 import bpy
@@ -54,6 +55,11 @@ def asked(screen):
         assert bpy.ops.riffler.scene_unit("EXEC_DEFAULT", True, unit="MM") == {"FINISHED"}
     yield 0.5
     assert support.part("bl.plan_fit").size_question(bpy.context.scene) == ""
+    bpy.context.scene.riffler.cutter.kind = "flat"
+    with screen.override():
+        support.refused(lambda: bpy.ops.riffler.plan_find("INVOKE_DEFAULT", True), "tool", "ball")
+    assert not bpy.context.window_manager.riffler.running
+    bpy.context.scene.riffler.cutter.kind = "ball"
     bpy.data.objects.remove(cube)
 
 
@@ -129,3 +135,15 @@ def machine(screen):
         bpy.ops.riffler.machine_option_add("EXEC_DEFAULT", True, machine="linuxcnc-xyzac", option="coolant")
     yield 1.0
     yield from screen.picture("44-machine")
+    with screen.override():
+        bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=support.out("window-xyzac.ngc"))
+    first_and_last(Path(support.out("window-xyzac.ngc")).read_text().splitlines())
+
+
+def first_and_last(blocks):
+    """Up first, then turned, then across, then down; up at the end; and no more than a turn."""
+    moves = [re.findall(r"([XYZAC])-?\d", block) for block in blocks if not block.startswith("(")]
+    assert [move for move in moves if move][:4] == [["Z"], ["A", "C"], ["X", "Y"], ["Z"]], blocks[:24]
+    assert "G53 G0 Z0" in blocks and blocks[-2:] == ["G53 G0 Z0", "M30"], blocks[-5:]
+    turns = [float(angle) for block in blocks for angle in re.findall(r"C(-?[\d.]+)", block)]
+    assert turns and max(map(abs, turns)) <= 360, turns

@@ -1,6 +1,7 @@
 """What Blender's own keys, workspaces and files do in the middle of the work at a sculpt: the point of the number pad
 frames it, Tab and the workspace Modeling find its strokes in its mesh, a local view elsewhere is no danger, and a file
-that is saved by somebody else in mid-stroke leaves no half of one."""
+that is saved by somebody else in mid-stroke leaves no half of one. Then what a stroke says: at the stock's box, on a
+sculpt that is scaled to nothing, scaled by its parent or modified; and what Clay makes of sizes."""
 
 import tempfile
 from pathlib import Path
@@ -11,12 +12,17 @@ import numpy as np
 
 import support
 
-stroke = harness.load(Path(__file__).with_name("window_stroke.py"))
+HERE = Path(__file__).resolve().parent
+stroke = harness.load(HERE / "window_stroke.py")
+lessons = harness.load(HERE / "lessons.py")
+live_tests = harness.load(HERE.parent / "headless" / "test_live.py")
+refusals = harness.load(HERE.parent / "headless" / "test_refusals.py")
 LOWEST = 18.5  # mm: the bottom of a groove of 1.5 mm in the top at 20
 
 
 def steps(screen):
     bpy.data.objects.remove(bpy.data.objects["Cube"])
+    lessons.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_clay")
     yield from stroke.cut.open_tab(screen)
     stroke.cut.stock(screen, 0.5)
     with screen.override():
@@ -30,14 +36,22 @@ def steps(screen):
     yield from from_the_header(screen)
     yield from in_local_view(screen)
     yield from saved_in_mid_stroke(screen)
+    yield from begun_again(screen)
+    yield from with_force(screen)
+    yield from at_the_box(screen)
+    yield from in_odd_states(screen)
+    yield from of_odd_sizes(screen)
+    begins_small = [line for line in lessons.messages(screen) if line[:1].islower()]
+    assert not begins_small, begins_small
 
 
 def sculpt():
     return bpy.data.objects["Stock"]
 
 
-def groove(screen, y, **more):
-    yield from stroke.drag(screen, [(15, y, 20), (45, y, 20)], **more)
+def groove(screen, y, places=2, **more):
+    """Along x; with one place, a click."""
+    yield from stroke.drag(screen, [(15, y, 20), (45, y, 20)][:places], **more)
 
 
 def in_mesh(y):
@@ -50,6 +64,7 @@ def in_mesh(y):
 def framed(screen):
     yield from groove(screen, 10)
     assert stroke.run() is not None and support.is_hidden(sculpt())
+    live_tests.shaded_as_the_whole(stroke.run())
     view = screen.area.spaces.active.region_3d
     view.view_location, view.view_distance = (1.0, 2.0, 3.0), 9.0
     yield 0.5
@@ -143,6 +158,7 @@ def saved_in_mid_stroke(screen):
     whole = stroke.volume().to_bytes()
     yield from groove(screen, 40, release=False)
     assert stroke.volume().to_bytes() != whole
+    assert stroke.module("drawing.force")._shown is None, "a mouse feels no force, and nobody has asked to see it"
     with tempfile.TemporaryDirectory() as folder:
         with screen.override():
             bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "saved.blend"), copy=True)
@@ -155,3 +171,176 @@ def saved_in_mid_stroke(screen):
     stroke.module("bl.live").end_all()
     yield 0.5
     assert in_mesh(40)
+
+
+def told(screen, before):
+    """What was said since the log had so many lines."""
+    return "\n".join(lessons.messages(screen)[before:])
+
+
+def begun_again(screen):
+    """A block whose box is its own: Take Edits has made the other's larger."""
+    stroke.module("bl.live").end_all()
+    bpy.data.objects.remove(sculpt())
+    stroke.cut.stock(screen, 0.5)
+    with screen.override():
+        bpy.ops.ed.undo_push(message="Stock")
+    stroke.tool(screen, "riffler.carve")
+    stroke.settings().depth = 1.5
+    yield 1.0
+
+
+def with_force(screen):
+    """Where force is to be shown a mask has none, and a stroke that cuts has."""
+    stroke.settings().show_force, shown = True, stroke.module("drawing.force")
+    for name, cuts in (("riffler.mask", False), ("riffler.carve", True)):
+        stroke.tool(screen, name)
+        yield 0.3
+        yield from groove(screen, 27, release=False)
+        assert stroke.module("drawing.pointer").held is not None and (shown._shown is not None) == cuts, name
+        screen.key("ESC")
+        yield lambda: stroke.module("drawing.pointer").held is None
+        stroke.press(screen, *screen.at, "RELEASE")
+        yield 0.3
+    stroke.settings().show_force = False
+
+
+def at_the_box(screen):
+    """What Add puts into a groove is cut off at the block's top, and that is said; Make Room moves no vertex; then
+    there is room, and the seam of what was added is sharp all along."""
+    yield from groove(screen, 16)
+    stroke.tool(screen, "riffler.add")
+    stroke.settings().depth = 2.5
+    yield 0.3
+    before, whole = len(lessons.messages(screen)), stroke.volume().to_bytes()
+    yield from groove(screen, 16)
+    assert CUT_OFF in told(screen, before), told(screen, before)
+    screen.key("Z", ctrl=True)
+    yield lambda: stroke.volume().to_bytes() == whole
+    yield 0.5
+    stroke.module("bl.live").end_all()
+    yield 0.3
+    mesh, mm, wanted = sculpt().data, sculpt().data.riffler.mm_per_unit, box() + 6
+    inside = support.coordinates(mesh) * mm
+    inside = inside[(inside[:, 2] > 1) & (inside[:, 2] < 19.4) & (np.abs(inside[:, :2] - 30) < 29).all(axis=1)]
+    bpy.context.scene.riffler.clay.room, before = 3.0, len(lessons.messages(screen))
+    screen.area.tag_redraw()
+    yield 0.5
+    yield from lessons.press(screen, "riffler.room")
+    yield lambda: np.allclose(box(), wanted)
+    there = set(map(bytes, np.ascontiguousarray(support.coordinates(sculpt().data) * mm)))
+    assert len(inside) > 500 and all(bytes(v) in there for v in np.ascontiguousarray(inside))
+    size = stroke.module("core.units").format_size(wanted)
+    assert f"The box is {size}" in told(screen, before), told(screen, before)
+    before, stroke.settings().depth = len(lessons.messages(screen)), 0.5
+    yield from groove(screen, 4)
+    assert told(screen, before) == ""
+    stroke.module("bl.live").end_all()
+    yield 0.5
+    screen.shot("bead")
+    sharp = seam(sculpt().data, mm)
+    assert len(sharp) > 60 and sharp.mean() > 0.98, (len(sharp), sharp.mean())
+
+
+def box():
+    """Its sides, mm."""
+    return np.subtract(sculpt().data.riffler.upper, sculpt().data.riffler.lower)
+
+
+CUT_OFF = "What was put on is cut off at the stock's box: Make Room in Clay gives it more"
+
+
+def seam(mesh, mm):
+    """Of each edge in which the bead at 4 meets the top at 20: whether it is drawn sharp."""
+    co, tri = (support.coordinates(mesh) * mm).astype(float), support.triangles(mesh)
+    normals = np.cross(co[tri[:, 1]] - co[tri[:, 0]], co[tri[:, 2]] - co[tri[:, 0]])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    ends = np.sort(np.concatenate([tri[:, [0, 1]], tri[:, [1, 2]], tri[:, [2, 0]]]), axis=1)
+    order = np.lexsort(ends.T)
+    first, second = order[0::2] % len(tri), order[1::2] % len(tri)
+    bend = np.degrees(np.arccos(np.clip((normals[first] * normals[second]).sum(axis=1), -1, 1)))
+    at = co[ends[order[0::2]]]
+    side = np.sqrt(4.0**2 - 3.5**2)
+    here = (np.abs(at[:, :, 2] - 20) < 0.05).all(axis=1) & (np.abs(np.abs(at[:, :, 1] - 4) - side) < 0.3).all(axis=1)
+    here &= (np.abs(at[:, :, 0] - 30) < 12).all(axis=1) & (bend > 12)
+    if hasattr(mesh, "auto_smooth_angle"):
+        return bend[here] > np.degrees(mesh.auto_smooth_angle)
+    own, sharp = np.empty((len(mesh.edges), 2), np.int32), np.zeros(len(mesh.edges), bool)
+    mesh.edges.foreach_get("vertices", own.ravel())
+    mesh.attributes["sharp_edge"].data.foreach_get("value", sharp)
+    return sharp[np.lexsort(np.sort(own, axis=1).T)][here]
+
+
+def in_odd_states(screen):
+    """Where nothing can be made of a stroke, a popup has the sentence with the remedy, which works; where what is seen
+    is not the volume, the stroke warns as STL does."""
+    stroke.tool(screen, "riffler.carve")
+    stroke.settings().depth = 1.5
+    way = [tuple(map(int, stroke.pixel(screen, (x, 27, 20)))) for x in (15, 30, 45)]
+    sculpt().scale.z = 0
+    yield 0.3
+    whole, before = stroke.volume().to_bytes(), len(lessons.messages(screen))
+    yield from screen.drag(way)
+    yield 0.3
+    assert refusals.UNFIT[refusals.flat].replace("Sculpt", "Stock") in told(screen, before), told(screen, before)
+    assert stroke.volume().to_bytes() == whole and stroke.run() is None
+    screen.shot("flat")
+    lessons.activate(sculpt())
+    screen.to_view()
+    yield 0.5
+    screen.key("S", alt=True)  # Clear > Scale
+    yield lambda: sculpt().scale.z == 1
+    for state, sentence in ((refusals.under_a_scaled_one, refusals.SCALED), (refusals.modified, refusals.MODIFIED)):
+        state(sculpt())
+        sculpt().rotation_euler.z = 0.2
+        if sculpt().parent:
+            sculpt().parent.scale = (0.9, 0.9, 0.9)
+        yield 0.5
+        before, whole, sentence = len(lessons.messages(screen)), content(), sentence[state].replace("Sculpt", "Stock")
+        with lessons.Recorded("operators.stroke", "summary") as status:
+            yield from groove(screen, 27)
+        assert sentence in told(screen, before), told(screen, before)
+        assert stroke.volume().volume < whole and status.calls
+        stroke.module("bl.live").end_all()
+        path = support.out("modes.stl")
+        with screen.override():
+            said = support.printed(lambda path=path: bpy.ops.riffler.export_stl(filepath=path, check_existing=False))
+        assert sentence in said, said
+        sculpt().modifiers.clear()
+        sculpt().parent, sculpt().rotation_euler.z = None, 0
+        yield 0.3
+    with lessons.Recorded("operators.stroke", "summary") as status:
+        yield from groove(screen, 20, places=1, release=False)
+        stroke.press(screen, *screen.at, "RELEASE")
+        yield lambda: stroke.module("drawing.pointer").held is None
+    assert [text for _, text in status.calls if text.endswith(" in 1 move")], status.calls
+    stroke.module("bl.live").end_all()
+
+
+def content():
+    return stroke.volume().volume
+
+
+def of_odd_sizes(screen):
+    """Finer halves the pitch, and the field follows; a pitch or a room of 10⁹ mm is refused by a popup."""
+    clay = bpy.context.scene.riffler.clay
+    clay.pitch = 2.0
+    screen.area.tag_redraw()
+    yield 0.5
+    yield from lessons.press(screen, "riffler.resample", "pitch=0.25")
+    yield lambda: sculpt().data.riffler.pitch == 0.25
+    assert clay.pitch == 0.25
+    whole, faces = stroke.volume().to_bytes(), len(sculpt().data.polygons)
+    for field, name, share, words in (
+        ("pitch", "riffler.resample", 0.8, "longer than every side of the box"),
+        ("room", "riffler.room", 0.75, "take a coarser pitch or a smaller box"),
+    ):
+        setattr(clay, field, 1e9)
+        screen.area.tag_redraw()
+        yield 0.5
+        before = len(lessons.messages(screen))
+        yield from lessons.press(screen, name, share=share)
+        yield lambda before=before: len(lessons.messages(screen)) > before
+        assert words in told(screen, before), told(screen, before)
+        assert stroke.volume().to_bytes() == whole and len(sculpt().data.polygons) == faces
+    screen.shot("sizes")

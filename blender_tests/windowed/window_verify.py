@@ -11,6 +11,7 @@ import support
 
 HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
+lessons = harness.load(HERE / "lessons.py")
 verify = harness.load(HERE.parent / "headless" / "test_verify.py")
 
 
@@ -104,6 +105,8 @@ def verified(screen, stock):
     yield lambda: not bpy.context.window_manager.riffler.running
     assert verify.kinds() == ["gouge"] and support.is_hidden(stock)
     index = 0
+    kind, size, at, *place = verify.findings()[0]["title"].split()  # what the list's lines begin with
+    assert (kind, at) == ("Gouge", "at") and 0 < float(size) < 1 and len(place) == 3, verify.findings()[0]
     with screen.override():
         bpy.ops.riffler.finding_go("INVOKE_DEFAULT", of="VERIFY", index=index)
     yield 1.0
@@ -127,3 +130,20 @@ def verified(screen, stock):
         bpy.ops.riffler.verify_clear("EXEC_DEFAULT", True)
     yield 0.5
     assert not support.is_hidden(stock) and screen.area.spaces.active.shading.color_type == "MATERIAL"
+    yield from on_the_plans_machine(screen)
+
+
+def on_the_plans_machine(screen):
+    """Verify takes the machine that is chosen for the plan; of one that cannot lean so far the finding begins so."""
+    bpy.context.scene.riffler.plan.post = "linuxcnc-xyzac"
+    own = bpy.context.scene.riffler.machines.of("linuxcnc-xyzac")
+    own.rot_point = (0, 0, -40)
+    file = {"source": "FILE", "filepath": verify.saved(bpy.data.objects["Riffler Plan"]), "machine": "linuxcnc-xyzac"}
+    for limit, what, found in ((90, {"source": "PLAN"}, []), (10, file, ["machine"])):
+        own.limits_a, log = (-limit, limit), len(lessons.messages(screen))
+        with screen.override():
+            assert bpy.ops.riffler.verify("INVOKE_DEFAULT", True, **what) == {"RUNNING_MODAL"}
+        yield lambda: not bpy.context.window_manager.riffler.running
+        said = "\n".join(lessons.messages(screen)[log:])
+        assert verify.kinds() == found and said and "machine was given" not in said, (verify.kinds(), said)
+    assert verify.findings()[0]["title"].startswith("Out of reach at ")

@@ -2,6 +2,7 @@
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_report.hpp"
+#include "bindings/verify_arguments.hpp"
 #include "verify/remote.hpp"
 #include "verify/verify_plan.hpp"
 
@@ -21,7 +22,7 @@ std::span<const std::uint8_t> to_span(const py::bytes& bytes) {
 
 class SharedPlan : Guarded {
  public:
-  explicit SharedPlan(std::unique_ptr<Verification> v) : verification_(std::move(v)), plan_(*verification_) {}
+  SharedPlan(VerifyArguments arguments, const Progress& progress) : plan_(std::move(arguments), progress) {}
 
   /// f(plan) without the GIL.
   template <class F>
@@ -32,7 +33,6 @@ class SharedPlan : Guarded {
   }
 
  private:
-  std::unique_ptr<Verification> verification_;
   VerifyPlan plan_;
 };
 
@@ -75,23 +75,11 @@ void bind_worker(py::module_& m) {
 
 void bind_cluster(py::module_& m) {
   bind_worker(m);
-  py::class_<SharedPlan>(m, "VerifyPlan", "A verification whose slabs run elsewhere; arguments as of riffler.verify.")
-      .def(py::init([](SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
-                       const py::object& tools, double tolerance, double gouge_tolerance,
-                       const std::optional<double>& rest_tolerance, double rapid_feed,
-                       const std::optional<std::string>& machine, const py::object& machine_options,
-                       const py::object& machine_frame, const py::object& progress) {
-             const VerifyArguments arguments =
-                 to_verify_arguments(stock, part_mesh, fixtures, tools,
-                                     to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine,
-                                                       machine_options, machine_frame));
-             return std::make_unique<SharedPlan>(make_verification_here(arguments, to_progress(progress)));
-           }),
-           py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
-           py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
-           py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("machine") = py::none(),
-           py::arg("machine_options") = py::none(), py::arg("machine_frame") = py::none(),
-           py::arg("progress") = py::none())
+  py::class_<SharedPlan> bound(m, "VerifyPlan",
+                               "A verification whose slabs run elsewhere; arguments as of riffler.verify.");
+  define_with_arguments(
+      [&](const auto&... arguments) { bound.def(py::init(with_arguments<>(&make_of<SharedPlan>)), arguments...); });
+  bound
       .def("add", &add, py::arg("program"), py::arg("progress") = py::none(),
            "List of (slab, number of moves, bytes) of the chunk: what can touch each slab.")
       .def(

@@ -4,107 +4,21 @@
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_report.hpp"
 #include "bindings/task.hpp"
-#include "dexel/from_mesh/from_mesh.hpp"
-#include "nc/read/reader.hpp"
+#include "bindings/verify_arguments.hpp"
+#include "verify/slab_run.hpp"
+#include "verify/verification.hpp"
 
 namespace riffler {
 
 namespace {
 
 struct SharedVerification : Guarded {
-  explicit SharedVerification(std::unique_ptr<Verification> v) : verification(std::move(v)) {}
-  std::unique_ptr<Verification> verification;
+  SharedVerification(VerifyArguments arguments, const Progress& progress)
+      : verification(std::move(arguments), progress) {}
+  Verification verification;
 };
 
-std::map<int, Tool> to_tools(const py::object& object) {
-  std::map<int, Tool> out;
-  if (object.is_none()) return out;
-  if (!py::isinstance<py::dict>(object)) throw py::value_error("tools must be a dict: number to Tool");
-  for (const auto& [key, value] : py::cast<py::dict>(object)) {
-    if (!py::isinstance<py::int_>(key) || !py::isinstance<Tool>(value) || py::cast<long long>(key) < 0 ||
-        py::cast<long long>(key) > std::numeric_limits<int>::max())
-      throw py::value_error("tools must be a dict: number to Tool");
-    out.emplace(py::cast<int>(key), py::cast<const Tool&>(value));
-  }
-  return out;
-}
-
-std::string fixture_name(std::size_t k) {
-  return "fixtures, number " + std::to_string(k);
-}
-
-using Fixture = std::variant<Volume, std::shared_ptr<const Mesh>>;
-
-std::vector<Fixture> to_fixtures(const py::object& object) {
-  std::vector<Fixture> out;
-  if (object.is_none()) return out;
-  if (py::isinstance<SharedVolume>(object) || py::isinstance<Mesh>(object))
-    throw py::value_error("fixtures must be a list of Volume or Mesh, not one of them");
-  for (const py::handle& item : py::cast<py::iterable>(object)) {
-    if (py::isinstance<SharedVolume>(item))
-      out.push_back(Reading(py::cast<SharedVolume&>(item)).volume.snapshot());
-    else if (py::isinstance<Mesh>(item))
-      out.push_back(py::cast<std::shared_ptr<Mesh>>(item));
-    else
-      throw py::value_error(fixture_name(out.size()) + ": a Volume or a Mesh expected");
-  }
-  return out;
-}
-
-/// Volumes as they are; meshes at the stock's pitch.
-std::vector<Volume> to_volumes(const std::vector<Fixture>& fixtures, double pitch, const Progress& progress) {
-  std::vector<Volume> out;
-  for (std::size_t k = 0; k < fixtures.size(); ++k) {
-    if (const Volume* volume = std::get_if<Volume>(&fixtures[k])) {
-      out.push_back(volume->snapshot());
-      continue;
-    }
-    const Mesh& mesh = *std::get<std::shared_ptr<const Mesh>>(fixtures[k]);
-    try {
-      validate(mesh);
-      const auto n = static_cast<double>(fixtures.size()), done = static_cast<double>(k);
-      out.push_back(from_mesh(mesh, {bounds(mesh), pitch, "z"}, part(progress, done / n, (done + 1) / n)));
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fixture_name(k) + ": " + error.what());
-    }
-  }
-  return out;
-}
-
 }  // namespace
-
-VerifyOptions to_verify_options(double tolerance, double gouge_tolerance, const std::optional<double>& rest_tolerance,
-                                double rapid_feed, const std::optional<std::string>& machine,
-                                const py::object& machine_options, const py::object& machine_frame) {
-  VerifyOptions out{tolerance, gouge_tolerance, rest_tolerance, rapid_feed, {}};
-  if (machine) out.machine = MachineChoice{*machine, without_reading(to_options(machine_options))};
-  if (machine && !machine_frame.is_none())
-    std::tie(out.machine->turn, out.machine->shift) = to_affine(machine_frame, "machine_frame");
-  if (!machine && !machine_options.is_none()) throw py::value_error("machine_options: there is no machine");
-  if (!machine && !machine_frame.is_none()) throw py::value_error("machine_frame: there is no machine");
-  return out;
-}
-
-VerifyArguments to_verify_arguments(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                                    const py::object& tools, const VerifyOptions& options) {
-  std::shared_ptr<const Mesh> mesh;
-  if (!part.is_none()) {
-    if (!py::isinstance<Mesh>(part)) throw py::value_error("part_mesh must be a Mesh or None");
-    mesh = py::cast<std::shared_ptr<Mesh>>(part);
-  }
-  return {Reading(stock).volume.snapshot(), std::move(mesh), to_fixtures(fixtures), to_tools(tools), options};
-}
-
-std::unique_ptr<Verification> make_verification(const VerifyArguments& a, const Progress& progress) {
-  std::vector<Volume> fixtures = to_volumes(a.fixtures, a.stock.frame().pitch, part(progress, 0, 0.5));
-  return std::make_unique<Verification>(a.stock, a.part, std::move(fixtures), a.tools, a.options,
-                                        part(progress, 0.5, 1));
-}
-
-std::unique_ptr<Verification> make_verification_here(const VerifyArguments& arguments, const Progress& progress) {
-  const NoGil release;
-  return make_verification(arguments, progress);
-}
 
 std::shared_ptr<SharedReport> share(VerifyReport&& report) {
   return std::make_shared<SharedReport>(std::move(report));
@@ -113,37 +27,32 @@ std::shared_ptr<SharedReport> share(VerifyReport&& report) {
 namespace {
 
 /// Chunk by chunk; of how many there are nothing is known, so progress is that of each.
-VerifyReport run_stream(Verification& verification, const py::iterable& chunks, const Progress& progress) {
-  VerifyStream stream(verification);
+VerifyReport run_stream(SlabRun& run, const py::iterable& chunks, const Progress& progress) {
   for (const py::handle& item : chunks) {
     if (!py::isinstance<Program>(item)) throw py::value_error("program must be a Program or an iterable of Programs");
     const Program& chunk = py::cast<const Program&>(item);
     const NoGil release;
-    stream.add(chunk, progress);
+    run.feed(chunk, progress);
   }
   const NoGil release;
-  return stream.finish(progress);
+  return run.finish(progress);
 }
 
-VerifyReport run_whole(Verification& verification, const Program& program, const Progress& progress) {
-  VerifyStream stream(verification);
-  stream.add(program, part(progress, 0, 0.9));
-  return stream.finish(part(progress, 0.9, 1));
+VerifyReport run_whole(SlabRun& run, const Program& program, const Progress& progress) {
+  run.feed(program, part(progress, 0, 0.9));
+  return run.finish(part(progress, 0.9, 1));
 }
 
-auto verify(const py::object& program, SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
-            const py::object& tools, double tolerance, double gouge_tolerance,
-            const std::optional<double>& rest_tolerance, double rapid_feed, const std::optional<std::string>& machine,
-            const py::object& machine_options, const py::object& machine_frame, const py::object& progress) {
-  VerifyArguments arguments =
-      to_verify_arguments(stock, part_mesh, fixtures, tools,
-                          to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine,
-                                            machine_options, machine_frame));
+/// The engine, in the first tenth of the progress.
+std::unique_ptr<SlabRun> make_run(const GivenArguments& given, const Progress& progress) {
+  return std::make_unique<SlabRun>(to_arguments(given, part(progress, 0, 0.05)), part(progress, 0.05, 0.1));
+}
+
+auto verify(const py::object& program, GivenArguments given, const py::object& progress) {
   if (py::isinstance<Program>(program)) {
-    const auto work = [arguments = std::move(arguments),
+    const auto work = [given = std::move(given),
                        whole = py::cast<std::shared_ptr<Program>>(program)](const Progress& listener) {
-      const auto verification = make_verification(arguments, part(listener, 0, 0.1));
-      return run_whole(*verification, *whole, part(listener, 0.1, 1));
+      return run_whole(*make_run(given, listener), *whole, part(listener, 0.1, 1));
     };
     return long_call(progress, work, &share);
   }
@@ -151,9 +60,12 @@ auto verify(const py::object& program, SharedVolume& stock, const py::object& pa
     throw py::value_error("program must be a Program or an iterable of Programs");
   if (is_task_request(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
   const Progress listener = to_progress(progress);
-  const auto verification = make_verification_here(arguments, part(listener, 0, 0.1));
-  VerifyReport report =
-      run_stream(*verification, py::reinterpret_borrow<py::iterable>(program), part(listener, 0.1, 1));
+  std::unique_ptr<SlabRun> run;
+  {
+    const NoGil release;
+    run = make_run(given, listener);
+  }
+  VerifyReport report = run_stream(*run, py::reinterpret_borrow<py::iterable>(program), part(listener, 0.1, 1));
   return ValueOrTask<std::shared_ptr<SharedReport>>(py::cast(share(std::move(report))));
 }
 
@@ -161,7 +73,7 @@ auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<
          const py::object& progress) {
   const auto work = [self, program](const Progress& listener) {
     const OneCaller only(*self, "the verification");
-    return self->verification->run(*program, listener);
+    return self->verification.run(*program, listener);
   };
   return long_call(progress, work, &share);
 }
@@ -332,12 +244,9 @@ of the run before were taken; ``snapshots_used``; ``probes``, batches tried with
 
 void bind_verify(py::module_& m) {
   bind_report(m);
-  m.def("verify", &verify, py::arg("program"), py::arg("stock_volume"), py::arg("part_mesh") = py::none(),
-        py::arg("fixtures") = py::tuple(), py::kw_only(), py::arg("tools") = py::none(), py::arg("tolerance") = 0.01,
-        py::arg("gouge_tolerance") = 0.05, py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0,
-        py::arg("machine") = py::none(), py::arg("machine_options") = py::none(), py::arg("machine_frame") = py::none(),
-        py::arg("progress") = py::none(),
-        R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
+  define_with_arguments([&](const auto&... arguments) {
+    m.def("verify", with_arguments<py::object>(&verify), py::arg("program"), arguments...,
+          R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
 
 ``program``: a Program, or an iterable of Programs, each of which begins with the row at which the one before ended;
 nothing is kept of them but 16 bytes a row. ``part_mesh``: Mesh, for gouges and rest material. ``fixtures``: list of
@@ -354,31 +263,22 @@ Rapids are cut too: a crash takes material. Shank and holder must stay clear of 
 there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
 or beside it, nobody knows what the spindle meets: a finding "unknown". ValueError naming number, row and line of a tool
 whose shape is not known. ``progress``: called with the finished share, of each chunk anew; returning False cancels.)");
-  py::class_<SharedVerification, std::shared_ptr<SharedVerification>>(
+  });
+  py::class_<SharedVerification, std::shared_ptr<SharedVerification>> verification(
       m, "Verification",
       R"(Verifies a program again and again while it is edited.
 
 Arguments are those of ``verify``. ``run`` of a program that is like the one before does again only what differs: rows
 before the first difference come from snapshots, and parts of the stock that no differing move can touch stay as they
-are. The report is that of a fresh run, bit for bit.)")
-      .def(py::init([](SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
-                       const py::object& tools, double tolerance, double gouge_tolerance,
-                       const std::optional<double>& rest_tolerance, double rapid_feed,
-                       const std::optional<std::string>& machine, const py::object& machine_options,
-                       const py::object& machine_frame, const py::object& progress) {
-             const VerifyArguments arguments =
-                 to_verify_arguments(stock, part_mesh, fixtures, tools,
-                                     to_verify_options(tolerance, gouge_tolerance, rest_tolerance, rapid_feed, machine,
-                                                       machine_options, machine_frame));
-             return std::make_shared<SharedVerification>(make_verification_here(arguments, to_progress(progress)));
-           }),
-           py::arg("stock_volume"), py::arg("part_mesh") = py::none(), py::arg("fixtures") = py::tuple(), py::kw_only(),
-           py::arg("tools") = py::none(), py::arg("tolerance") = 0.01, py::arg("gouge_tolerance") = 0.05,
-           py::arg("rest_tolerance") = py::none(), py::arg("rapid_feed") = 10000.0, py::arg("machine") = py::none(),
-           py::arg("machine_options") = py::none(), py::arg("machine_frame") = py::none(),
-           py::arg("progress") = py::none())
-      .def("run", &run, py::arg("program").none(false), py::arg("progress") = py::none(),
-           "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
+are. The report is that of a fresh run, bit for bit.)");
+  define_with_arguments([&](const auto&... arguments) {
+    verification.def(py::init(with_arguments<>([](const GivenArguments& given, const py::object& progress) {
+                       return std::shared_ptr<SharedVerification>(make_of<SharedVerification>(given, progress));
+                     })),
+                     arguments...);
+  });
+  verification.def("run", &run, py::arg("program").none(false), py::arg("progress") = py::none(),
+                   "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
 }
 
 }  // namespace riffler

@@ -23,6 +23,8 @@ namespace py = pybind11;
 
 /// The exceptions, and how others become Python's.
 void bind_errors(py::module_& m);
+/// The same translation for another extension module: `core` is riffler._core, which has the exceptions.
+void translate_errors(const py::module_& core);
 /// Of all classes of the module: an object that `__new__` made without `__init__` is a TypeError wherever it is used.
 void refuse_objects_without_init(const py::module_& m);
 void bind_files(py::module_& m);
@@ -45,7 +47,6 @@ void bind_pencil(py::module_& m);
 void bind_strategies(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_tasks(py::module_& m);
-void bind_bench(py::module_& m);
 
 /// A numpy array of doubles in C order; any array-like converts.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;

@@ -85,19 +85,21 @@ void* refuse_unmade(std::size_t) {
 }  // namespace
 
 void bind_errors(py::module_& m) {
-  format_error = py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError);
-  format_error.attr("__doc__") =
+  const auto format = py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError);
+  format.attr("__doc__") =
       "A file that is not what it should be: names the file, the line or byte, and what was expected.";
-  cancelled = py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError);
-  cancelled.attr("__doc__") = "A long call that its progress callback stopped; the object is as it was before.";
+  const auto cancel = py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError);
+  cancel.attr("__doc__") = "A long call that its progress callback stopped; the object is as it was before.";
+  translate_errors(m);
+}
+
+void translate_errors(const py::module_& core) {
+  format_error = py::object(core.attr("FormatError")), cancelled = py::object(core.attr("Cancelled"));
   py::register_local_exception_translator(&translate);
 }
 
 void refuse_objects_without_init(const py::module_& m) {
   for (const auto& [name, value] : py::cast<py::dict>(m.attr("__dict__"))) {
-    if (py::isinstance<py::module_>(value) &&
-        py::str(value.attr("__name__")).cast<std::string>().starts_with("riffler."))
-      refuse_objects_without_init(py::reinterpret_borrow<py::module_>(value));
     if (!PyType_Check(value.ptr())) continue;
     if (auto* const type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value.ptr())))
       type->operator_new = &refuse_unmade;

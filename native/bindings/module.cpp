@@ -30,6 +30,5 @@ PYBIND11_MODULE(_core, m) {
   bind_pencil(m);
   bind_strategies(m);
   bind_plan(m);
-  bind_bench(m);
   refuse_objects_without_init(m);
 }

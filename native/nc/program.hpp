@@ -21,14 +21,18 @@ class RowError : public std::invalid_argument {
  public:
   RowError(std::string_view name, std::size_t row, const std::string& what)
       : std::invalid_argument(std::string(name) + ", row " + std::to_string(row) + ": " + what),
+        name_(name),
         row_(row),
         reason_(what) {}
 
+  /// Of the argument.
+  const std::string& name() const { return name_; }
   std::size_t row() const { return row_; }
   /// Without name and row.
   const std::string& reason() const { return reason_; }
 
  private:
+  std::string name_;
   std::size_t row_;
   std::string reason_;
 };

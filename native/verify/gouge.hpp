@@ -41,7 +41,6 @@ class Target {
   /// volume of.
   Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress = {});
 
-  const Volume& volume() const { return volume_; }
   const PartSurface& surface() const { return surface_; }
   const Box3& bounds() const { return bounds_; }
   /// The part's material in a slab of the stock.

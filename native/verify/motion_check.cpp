@@ -9,7 +9,7 @@
 #include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "nc/links.hpp"
-#include "verify/verification.hpp"
+#include "verify/slab_run.hpp"
 
 namespace riffler {
 
@@ -97,8 +97,9 @@ void refuse_strikes(const Program& program, const MachineMotion& motion, const V
   }
   VerifyOptions options;
   options.tolerance = tolerance;
-  Verification verification(stock.snapshot(), nullptr, {}, {}, options, part(progress, 0, 0.2));
-  const VerifyReport report = verification.run(made, part(progress, 0.2, 1));
+  SlabRun run({.stock = stock.snapshot(), .options = options}, part(progress, 0, 0.2));
+  run.feed(made, part(progress, 0.2, 1));
+  const VerifyReport report = run.finish();
   for (const Finding& finding : report.findings) {
     if (finding.kind == Kind::Spindle) continue;
     const std::size_t row = rows[static_cast<std::size_t>(finding.row)];

@@ -72,15 +72,11 @@ std::vector<std::uint8_t> SlabWorker::run(std::span<const std::uint8_t> task,
 
   SlabResult result;
   result.report.strikes = at.strikes;
-  if (at.fixture >= 0) {
-    Grid fixture = grid;
-    put_tiles(fixture, at.slab, at.tiles);
-    simulate_fixture(fixture, at.slab, at.fixture, context_.tolerance, ready, 0, result.report, result.stats);
-    return to_packet(result);
-  }
-  result.tiles = at.tiles;
-  SlabSimulation(grid, at.slab, at.probed, context_.tolerance, judged ? &*surface_ : nullptr, std::move(at.part))
-      .run(ready, 0, result.tiles, result.report, result.stats);
+  SlabTiles tiles = at.tiles;
+  const SlabPlace place{
+      grid, at.slab, at.fixture, at.probed, context_.tolerance, judged ? &*surface_ : nullptr, std::move(at.part)};
+  simulate(place, ready, 0, tiles, result.report, result.stats);
+  if (at.fixture < 0) result.tiles = std::move(tiles);
   for (std::size_t k = 0; k < result.tiles.size(); ++k)
     if (result.tiles[k] == at.tiles[k]) result.tiles[k] = nullptr;
   return to_packet(result);

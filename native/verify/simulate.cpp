@@ -18,69 +18,94 @@ Kind kind_of(Member member) {
   return member == Member::Shank ? Kind::Shank : member == Member::Holder ? Kind::Holder : Kind::Unknown;
 }
 
-}  // namespace
+/// Cuts a slab of the stock with the moves that can touch it.
+class StockSimulation {
+ public:
+  StockSimulation(const SlabPlace& place, const Moves& moves, SlabTiles& state, SlabReport& report, VerifyStats& stats)
+      : place_(place),
+        bench_(place.grid, place.slab, place.tolerance),
+        moves_(moves),
+        state_(state),
+        report_(report),
+        stats_(stats) {}
 
-struct SlabSimulation::Strike {
-  SlabTiles state;  ///< without what the cutter had taken by then
-  Pose from, to;
+  void run(std::size_t first, const SlabSaved& saved);
+
+ private:
+  struct Touched {
+    std::size_t move;
+    Moves::Touch touch;
+  };
+  using Batch = std::span<const Touched>;
+  struct Strike {
+    SlabTiles state;  // without what the cutter had taken by then
+    Pose from, to;
+  };
+
+  void pass(Batch batch);
+  void cut(Batch batch);
+  bool alarm(Batch batch);
+  bool near_material(std::size_t move) const;
+  void find_rapids(Batch batch, std::span<const double> taken, SlabTiles before);
+  void find_strikes(const Touched& touched);
+  bool measured(std::size_t move) const;
+  bool strike(SlabTiles& state, const Probe& probe, const Touched& touched, double t0, double t1, int halvings,
+              Strike& out);
+
+  const SlabPlace& place_;
+  Workbench bench_;
+  const Moves& moves_;
+  SlabTiles& state_;
+  SlabReport& report_;
+  VerifyStats& stats_;
 };
 
-SlabSimulation::SlabSimulation(const Grid& grid, const Slab& slab, bool probed, double tolerance,
-                               const PartSurface* surface, SlabTiles part)
-    : bench_(grid, slab, tolerance),
-      probed_(probed),
-      tolerance_(tolerance),
-      surface_(surface),
-      part_(std::move(part)) {}
-
-void SlabSimulation::run(const Moves& moves, std::size_t first, SlabTiles& state, SlabReport& report,
-                         VerifyStats& stats, const Saved& saved) {
-  moves_ = &moves, state_ = &state, report_ = &report, stats_ = &stats;
+void StockSimulation::run(std::size_t first, const SlabSaved& saved) {
   // Material only gets less, so what cannot touch it now cannot touch it later.
-  const Box3 box = material_box(bench_.grid(), bench_.slab(), state);
+  const Box3 box = material_box(bench_.grid(), bench_.slab(), state_);
   if (box.empty()) return;
   std::vector<Touched> touched;
   std::vector<std::size_t> cuts;
-  moves.for_each(first, box, [&](std::size_t i, Moves::Touch touch) {
-    if (!probed_) touch = static_cast<Moves::Touch>(touch & Moves::Cutter);
+  moves_.for_each(first, box, [&](std::size_t i, Moves::Touch touch) {
+    if (!place_.probed) touch = static_cast<Moves::Touch>(touch & Moves::Cutter);
     if (touch == Moves::None) return;
     touched.push_back({i, touch});
     if (touch & Moves::Cutter) cuts.push_back(i);
   });
-  stats.skipped += moves.size() - first - touched.size();
+  stats_.skipped += moves_.size() - first - touched.size();
   if (touched.empty()) return;
-  ++stats.slabs;
-  const SlabTiles before = state;
+  ++stats_.slabs;
+  const SlabTiles before = state_;
   for (std::size_t begin = 0; begin < touched.size();) {
     std::size_t end = begin + 1;
     while (end < touched.size() && end - begin < kBatch &&
-           moves.tool(touched[end].move) == moves.tool(touched[begin].move))
+           moves_.tool(touched[end].move) == moves_.tool(touched[begin].move))
       ++end;
     pass(Batch(touched).subspan(begin, end - begin));
-    if (saved) saved(moves.row(touched[end - 1].move), state);
+    if (saved) saved(moves_.row(touched[end - 1].move), state_);
     begin = end;
   }
-  if (surface_) find_gouges(*surface_, part_, bench_, before, state, moves, cuts, report.events);
+  if (place_.surface) find_gouges(*place_.surface, place_.part, bench_, before, state_, moves_, cuts, report_.events);
 }
 
 /// Shank and holder are tried on the material as it is before the batch: what they do not touch now they never do.
 /// Otherwise the batch is halved, down to the move.
-void SlabSimulation::pass(Batch batch) {
+void StockSimulation::pass(Batch batch) {
   if (!alarm(batch)) return cut(batch);
   if (batch.size() == 1) {
     find_strikes(batch[0]);
     return cut(batch);
   }
-  ++stats_->bisections;
+  ++stats_.bisections;
   pass(batch.first(batch.size() / 2));
   pass(batch.subspan(batch.size() / 2));
 }
 
-bool SlabSimulation::near_material(std::size_t move) const {
+bool StockSimulation::near_material(std::size_t move) const {
   const Grid& grid = bench_.grid();
   const Slab& slab = bench_.slab();
-  for (const Rod& rod : moves_->shapes(move).probe_rods) {
-    const Box3 box = to_local(grid.axis(), moves_->swept(rod, move));
+  for (const Rod& rod : moves_.shapes(move).probe_rods) {
+    const Box3 box = to_local(grid.axis(), moves_.swept(rod, move));
     const auto tile = [&](double at, double lower, int low, int high) {
       return static_cast<int>(std::clamp(std::floor((at - lower) / (grid.pitch() * kTileSide)),
                                          static_cast<double>(low), static_cast<double>(high)));
@@ -92,55 +117,55 @@ bool SlabSimulation::near_material(std::size_t move) const {
               v1 = tile(box.upper.y + half, grid.box().lower.y, slab.v0, slab.v1 - 1);
     for (int u = u0; u <= u1; ++u)
       for (int v = v0; v <= v1; ++v) {
-        const Tile& t = *(*state_)[static_cast<std::size_t>((u - slab.u0) * (slab.v1 - slab.v0) + v - slab.v0)];
+        const Tile& t = *state_[static_cast<std::size_t>((u - slab.u0) * (slab.v1 - slab.v0) + v - slab.v0)];
         if (!t.spans.empty() && t.reach.near < box.upper.z && t.reach.far > box.lower.z) return true;
       }
   }
   return false;
 }
 
-bool SlabSimulation::alarm(Batch batch) {
+bool StockSimulation::alarm(Batch batch) {
   std::vector<std::uint32_t> ends;
   for (const Touched& t : batch)
-    if ((t.touch & Moves::Probes) && near_material(t.move)) ends.push_back(moves_->end(t.move));
+    if ((t.touch & Moves::Probes) && near_material(t.move)) ends.push_back(moves_.end(t.move));
   if (ends.empty()) return false;
-  ++stats_->probes;
-  stats_->probed_moves += ends.size();
-  return bench_.touches(*state_, moves_->shapes(batch[0].move).small, moves_->poses(), ends);
+  ++stats_.probes;
+  stats_.probed_moves += ends.size();
+  return bench_.touches(state_, moves_.shapes(batch[0].move).small, moves_.poses(), ends);
 }
 
-void SlabSimulation::cut(Batch batch) {
+void StockSimulation::cut(Batch batch) {
   std::vector<Touched> cuts;
   std::vector<std::uint32_t> ends;
   for (const Touched& t : batch)
-    if (t.touch & Moves::Cutter) cuts.push_back(t), ends.push_back(moves_->end(t.move));
+    if (t.touch & Moves::Cutter) cuts.push_back(t), ends.push_back(moves_.end(t.move));
   if (cuts.empty()) return;
-  stats_->moves += cuts.size();
-  SlabTiles before = *state_;
-  const std::vector<double> taken = bench_.cut(*state_, moves_->shapes(cuts[0].move).cutter, moves_->poses(), ends);
-  if (!probed_) return;
+  stats_.moves += cuts.size();
+  SlabTiles before = state_;
+  const std::vector<double> taken = bench_.cut(state_, moves_.shapes(cuts[0].move).cutter, moves_.poses(), ends);
+  if (!place_.probed) return;
   for (std::size_t k = 0; k < cuts.size(); ++k)
-    if (taken[k] > 0) report_->removed.emplace_back(moves_->row(cuts[k].move), taken[k]);
+    if (taken[k] > 0) report_.removed.emplace_back(moves_.row(cuts[k].move), taken[k]);
   find_rapids(cuts, taken, std::move(before));
 }
 
 /// A rapid that takes more than the tolerance from some ray is in material; less may be rounding, or what a turning
 /// move before it left of its surface. To know what it took it is cut by itself.
-void SlabSimulation::find_rapids(Batch cuts, std::span<const double> taken, SlabTiles before) {
-  const double least = tolerance_ * bench_.grid().least_area();
+void StockSimulation::find_rapids(Batch cuts, std::span<const double> taken, SlabTiles before) {
+  const double least = place_.tolerance * bench_.grid().least_area();
   std::vector<std::uint32_t> ends;  // not cut yet
   for (std::size_t k = 0; k < cuts.size(); ++k) {
     const std::size_t i = cuts[k].move;
-    if (!moves_->rapid(i) || !(taken[k] > least)) {
-      ends.push_back(moves_->end(i));
+    if (!moves_.rapid(i) || !(taken[k] > least)) {
+      ends.push_back(moves_.end(i));
       continue;
     }
-    bench_.cut(before, moves_->shapes(i).cutter, moves_->poses(), ends);
+    bench_.cut(before, moves_.shapes(i).cutter, moves_.poses(), ends);
     ends.clear();
-    SlabTiles after = bench_.after(before, moves_->shapes(i).cutter, moves_->from(i), moves_->to(i));
+    SlabTiles after = bench_.after(before, moves_.shapes(i).cutter, moves_.from(i), moves_.to(i));
     const Loss loss = loss_of(bench_.grid(), bench_.slab(), before, after);
-    if (loss.longest > tolerance_)
-      report_->events.push_back({Kind::Rapid, Member::Cutter, -1, moves_->row(i), taken[k], loss.longest, loss.point});
+    if (loss.longest > place_.tolerance)
+      report_.events.push_back({Kind::Rapid, Member::Cutter, -1, moves_.row(i), taken[k], loss.longest, loss.point});
     before = std::move(after);
   }
 }
@@ -148,20 +173,20 @@ void SlabSimulation::find_rapids(Batch cuts, std::span<const double> taken, Slab
 /// Whether the probe meets material that the cutter has not taken yet when it comes there. Clear of the material before
 /// the move: no. In what the cutter leaves after it: yes. Between them, as in a plunge with a thin shank, the halves of
 /// the move are looked at, one after the other.
-bool SlabSimulation::strike(SlabTiles& state, const Probe& probe, const Touched& touched, double t0, double t1,
-                            int halvings, Strike& out) {
+bool StockSimulation::strike(SlabTiles& state, const Probe& probe, const Touched& touched, double t0, double t1,
+                             int halvings, Strike& out) {
   const std::size_t move = touched.move;
-  const Motion motion(moves_->from(move), moves_->to(move));
+  const Motion motion(moves_.from(move), moves_.to(move));
   const Pose poses[] = {t0 > 0 ? motion.at(t0) : motion.from(), t1 < 1 ? motion.at(t1) : motion.to()};
   const std::uint32_t end = 1;
-  ++stats_->probes, ++stats_->probed_moves;
+  ++stats_.probes, ++stats_.probed_moves;
   const bool struck = bench_.touches(state, probe.small, poses, {&end, 1});
   const bool cuts = touched.touch & Moves::Cutter;
   if (!cuts) {
     if (struck) out = {state, poses[0], poses[1]};
     return struck;
   }
-  SlabTiles after = bench_.after(state, moves_->shapes(move).cutter, poses[0], poses[1]);
+  SlabTiles after = bench_.after(state, moves_.shapes(move).cutter, poses[0], poses[1]);
   if (!struck) {
     state = std::move(after);
     return false;
@@ -179,43 +204,40 @@ bool SlabSimulation::strike(SlabTiles& state, const Probe& probe, const Touched&
          strike(state, probe, touched, middle, t1, halvings - 1, out);
 }
 
-void SlabSimulation::find_strikes(const Touched& touched) {
-  for (const Probe& probe : moves_->shapes(touched.move).probes) {
-    SlabTiles state = *state_;
+void StockSimulation::find_strikes(const Touched& touched) {
+  for (const Probe& probe : moves_.shapes(touched.move).probes) {
+    SlabTiles state = state_;
     Strike found;
     if (!strike(state, probe, touched, 0, 1, kHalvings, found)) continue;
-    Loss loss{0, 0, moves_->to(touched.move).tip};
+    Loss loss{0, 0, moves_.to(touched.move).tip};
     if (measured(touched.move))
       loss = loss_of(bench_.grid(), bench_.slab(), found.state,
                      bench_.after(found.state, probe.real, found.from, found.to));
-    ++report_->strikes;
-    report_->events.push_back(
-        {kind_of(probe.member), probe.member, -1, moves_->row(touched.move), loss.volume, loss.longest, loss.point});
+    ++report_.strikes;
+    report_.events.push_back(
+        {kind_of(probe.member), probe.member, -1, moves_.row(touched.move), loss.volume, loss.longest, loss.point});
   }
 }
 
 /// To measure what is in the way costs more than to know that something is, and where a holder is in material it is
 /// there for many moves. After the first strikes some are left out, by a number that edits elsewhere do not change.
-bool SlabSimulation::measured(std::size_t move) const {
-  if (report_->strikes < kMeasured) return true;
-  const Vec3& tip = moves_->to(move).tip;
+bool StockSimulation::measured(std::size_t move) const {
+  if (report_.strikes < kMeasured) return true;
+  const Vec3& tip = moves_.to(move).tip;
   std::uint64_t mixed = 0;
   for (int i = 0; i < 3; ++i) mixed = (mixed ^ std::bit_cast<std::uint64_t>(tip[i])) * 0x9E3779B97F4A7C15;
   return mixed >> 60 == 0;
 }
 
-namespace {
-
 /// The moves' whole tool on one slab of a fixture.
 class FixtureProbe {
  public:
-  FixtureProbe(const Grid& grid, const Slab& slab, std::int32_t fixture, double tolerance, const Moves& moves,
-               SlabReport& report, VerifyStats& stats)
-      : bench_(grid, slab, tolerance),
-        state_(tiles_of(grid, slab)),
-        fixture_(fixture),
-        tolerance_(tolerance),
+  FixtureProbe(const SlabPlace& place, const Moves& moves, const SlabTiles& state, SlabReport& report,
+               VerifyStats& stats)
+      : place_(place),
+        bench_(place.grid, place.slab, place.tolerance),
         moves_(moves),
+        state_(state),
         report_(report),
         stats_(stats) {}
 
@@ -255,8 +277,8 @@ class FixtureProbe {
     const auto look = [&](Kind kind, Member member, std::span<const ConvexGroup> shape) {
       const Loss loss =
           loss_of(bench_.grid(), bench_.slab(), state_, bench_.after(state_, shape, moves_.from(i), moves_.to(i)));
-      if (!(loss.longest > (member == Member::Cutter ? tolerance_ : 0))) return false;
-      report_.events.push_back({kind, member, fixture_, moves_.row(i), loss.volume, loss.longest, loss.point});
+      if (!(loss.longest > (member == Member::Cutter ? place_.tolerance : 0))) return false;
+      report_.events.push_back({kind, member, place_.fixture, moves_.row(i), loss.volume, loss.longest, loss.point});
       return true;
     };
     bool known = look(Kind::Fixture, Member::Cutter, tool.cutter);
@@ -268,20 +290,22 @@ class FixtureProbe {
     }
   }
 
+  const SlabPlace& place_;
   Workbench bench_;
-  SlabTiles state_;
-  std::int32_t fixture_;
-  double tolerance_;
   const Moves& moves_;
+  const SlabTiles& state_;
   SlabReport& report_;
   VerifyStats& stats_;
 };
 
 }  // namespace
 
-void simulate_fixture(const Grid& grid, const Slab& slab, std::int32_t fixture, double tolerance, const Moves& moves,
-                      std::size_t first, SlabReport& report, VerifyStats& stats) {
-  FixtureProbe(grid, slab, fixture, tolerance, moves, report, stats).run(first);
+void simulate(const SlabPlace& place, const Moves& moves, std::size_t first, SlabTiles& tiles, SlabReport& report,
+              VerifyStats& stats, const SlabSaved& saved) {
+  if (place.fixture < 0)
+    StockSimulation(place, moves, tiles, report, stats).run(first, saved);
+  else
+    FixtureProbe(place, moves, tiles, report, stats).run(first);
 }
 
 }  // namespace riffler

@@ -1,7 +1,6 @@
 #include "verify/slab.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace riffler {
 
@@ -34,18 +33,6 @@ SlabTiles tiles_of(const Grid& grid, const Slab& slab) {
 
 void put_tiles(Grid& grid, const Slab& slab, const SlabTiles& tiles) {
   for (std::size_t k = 0; k < tiles.size(); ++k) grid.set_tile(slab.place(grid, k), tiles[k]);
-}
-
-Volume part_of(const Volume& volume, const Slab& slab) {
-  Volume part(volume.frame());
-  put_tiles(part.grids().at(slab.grid), slab, tiles_of(volume.grids().at(slab.grid), slab));
-  return part;
-}
-
-void merge(Volume& whole, const Volume& part, const Slab& slab) {
-  if (!(whole.frame() == part.frame())) throw std::invalid_argument("the slab belongs to a volume of another grid");
-  put_tiles(whole.grids().at(slab.grid), slab, tiles_of(part.grids().at(slab.grid), slab));
-  whole.touch();
 }
 
 Box3 material_box(const Grid& grid, const Slab& slab, const SlabTiles& tiles) {

@@ -31,11 +31,6 @@ using SlabTiles = std::vector<std::shared_ptr<const Tile>>;
 SlabTiles tiles_of(const Grid& grid, const Slab& slab);
 void put_tiles(Grid& grid, const Slab& slab, const SlabTiles& tiles);
 
-/// The slab alone: a volume of the same frame, so that rays have the same coordinates, empty everywhere else.
-Volume part_of(const Volume& volume, const Slab& slab);
-/// Puts the slab's tiles of `part` into `whole`. std::invalid_argument where the frames differ.
-void merge(Volume& whole, const Volume& part, const Slab& slab);
-
 /// Box of what a slab holds, world frame: its rays by half a pitch, its spans exactly. Empty without material.
 Box3 material_box(const Grid& grid, const Slab& slab, const SlabTiles& tiles);
 

@@ -25,7 +25,7 @@ struct SlabSnapshot {
 
 /// Copies share their tiles.
 struct SlabState {
-  SlabTiles tiles;  ///< of the stock only
+  SlabTiles tiles;
   SlabReport report;
   std::vector<SlabSnapshot> snapshots;   ///< by rows; the first is the stock itself, row 0
   std::uint64_t spacing = 1, since = 0;  ///< batches between snapshots

@@ -1,27 +1,26 @@
 // A verification whose slabs are simulated elsewhere: what has to be sent, and what becomes of what comes back.
 #pragma once
 
-#include "verify/program_rows.hpp"
 #include "verify/slab_packets.hpp"
-#include "verify/verification.hpp"
+#include "verify/slab_run.hpp"
 
 namespace riffler {
 
 /// First the program goes through `add`, chunk by chunk; then every slab that has moves goes to a SlabWorker; then
-/// `finish`. The report is that of VerifyStream, bit for bit. Keeps 24 bytes a row (feed moves under a spindle that
+/// `finish`. The report is that of SlabRun::feed, bit for bit. Keeps 24 bytes a row (feed moves under a spindle that
 /// stands: 32 more) and what slabs have found; moves go to the caller.
 class VerifyPlan {
  public:
-  /// `verification` must outlive this; its memory of runs is left alone.
-  explicit VerifyPlan(Verification& verification);
+  /// Throws std::invalid_argument naming the argument.
+  explicit VerifyPlan(VerifyArguments arguments, const Progress& progress = {});
 
   struct Share {
     std::size_t slab;
     std::size_t moves;
     std::vector<std::uint8_t> packet;
   };
-  /// The chunk's moves, for every slab that they can touch, slabs ascending. Throws as VerifyStream::add. After an
-  /// error or Cancelled this cannot be used any more.
+  /// The chunk's moves, for every slab that they can touch, slabs ascending. Throws as SlabRun::feed. After an error or
+  /// Cancelled this cannot be used any more.
   std::vector<Share> add(const Program& chunk, const Progress& progress = {});
 
   /// What a SlabWorker is made of, once all chunks are there.
@@ -36,19 +35,14 @@ class VerifyPlan {
   VerifyReport finish(const Progress& progress = {});
 
  private:
+  std::vector<Share> shares_of(const Moves& moves, const Progress& progress);
   void check_slab(std::size_t slab) const;
+  void check_result(std::size_t slab, const SlabResult& result) const;
   void merge_finished();
 
-  Verification& of_;
-  ProgramRows rows_;
-  std::vector<SlabState> slabs_;
+  SlabRun run_;
   std::vector<std::uint8_t> open_;  // of each slab: whether a result is missing
-  std::size_t merged_ = 0;          // slabs whose volumes have been added: in their order, as rounding wants it
-  std::vector<double> removed_;
-  std::vector<std::int32_t> tool_, line_;
-  std::vector<StandingMove> standing_;
-  VerifyStats stats_;
-  FollowedChunks followed_;
+  std::size_t merged_ = 0;          // slabs whose volumes have been added to the rows
 };
 
 }  // namespace riffler

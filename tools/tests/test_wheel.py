@@ -1,19 +1,22 @@
-"""What the wheel is made of is all that its build reads."""
+"""What a wheel is made of is all that its build reads."""
 
 import shutil
 import subprocess
 
+import pytest
+
 import wheel
-from shell import ROOT, VENV, tool_environment
+from shell import PYTHON, ROOT, VENV, tool_environment
 
 
-def test_the_sources_of_the_wheel_configure_where_nothing_else_lies(tmp_path):
+@pytest.mark.parametrize("distribution", [wheel.RIFFLER, wheel.BENCH], ids=lambda it: it.name)
+def test_the_sources_of_the_wheel_configure_where_nothing_else_lies(distribution, tmp_path):
     copy = tmp_path / "copy"
-    for path in wheel.sources():
+    for path in wheel.sources(distribution):
         target = copy / path.relative_to(ROOT)
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(path, target)
-    without = ["-DRIFFLER_PYTHON=OFF", "-DRIFFLER_TESTS=OFF"]
-    command = [VENV / "bin" / "cmake", "-S", copy, "-B", tmp_path / "build", *without]
+    what = ["-DRIFFLER_PYTHON=OFF", f"-DRIFFLER_BENCH_PYTHON={'ON' if distribution == wheel.BENCH else 'OFF'}"]
+    command = [VENV / "bin" / "cmake", "-S", copy, "-B", tmp_path / "build", *what, f"-DPython_EXECUTABLE={PYTHON}"]
     done = subprocess.run(command, capture_output=True, text=True, env=tool_environment(), check=False)
     assert done.returncode == 0, done.stderr

@@ -153,7 +153,6 @@ class NcInterpreter final : private NcPredefined {
   void set_data();
   void set_system(int number, bool by_position);
   void shift_by_words(bool local);
-  void store_shift();
   double length_or_angle(std::size_t joint);
   std::optional<double> predefined(int number) const override;
   std::optional<double> predefined(std::string_view name) const override;

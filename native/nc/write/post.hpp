@@ -1,5 +1,5 @@
-// What the controls read: one language per file, made of the same events. The writer says what happens, a post how it
-// is written.
+// What the controls read: one language per file. A post writes the blocks that a program becomes
+// (nc/write/block_maker.hpp).
 #pragma once
 
 #include <memory>
@@ -8,52 +8,25 @@
 #include <string_view>
 #include <vector>
 
-#include "nc/machine/machine.hpp"
 #include "nc/machine/post_options.hpp"
+#include "nc/write/block_sink.hpp"
 
 namespace riffler {
 
-class Tool;
-
-/// One block.
-struct PostBlock {
-  Pose pose;
-  Joints joints{};
-  bool rapid = false;
-  bool inverse = false;  ///< takes `minutes`, whatever way its words go
-  double feed = 0;       ///< mm/min at the tip; of rapids nothing
-  double minutes = 0;
-  bool must = false;  ///< a row ends here: written even where nothing moves
-};
-
-/// An arc in a plane of two linear axes, or a helix on it.
-struct PostArc {
-  PostBlock end;
-  std::size_t normal = 2;  ///< axis across its plane: 2 for XY (G17), 1 for ZX (G18), 0 for YZ (G19)
-  Vec3 from{0}, centre{0};
-  bool clockwise = false;  ///< seen from the positive end of that axis
-};
-
-class Post {
+class Post : public BlockSink {
  public:
   Post(const Machine& machine, PostOptions options) : machine_(machine), options_(std::move(options)) {}
-  virtual ~Post() = default;
 
   /// Whether blocks need joints: where not, poses are written as they are.
   virtual bool wants_joints() const { return true; }
 
   virtual bool has_arcs() const { return false; }
 
-  virtual void begin(std::span<const std::string> comments) = 0;
-  /// `shape` is null where it is not known.
-  virtual void change_tool(int number, const Tool* shape, bool first) = 0;
-  /// rev/min; > 0 clockwise, 0 stopped.
-  virtual void spindle(double speed) = 0;
-  /// After a change, when tool and spindle stand as they should.
-  virtual void ready(int tool) = 0;
-  virtual void block(const PostBlock& block) = 0;
   /// Called only where has_arcs().
-  virtual void arc(const PostArc&) {}
+  void arc(const PostArc&) override {}
+
+  /// The text before the first block and after the last one.
+  virtual void begin(std::span<const std::string> comments) = 0;
   virtual void end() = 0;
 
   const std::string& text() const { return text_; }

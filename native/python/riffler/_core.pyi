@@ -6,8 +6,7 @@ import numpy.typing
 import os
 import pathlib
 import typing
-import types
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'bench', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -2060,6 +2059,5 @@ def verify(program: typing.Any, stock_volume: Volume, part_mesh: typing.Any = No
     or beside it, nobody knows what the spindle meets: a finding "unknown". ValueError naming number, row and line of a tool
     whose shape is not known. ``progress``: called with the finished share, of each chunk anew; returning False cancels.
     """
-bench: types.ModuleType
 __compiler__: str
 __version__: str

@@ -1,20 +1,17 @@
-"""3MF files, by the 3MF Consortium's lib3mf. ``Mesh.read`` and ``Mesh.write`` come here for ``.3mf``.
+"""Reads 3MF files with the 3MF Consortium's lib3mf. ``Mesh.read`` and ``Mesh.write`` come here for ``.3mf``.
 
-lib3mf keeps coordinates in float32, and writes them as decimals that may be off by one step of float32. Its calls for
-whole arrays are taken from its C interface with numpy's storage: its Python classes would make an object of every
-vertex.
+lib3mf keeps coordinates in float32. Its calls for whole arrays are taken from its C interface with numpy's storage: its
+Python classes would make an object of every vertex.
 """
 
 from __future__ import annotations
 
 import codecs
 import ctypes
-import hashlib
 import io
 import locale
 import re
 import threading
-import uuid
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -23,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from . import files
+from . import files, threemf_writer
 from ._core import FormatError
 
 # mm in one unit of a file; 3MF has no others.
@@ -33,8 +30,6 @@ MOST_PLACED = 10_000  # meshes and components: lib3mf takes some 0.3 ms for each
 MOST_BYTES = 1 << 32  # unpacked
 MOST_TRIANGLES = 50_000_000  # of all copies together: what a file of some kilobytes may ask for has no other bound
 LARGEST = 1e30
-DECIMALS = 9  # 3MF is text; lib3mf's usual six would make one of two float32 values that are neighbours
-NAMES = uuid.UUID("5b0e7a3e-6f0b-5d0c-9c53-2a4f8b7d1e66")
 
 
 def library() -> Any:
@@ -239,29 +234,7 @@ def geometry(lib: Any, mesh: Any) -> tuple[np.ndarray, np.ndarray]:
 
 def write(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
     """One object, one build item, in mm; whole or not at all."""
-    lib, target = library(), Path(path)
-    model = lib.get_wrapper().CreateModel()
-    model.SetUnit(lib.ModelUnit.MilliMeter)
-    if len(triangles):
-        mesh = model.AddMeshObject()
-        points = np.array(vertices, np.float32, order="C")
-        indices = np.array(triangles, np.uint32, order="C")
-        buffers = (lib.Position * len(points)).from_buffer(points), (lib.Triangle * len(indices)).from_buffer(indices)
-        counts = [ctypes.c_uint64(len(buffer)) for buffer in buffers]
-        set_geometry = mesh._wrapper.lib.lib3mf_meshobject_setgeometry
-        mesh._wrapper.checkError(mesh, set_geometry(mesh._handle, counts[0], buffers[0], counts[1], buffers[1]))
-        item = model.AddBuildItem(mesh, lib.get_wrapper().GetIdentityTransform())
-        # Otherwise drawn at random: the same mesh is to be the same file, but for the time in the archive.
-        for name, thing in (("object", mesh.SetUUID), ("item", item.SetUUID), ("build", model.SetBuildUUID)):
-            thing(str(uuid.uuid5(NAMES, f"{name} {hashlib.sha256(points.tobytes() + indices.tobytes()).hexdigest()}")))
-    try:
-        writer = model.QueryWriter("3mf")
-        writer.SetDecimalPrecision(DECIMALS)
-        with files.drafting(target) as draft, LOCALE:
-            writer.WriteToFile(str(draft))
-    except (OSError, lib.ELib3MFException) as error:
-        reason = error.strerror if isinstance(error, OSError) else said(error)
-        raise RuntimeError(f"cannot write {target}: {reason}") from error
+    threemf_writer.write(path, vertices, triangles)
 
 
 def said(error: Exception) -> str:

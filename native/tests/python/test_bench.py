@@ -11,9 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import riffler
+import riffler_bench
 from riffler import cli
-from riffler._core import bench as core
-from riffler.bench import (
+from riffler.command import bench as command
+from riffler_bench import _bench as core
+from riffler_bench import (
     baselines,
     curves,
     errors,
@@ -29,13 +31,12 @@ from riffler.bench import (
     valleys,
     waves,
 )
-from riffler.bench.jobs import JOBS, b5x, force, gouge, nc
-from riffler.bench.jobs import pencil as pen
-from riffler.bench.jobs import verify as verifying
-from riffler.command import bench as command
+from riffler_bench.jobs import JOBS, b5x, force, gouge, nc
+from riffler_bench.jobs import pencil as pen
+from riffler_bench.jobs import verify as verifying
 from verify_reference import HeightMap
 
-PATHS = [str(Path(riffler.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
+PATHS = [*(str(Path(p.__file__).parents[1]) for p in (riffler, riffler_bench)), os.environ.get("PYTHONPATH", "")]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
 PLOTS = {
     *("b200", "b5x", "b5x-tolerance", "b5x-single", "haptic", "rendered", "session", "force", "pitch", "mesh"),
@@ -455,6 +456,38 @@ def test_without_matplotlib_it_says_so_and_measures(tmp_path):
     assert "no plots: matplotlib is not installed" in done.stderr
     assert (tmp_path / "out" / "threads.json").exists()
     assert bench("--redraw", "--out", "out", cwd=tmp_path, PYTHONPATH=hidden).returncode == 2
+
+
+@pytest.mark.parametrize(
+    "package, said",
+    [
+        (None, f"needs riffler-bench {riffler.__version__}: in a checkout of that version, pip install ./bench"),
+        ("9.9", f"riffler-bench 9.9 needs riffler 9.9, not {riffler.__version__}: install both from the same source"),
+    ],
+)
+def test_without_its_package_or_with_another_version_it_says_what_to_install(package, said, tmp_path):
+    """`package`: the version of a riffler_bench that is found first; None: as if there were none."""
+    (tmp_path / "riffler_bench").mkdir()
+    begin = tmp_path / "riffler_bench" / "__init__.py"
+    if package is None:
+        begin.write_text("raise ModuleNotFoundError('none', name='riffler_bench')\n")
+    else:
+        begin.write_bytes(Path(riffler_bench.__file__).read_bytes())
+        (tmp_path / "riffler_bench" / "_bench.py").write_text(f"__version__ = {package!r}\n")
+    found_first = os.pathsep.join([str(tmp_path), ENVIRONMENT["PYTHONPATH"]])
+    done = bench("b5x", "--out", "out", cwd=tmp_path, PYTHONPATH=found_first)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_old_name_of_the_package_warns_and_works():
+    code = "import warnings; warnings.simplefilter('error'); import riffler.bench"
+    done = subprocess.run([sys.executable, "-c", code], env=ENVIRONMENT, capture_output=True, text=True, check=False)
+    assert "DeprecationWarning: riffler.bench is riffler_bench now" in done.stderr
+    with pytest.warns(DeprecationWarning, match="riffler_bench"):
+        from riffler.bench import nc_judge
+    assert nc_judge.Axes
 
 
 def test_an_unknown_job_is_bad_input(tmp_path):

@@ -10,7 +10,7 @@ import pytest
 import riffler
 from commands import result, riffle
 from riffler import cli, plan
-from riffler.bench import nc_judge
+from riffler_bench import nc_judge
 
 import linuxcnc
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import riffler
-from riffler.bench.nc_judge import Axes, tilting_table
-from riffler.bench.nc_judge import poses as forward
+from riffler_bench.nc_judge import Axes, tilting_table
+from riffler_bench.nc_judge import poses as forward
 
 import linuxcnc
 

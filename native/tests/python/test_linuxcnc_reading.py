@@ -8,8 +8,8 @@ import riffler
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nc_grammar import Grammar
-from riffler.bench.nc_judge import poses as forward
-from riffler.bench.nc_judge import tilting_table
+from riffler_bench.nc_judge import poses as forward
+from riffler_bench.nc_judge import tilting_table
 
 import linuxcnc
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import riffler
-from riffler.bench.swept import dense
+from riffler_bench.swept import dense
 
 import linuxcnc
 

@@ -4,8 +4,8 @@ forward kinematics of their own say where the tool is, at the ends of blocks and
 import numpy as np
 import pytest
 import riffler
-from riffler.bench.nc_judge import Axes, joints_of
-from riffler.bench.nc_judge import poses as forward
+from riffler_bench.nc_judge import Axes, joints_of
+from riffler_bench.nc_judge import poses as forward
 
 X, Y, Z = np.eye(3)
 TOOLS = {1: riffler.Tool.ball(6, 30), 2: riffler.Tool.flat(10, 60)}

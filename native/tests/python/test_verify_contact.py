@@ -95,8 +95,7 @@ def test_tilting_into_a_wall_hits_on_the_row_that_dense_sampling_finds():
     axes = np.column_stack([np.sin(angles), 0 * angles, np.cos(angles)])
     poses = np.column_stack([np.tile([18.0, 20.0, -19.5], (len(angles), 1)), axes])
     stock = stepped()
-    points = points_of(stock, 0.05)
-    points = points[(points[:, 0] > 29) & (points[:, 2] > -12)]
+    points = near_frusta(points_of(stock, 0.05, lower=(29, -1, -12)), HOLDER, poses)
     depth = np.array(
         [in_frusta(near_frusta(points, HOLDER, pose[None]), HOLDER, pose).max(initial=-9) for pose in poses]
     )
@@ -120,8 +119,7 @@ def test_five_axis_hits_agree_with_dense_sampling(seed):
         poses.append(pose)
         if last is not None:
             left.carve(tool, np.array([last, pose]))
-            points = points_of(left, 0.25)
-            points = points[points[:, 2] > -1]  # neither shank nor holder comes lower
+            points = points_of(left, 0.25, lower=(-1, -1, -1))  # neither shank nor holder comes lower
             t = np.linspace(0, 1, 80)[:, None]
             angle = np.arccos(np.clip(last[3:] @ pose[3:], -1, 1))
             way = (np.sin((1 - t) * angle) * last[3:] + np.sin(t * angle) * pose[3:]) / np.sin(angle)

@@ -85,17 +85,17 @@ def tops(volume) -> np.ndarray:
     return out.reshape(counts.shape)
 
 
-def points_of(volume, step) -> np.ndarray:
-    """Points in the material, `step` apart along the z rays, from the top of each span down."""
+def points_of(volume, step, lower=(-np.inf,) * 3, upper=(np.inf,) * 3) -> np.ndarray:
+    """Points in the material that lie in the box, `step` apart along the z rays, from the top of each span down."""
     counts, spans = volume.intervals("z")
-    h, lower = volume.pitch, volume.lower
     index = np.repeat(np.arange(counts.size), counts.ravel())
-    i, j = np.divmod(index, counts.shape[1])
-    out = []
-    for k, (near, far) in enumerate(spans):
+    places = np.array(volume.lower)[:2] + (np.column_stack(np.divmod(index, counts.shape[1])) + 0.5) * volume.pitch
+    out = [np.empty((0, 3))]
+    for k in np.flatnonzero(((places > lower[:2]) & (places < upper[:2])).all(axis=1)):
+        near, far = spans[k]
         z = np.append(np.arange(far, near, -step), near)
-        out.append(np.column_stack([np.full(len(z), lower[0] + (i[k] + 0.5) * h),
-                                    np.full(len(z), lower[1] + (j[k] + 0.5) * h), z]))  # fmt: skip
+        z = z[(z > lower[2]) & (z < upper[2])]
+        out.append(np.column_stack([np.broadcast_to(places[k], (len(z), 2)), z]))
     return np.concatenate(out)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..bench.plotting import COLOURS, INK, STYLE, TARGET, logarithmic
+from .plot_style import COLOURS, INK, STYLE, TARGET, logarithmic
 
 if TYPE_CHECKING:
     from .pen_simulate import Log

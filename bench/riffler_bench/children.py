@@ -1,0 +1,216 @@
+"""What runs in a process of its own, so that its memory can be told: python -m riffler_bench.children WORK ARGUMENTS.
+
+Prints the result as one line of JSON, with the process's peak memory.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import statistics
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from riffler import Mesh, Tool, Verification, VerifyReport, Volume, plan, verify
+
+from . import scenes, waves
+from .rivals import clock
+
+
+def b200(pitch: float, directions: str, mesh: bool = True) -> dict[str, Any]:
+    """B200 with a ball, thrice: medians of carving and meshing, in s of wall time."""
+    poses, tool = scenes.cutters()[0].path(turning=False), scenes.cutters()[0].tool
+    carve, meshing, triangles = [], [], None
+    for _ in range(3):
+        volume = Volume.block(*scenes.BLOCK, pitch, directions)
+        start = time.perf_counter()
+        cut = volume.carve(tool, poses)
+        carve.append(time.perf_counter() - start)
+        if mesh:
+            start = time.perf_counter()
+            triangles = len(volume.to_mesh().triangles)
+            meshing.append(time.perf_counter() - start)
+    # Where every tile has been written, none is shared any more: 0.1 mm off the ends of all rays.
+    skimmed, middle, upper = Volume.block(*scenes.BLOCK, pitch, directions), np.array([50.0, 30, 15]), scenes.BLOCK[1]
+    for k, axis in enumerate(np.eye(3)):
+        face = middle + axis * (upper[k] / 2)
+        skimmed.carve(Tool.flat(400, 40), np.array([[*(face + axis), *axis], [*(face - 0.1 * axis), *axis]]))
+    return {
+        "carve_s": statistics.median(carve),
+        "mesh_s": statistics.median(meshing) if mesh else None,
+        "triangles": triangles,
+        "removed": float(cut.removed.sum()),
+        "rays": volume.rays,
+        "skimmed_bytes": skimmed.nbytes,
+        "carved_bytes": volume.nbytes,
+    }
+
+
+def mesh(pitch: float, directions: str, repeats: int, path: str) -> dict[str, Any]:
+    """B200 with a ball, carved once and meshed again and again: medians, and the mesh as a file."""
+    volume = Volume.block(*scenes.BLOCK, pitch, directions)
+    volume.carve(scenes.cutters()[0].tool, scenes.cutters()[0].path(turning=False))
+    made, times = clock.timed(volume.to_mesh, repeats)
+    made.write(path)
+    return {**times, "triangles": len(made.triangles)}
+
+
+def rays(path: str, side: int, repeats: int) -> dict[str, Any]:
+    """A part to side² rays along z: median times, and the volume."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    low, high = np.asarray(part.bounds)
+    pitch = (high - low)[:2].max() / side
+    middle, half = (low + high) / 2, np.array([pitch * side / 2, pitch * side / 2, (high - low)[2] / 2 + pitch])
+    box = {"lower": middle - half, "upper": middle + half}
+    volume, times = clock.timed(lambda: Volume.from_mesh(part, pitch, "z", **box), repeats)
+    return {**times, "volume": volume.volume}
+
+
+def decimate(path: str, wanted: int, repeats: int) -> dict[str, Any]:
+    """A part to `wanted` triangles: median times; the result beside it."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    less, times = clock.timed(lambda: part.decimate(triangles=wanted), repeats)
+    np.save(f"{path}.out.vertices.npy", less.vertices)
+    np.save(f"{path}.out.triangles.npy", less.triangles)
+    return {**times, "triangles": len(less.triangles)}
+
+
+def pencil(path: str, diameter: float, tolerance: float) -> dict[str, Any]:
+    """Pencil curves of a part: times, what was found, and the counters."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    tool = Tool.ball(diameter, 5 * diameter)
+    found, times = clock.timed(lambda: plan.pencil(part, tool, tolerance=tolerance), 1)
+    whole = hashlib.sha256(b"".join(np.ascontiguousarray(p.centres).tobytes() for p in found)).hexdigest()
+    return {**times, "paths": len(found), "digest": whole, **found.stats}
+
+
+def drop(path: str, points: str, tool: dict[str, Any], result: str) -> dict[str, Any]:
+    """A tool dropped on a part at many places (x, y): median times, the tree's building in them; heights as a file."""
+    part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
+    where = np.pad(np.load(points), [(0, 0), (0, 1)])
+    (heights, _), times = clock.timed(lambda: plan.drop(Tool.from_dict(tool), where, part), 3)
+    np.save(result, heights)
+    return times
+
+
+def streamed(moves: int, calls: int) -> dict[str, Any]:
+    """The ramping path again and again, each time 0.8 mm deeper, a call each: memory is that of one."""
+    volume, poses, tool = Volume.block(*scenes.S500K_BLOCK, 0.5), scenes.s500k(moves, True), Tool.flat(6, 30)
+    before, removed = volume.volume, 0.0
+    wall, cpu = time.perf_counter(), time.process_time()
+    for _ in range(calls):
+        removed += float(volume.carve(tool, poses).removed.sum())
+        poses[:, 2] -= 0.8
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    return {"wall_s": wall, "cpu_s": cpu, "removed": removed, "lost": before - volume.volume, "rays": volume.rays}
+
+
+def s500k(moves: int, ramping: bool) -> dict[str, Any]:
+    volume = Volume.block(*scenes.S500K_BLOCK, 0.5)
+    poses, tool = scenes.s500k(moves, ramping), Tool.flat(6, 30)
+    before = volume.volume
+    wall, cpu = time.perf_counter(), time.process_time()
+    cut = volume.carve(tool, poses)
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    removed = float(cut.removed.sum())
+    return {"wall_s": wall, "cpu_s": cpu, "removed": removed, "lost": before - volume.volume, "rays": volume.rays}
+
+
+def verified(
+    rows: int, lines: int, tilted: bool, pitch: float, repeats: int = 1, cells: int = 0, tops: str = ""
+) -> dict[str, Any]:
+    """The waves verified, against a part of cells² squares if there are any: median times, what was found, and the
+    memory before and at the peak; the tops of the rays as a file."""
+    program, stock = waves.program(rows, lines, tilted), waves.stock(pitch)
+    part = waves.part(cells) if cells else None
+    rest = waves.REST if cells else None
+    before = clock.peak_bytes()
+    found, times = clock.timed(lambda: verify(program, stock, part, rest_tolerance=rest), repeats)
+    out = {
+        **times,
+        "before_bytes": before,
+        "verify_bytes": clock.peak_bytes(),
+        "removed": float(found.removed.sum()),
+        "passed": found.passed,
+        "probes": found.stats["probes"],
+    }
+    if part:
+        start = time.perf_counter()
+        distance = found.deviation[1]
+        out |= {"map_s": time.perf_counter() - start, "lowest_mm": float(distance.min())}
+        out["triangles"] = len(part.triangles)
+    if tops:
+        np.save(tops, waves.tops(found.volume))
+    return out
+
+
+def verified_stream(rows: int, lines: int, pitch: float, chunk: int) -> dict[str, Any]:
+    """The waves on three axes, verified as they are made, `chunk` rows at a time; 0: made first, and in one piece."""
+    stock, before = waves.stock(pitch), clock.peak_bytes()
+
+    def work() -> VerifyReport:
+        return verify(waves.chunks(rows, lines, False, chunk) if chunk else waves.program(rows, lines, False), stock)
+
+    found, times = clock.timed(work, 1)
+    peak = clock.peak_bytes()  # before `found.removed`, a copy
+    lost = stock.volume - found.volume.volume
+    off = abs(float(found.removed.sum()) - lost) / lost
+    return {**times, "before_bytes": before, "verify_bytes": peak, "passed": found.passed, "off": off}
+
+
+def edited(rows: int, lines: int, pitch: float) -> dict[str, Any]:
+    """The waves verified, and again after one row was moved up by 0.1 mm: the first, one in the middle, the last."""
+    poses, stock = waves.poses(rows, lines, False), waves.stock(pitch)
+    kept = Verification(stock)
+    program = waves.as_program(poses)
+    whole, times = clock.timed(lambda: kept.run(program), 1)
+    out = {"whole_s": times["cpu_s"], "whole_bytes": clock.peak_bytes(), **whole.stats}
+    edits = []
+    for name, row in {"the first row": 0, "a row in the middle": rows // 2, "the last row": rows - 1}.items():
+        poses[row, 2] += 0.1
+        program = waves.as_program(poses)
+        found, times = clock.timed(lambda program=program: kept.run(program), 1)
+        same = waves.contents(found) == waves.contents(verify(program, stock))
+        edits.append({"edit": name, **times, **found.stats, "same": same})
+    return {**out, "edits": edits}
+
+
+def files(folder: str) -> dict[str, Any]:
+    """Writes what must not depend on the number of threads: forces, a volume, its mesh, a volume of that mesh."""
+    poses = scenes.upright(scenes.cutters()[0].path(turning=False)[:, :3])
+    k = np.arange(len(poses))
+    axes = np.stack([0.3 * np.sin(0.05 * k), 0.2 * np.cos(0.03 * k), np.ones(len(k))], 1)
+    poses[:, 3:] = axes / np.linalg.norm(axes, axis=1)[:, None]
+    volume = Volume.block(*scenes.BLOCK, 0.4, "xyz")
+    cut = volume.carve(Tool.fillet(8, 1, 30), poses, tolerance=0.01, dt=0.001)
+    mesh = volume.to_mesh()
+    out = Path(folder)
+    np.concatenate([cut.removed[:, None], cut.force, cut.torque], 1).tofile(out / "forces.bin")
+    volume.save(out / "volume.rvol")
+    mesh.write(out / "mesh.stl")
+    Volume.from_mesh(mesh, 0.5, "xyz").save(out / "again.rvol")
+    return {}
+
+
+WORK = {
+    "b200": b200,
+    "mesh": mesh,
+    "rays": rays,
+    "decimate": decimate,
+    "pencil": pencil,
+    "drop": drop,
+    "s500k": s500k,
+    "streamed": streamed,
+    "verified": verified,
+    "verified_stream": verified_stream,
+    "edited": edited,
+    "files": files,
+}
+
+if __name__ == "__main__":
+    result = WORK[sys.argv[1]](**json.loads(sys.argv[2]))
+    result["peak_bytes"] = clock.peak_bytes()
+    print(json.dumps(result))

@@ -1,0 +1,101 @@
+#include "bindings/verify_arguments.hpp"
+
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "dexel/from_mesh/from_mesh.hpp"
+#include "nc/read/reader.hpp"
+
+namespace riffler {
+
+namespace {
+
+std::map<int, Tool> to_tools(const py::object& object) {
+  std::map<int, Tool> out;
+  if (object.is_none()) return out;
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("tools must be a dict: number to Tool");
+  for (const auto& [key, value] : py::cast<py::dict>(object)) {
+    if (!py::isinstance<py::int_>(key) || !py::isinstance<Tool>(value) || py::cast<long long>(key) < 0 ||
+        py::cast<long long>(key) > std::numeric_limits<int>::max())
+      throw py::value_error("tools must be a dict: number to Tool");
+    out.emplace(py::cast<int>(key), py::cast<const Tool&>(value));
+  }
+  return out;
+}
+
+std::string fixture_name(std::size_t k) {
+  return "fixtures, number " + std::to_string(k);
+}
+
+using Fixture = std::variant<Volume, std::shared_ptr<const Mesh>>;
+
+std::vector<Fixture> to_fixtures(const py::object& object) {
+  std::vector<Fixture> out;
+  if (object.is_none()) return out;
+  if (py::isinstance<SharedVolume>(object) || py::isinstance<Mesh>(object))
+    throw py::value_error("fixtures must be a list of Volume or Mesh, not one of them");
+  for (const py::handle& item : py::cast<py::iterable>(object)) {
+    if (py::isinstance<SharedVolume>(item))
+      out.push_back(Reading(py::cast<SharedVolume&>(item)).volume.snapshot());
+    else if (py::isinstance<Mesh>(item))
+      out.push_back(py::cast<std::shared_ptr<Mesh>>(item));
+    else
+      throw py::value_error(fixture_name(out.size()) + ": a Volume or a Mesh expected");
+  }
+  return out;
+}
+
+/// Volumes as they are; meshes at the stock's pitch.
+std::vector<Volume> to_volumes(const std::vector<Fixture>& fixtures, double pitch, const Progress& progress) {
+  std::vector<Volume> out;
+  for (std::size_t k = 0; k < fixtures.size(); ++k) {
+    if (const Volume* volume = std::get_if<Volume>(&fixtures[k])) {
+      out.push_back(volume->snapshot());
+      continue;
+    }
+    const Mesh& mesh = *std::get<std::shared_ptr<const Mesh>>(fixtures[k]);
+    try {
+      validate(mesh);
+      const auto n = static_cast<double>(fixtures.size()), done = static_cast<double>(k);
+      out.push_back(from_mesh(mesh, {bounds(mesh), pitch, "z"}, part(progress, done / n, (done + 1) / n)));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fixture_name(k) + ": " + error.what());
+    }
+  }
+  return out;
+}
+
+/// None where none is given, with nothing that belongs to one.
+std::optional<MachineChoice> to_machine(const GivenMachine& given) {
+  if (!given.name) {
+    if (!given.options.is_none()) throw py::value_error("machine_options: there is no machine");
+    if (!given.frame.is_none()) throw py::value_error("machine_frame: there is no machine");
+    return std::nullopt;
+  }
+  MachineChoice machine{*given.name, without_reading(to_options(given.options))};
+  if (!given.frame.is_none()) std::tie(machine.turn, machine.shift) = to_affine(given.frame, "machine_frame");
+  return machine;
+}
+
+}  // namespace
+
+GivenArguments to_given(SharedVolume& stock, const py::object& part, const py::object& fixtures,
+                        const py::object& tools, VerifyOptions options, const GivenMachine& machine) {
+  options.machine = to_machine(machine);
+  std::shared_ptr<const Mesh> mesh;
+  if (!part.is_none()) {
+    if (!py::isinstance<Mesh>(part)) throw py::value_error("part_mesh must be a Mesh or None");
+    mesh = py::cast<std::shared_ptr<Mesh>>(part);
+  }
+  std::vector<Fixture> all = to_fixtures(fixtures);
+  return {{Reading(stock).volume.snapshot(), std::move(mesh), {}, to_tools(tools), std::move(options)}, std::move(all)};
+}
+
+VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress) {
+  VerifyArguments out = given.others;
+  out.fixtures = to_volumes(given.fixtures, out.stock.frame().pitch, progress);
+  return out;
+}
+
+}  // namespace riffler

@@ -1,0 +1,35 @@
+"""What plots share: colours, the style, logarithmic axes. Needs matplotlib."""
+
+from __future__ import annotations
+
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+INK, GRID, TARGET = "#22262b", "#e3dfd6", "#c8553d"
+COLOURS = ("#2f6690", "#c8553d", "#3f7d4f", "#d08c2a", "#7a5195", "#5b6770", "#a3475d", "#4a8f9e")
+MARKS = "osD^vPX<"
+STYLE = {
+    "font.size": 9,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "axes.grid": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.framealpha": 0.85,
+    "legend.edgecolor": "none",
+    "legend.fontsize": 8,
+    "lines.linewidth": 1.4,
+    "lines.markersize": 5,
+}
+
+
+def logarithmic(axis: Axis, sub: bool = False) -> None:
+    """A log scale with plain numbers, at 2 and 5 too where `sub`."""
+    axis.axes.set(**{f"{axis.axis_name}scale": "log"})
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    if sub:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_minor_formatter(NullFormatter())

@@ -1,0 +1,78 @@
+// What programs are verified on: stock, part and fixtures, cut in slabs and made ready once.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "verify/machine_check.hpp"
+#include "verify/slab_job.hpp"
+#include "verify/toolset.hpp"
+
+namespace riffler {
+
+struct VerifyOptions {
+  double tolerance = 0.01;               ///< mm: as CarveOptions::tolerance; contact less deep than it is none
+  double gouge_tolerance = 0.05;         ///< mm under the part's surface
+  std::optional<double> rest_tolerance;  ///< mm over the part's surface; without it rest material is no fault
+  double rapid_feed = 10'000;            ///< mm/min, for the time that rapids take
+  /// On which it is to run; without it limits are not checked. Chunks of a program are checked one by one.
+  std::optional<MachineChoice> machine = {};
+};
+
+/// What a verification is given but for the program.
+struct VerifyArguments {
+  Volume stock;
+  std::shared_ptr<const Mesh> part = {};  ///< may be null
+  std::vector<Volume> fixtures = {};
+  std::map<int, Tool> tools = {};  ///< they come before a program's own
+  VerifyOptions options = {};
+};
+
+/// Several runs, one after the other, may share one: only its toolset changes, which learns the tools of programs.
+class VerifyScene {
+ public:
+  /// Throws std::invalid_argument naming the argument.
+  explicit VerifyScene(VerifyArguments arguments, const Progress& progress = {});
+
+  const Volume& stock() const { return given_.stock; }
+  const std::vector<Volume>& fixtures() const { return given_.fixtures; }
+  /// Its triangles face outwards; null without a part.
+  const std::shared_ptr<const Mesh>& part() const { return given_.part; }
+  /// Null without a part.
+  const Target* target() const { return target_.get(); }
+  const VerifyOptions& options() const { return given_.options; }
+  Toolset& tools() { return tools_; }
+  const Toolset& tools() const { return tools_; }
+  /// z above which there is nothing, mm.
+  double top() const { return top_; }
+  /// All slabs of the stock, then those of the fixtures.
+  const std::vector<SlabJob>& jobs() const { return jobs_; }
+  /// Material of the part that the stock lacks.
+  const std::vector<Event>& missing() const { return missing_; }
+  /// mm³: what is less may be rounding.
+  double least_cut() const { return options().tolerance * stock().reference().least_area(); }
+
+  /// The slabs before the first move.
+  std::vector<SlabState> fresh() const;
+  /// What there is of the part in a slab; empty without a part, and for fixtures.
+  SlabTiles part_in(const SlabJob& job) const;
+  const Grid& grid_of(const SlabJob& job) const;
+  /// Runs the moves on every slab, from where each of them stands. `keep`: whether slabs keep snapshots.
+  void simulate(const Moves& moves, std::vector<SlabState>& slabs, bool keep, VerifyStats& stats,
+                const Progress& progress) const;
+
+ private:
+  void add_jobs(const Volume& volume, std::int32_t fixture);
+  void find_missing_material();
+
+  VerifyArguments given_;
+  double top_;
+  Toolset tools_;
+  std::unique_ptr<const Target> target_;
+  std::vector<SlabJob> jobs_;
+  std::vector<Event> missing_;
+};
+
+}  // namespace riffler
