@@ -1,65 +1,80 @@
-"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core touches neither Python
-nor what it is judged by, the pen's C files touch nothing but each other, a feature of the add-on imports none after it,
-and the add-on's pure modules import no Blender. And a source includes its own header first, which shows that the header
-stands alone. Prints every line that breaks a rule and exits 1."""
+"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, a folder of a topic only those
+that FOLDERS names, no file leads back to itself, the core touches neither Python nor what it is judged by, and the
+pen's C files touch nothing but each other. A source includes its own header first, which shows that the header stands
+alone. No type is defined twice in one namespace (cpp_types.py). The add-on's rules are in addon_layers.py. Prints every
+line that breaks a rule and exits 1."""
 
 from __future__ import annotations
 
-import ast
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import addon_layers
+import cpp_types
 from shell import ROOT, StepError, main
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Folders beside the topics, and which topics and other such folders they may include. The reference must not share code
 # with what it judges; `None` is every topic.
 BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
-    "reference": (["geom", "tool"], []),
+    "reference": (["base", "geom", "tool"], []),
     "bench": (None, ["reference"]),
     "stress": (None, ["reference"]),
     "fuzz": (None, []),
     "bindings": (None, ["bench", "stress"]),
 }
+# Folders of one topic: which others of it each may include. A folder that is not here may include all of its topic.
+FOLDERS = {
+    "dexel": [],
+    "dexel/file": ["dexel"],
+    "dexel/from_mesh": ["dexel"],
+    "dexel/smooth": ["dexel"],
+    "mesh": [],
+    "mesh/decimate": ["mesh"],
+    "mesh/io": ["mesh"],
+    "nc": [],
+    "nc/machine": ["nc"],
+    "nc/read": ["nc", "nc/machine"],
+    "nc/write": ["nc", "nc/machine"],
+    "pen/arms": [],
+    "pen/hid": [],
+    "pen/models": ["pen", "pen/arms", "pen/hid"],
+    "pen/simulated": ["pen", "pen/arms", "pen/hid", "pen/models"],
+}
 # Topics that may include the pen's protocol and firmware.
 USES_DEVICE = {"pen"}
 # What the pen's C files may include of the standard library: all of it is there without an operating system.
 FREESTANDING = {"stddef.h", "stdint.h", "string.h"}
-# What only Blender has.
-OF_BLENDER = re.compile(r"bpy\w*|bmesh|gpu\w*|mathutils|blf|bl_\w+|rna_\w+|freestyle|idprop")
-# Folders of the add-on below every feature, in their order, and those whose modules know no Blender, wherever they are:
-# plain Python imports and tests them.
-BELOW = ("common", "translations", "blender")
-PURE = {"common", "pure", "brushes", "strategies"}
 
 
-def topics() -> list[str]:
+def topics(root: Path) -> list[str]:
     """The order of the topics, as the build has it."""
-    match = re.search(r"set\(RIFFLER_TOPICS ([^)]*)\)", (ROOT / "CMakeLists.txt").read_text())
+    match = re.search(r"set\(RIFFLER_TOPICS ([^)]*)\)", (root / "CMakeLists.txt").read_text())
     if not match:
         raise StepError("CMakeLists.txt sets no RIFFLER_TOPICS")
     return match[1].split()
 
 
-def lines(folder: Path, *suffixes: str):
+def lines(root: Path, folder: Path, *suffixes: str) -> Iterator[tuple[str, str]]:
     for path in sorted(folder.rglob("*")):
         if path.suffix in suffixes:
             for number, line in enumerate(path.read_text().splitlines(), 1):
-                yield f"{path.relative_to(ROOT)}:{number}", line
+                yield f"{path.relative_to(root)}:{number}", line
 
 
-def includes(folder: Path):
-    for place, line in lines(folder, ".cpp", ".hpp", ".c", ".h"):
+def includes(root: Path, folder: Path) -> Iterator[tuple[str, str, str]]:
+    for place, line in lines(root, folder, ".cpp", ".hpp", ".c", ".h"):
         if match := INCLUDE.match(line):
             yield place, match[1], match[2]
 
 
-def core_problems() -> list[str]:
-    order = topics()
+def core_problems(root: Path) -> list[str]:
+    order = topics(root)
     problems = []
     for rank, topic in enumerate(order):
-        for place, quote, name in includes(ROOT / "native" / topic):
+        for place, quote, name in includes(root, root / "native" / topic):
             folder = name.split("/")[0]
             if name == "Python.h" or folder == "pybind11":
                 problems.append(f"{place}: the core includes {name}")
@@ -72,12 +87,50 @@ def core_problems() -> list[str]:
     return problems
 
 
-def beside_problems() -> list[str]:
-    order = topics()
+def folder_problems(root: Path) -> list[str]:
+    problems = []
+    for topic in topics(root):
+        for place, quote, name in includes(root, root / "native" / topic):
+            folder = str(Path(place).parent).removeprefix("native/")
+            used = name.rpartition("/")[0]
+            if quote != '"' or folder not in FOLDERS or used == folder or used.split("/")[0] != topic:
+                continue
+            if used not in FOLDERS[folder]:
+                allowed = ", ".join(FOLDERS[folder]) or "none"
+                problems.append(f"{place}: {folder} includes {name}; of its topic's other folders it may use {allowed}")
+    return problems
+
+
+def circle_problems(root: Path) -> list[str]:
+    """A header and its source are one here; a -inl.hpp belongs to the sources that include it."""
+    used: dict[str, set[str]] = {}
+    for topic in topics(root):
+        for place, quote, name in includes(root, root / "native" / topic):
+            path = place.removeprefix("native/").split(":")[0]
+            if quote == '"' and not path.endswith("-inl.hpp"):
+                used.setdefault(path.rsplit(".", 1)[0], set()).add(name.rsplit(".", 1)[0])
+    problems = []
+    done: set[str] = set()
+
+    def visit(file: str, way: list[str]) -> None:
+        if file in way:
+            problems.append("a circle of files: " + " → ".join([*way[way.index(file) :], file]))
+        elif file not in done:
+            for other in sorted(used.get(file, set()) - {file}):
+                visit(other, [*way, file])
+            done.add(file)
+
+    for file in sorted(used):
+        visit(file, [])
+    return problems
+
+
+def beside_problems(root: Path) -> list[str]:
+    order = topics(root)
     problems = []
     for name, (above, beside) in BESIDE.items():
         allowed = [name, *(order if above is None else above), *beside]
-        for place, quote, header in includes(ROOT / "native" / name):
+        for place, quote, header in includes(root, root / "native" / name):
             folder = header.split("/")[0]
             if quote == '"' and "/" in header and folder not in allowed:
                 problems.append(
@@ -86,11 +139,11 @@ def beside_problems() -> list[str]:
     return problems
 
 
-def device_problems() -> list[str]:
+def device_problems(root: Path) -> list[str]:
     """A path is taken from the file that includes it, so that the two folders can be copied into a firmware's tree."""
     problems = []
     for folder, above in (("protocol", []), ("firmware", ["../protocol"])):
-        for place, quote, name in includes(ROOT / "device" / folder):
+        for place, quote, name in includes(root, root / "device" / folder):
             if quote == "<" and name not in FREESTANDING:
                 problems.append(f"{place}: {folder} includes <{name}>, which a pen may not have")
             elif quote == '"' and name.rpartition("/")[0] not in ["", *above]:
@@ -98,89 +151,43 @@ def device_problems() -> list[str]:
     return problems
 
 
-def header_problems() -> list[str]:
+def header_problems(root: Path) -> list[str]:
     """Where sources are compiled one by one, that shows that their headers stand alone (cmake/headers.cmake)."""
     problems = []
-    for topic in [*topics(), "reference"]:
-        for source in sorted((ROOT / "native" / topic).glob("*.cpp")):
+    for topic in [*topics(root), "reference"]:
+        for source in sorted((root / "native" / topic).rglob("*.cpp")):
             own = source.with_suffix(".hpp")
             found = [INCLUDE.match(line) for line in source.read_text().splitlines()]
             first = next((match[2] for match in found if match), None)
-            if own.exists() and first != f"{topic}/{own.name}":
-                problems.append(f"{source.relative_to(ROOT)}: includes {first} before {topic}/{own.name}")
+            name = str(own.relative_to(root / "native"))
+            if own.exists() and first != name:
+                problems.append(f"{source.relative_to(root)}: includes {first} before {name}")
     return problems
 
 
-def sections(addon: Path) -> list[str]:
-    """The add-on's features in the order in which registration.py registers them."""
-    found: list[str] = []
-    for node in ast.parse((addon / "registration.py").read_text()).body:
-        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "SECTIONS":
-            found = [section.args[0].value for section in node.value.elts]
-    if not found:
-        raise StepError("addon/registration.py has no SECTIONS")
-    return [folder for folder in dict.fromkeys(found) if folder and folder not in BELOW]
-
-
-def imports(addon: Path, path: Path):
-    """(line, module) of all that a module imports, also within functions: parts of a path of the add-on, below its
-    root, or the name of another package."""
-    package = path.relative_to(addon).parent.parts
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            yield from ((node.lineno, alias.name) for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and not node.level:
-            yield node.lineno, node.module
-        elif isinstance(node, ast.ImportFrom):
-            base = (*package[: len(package) - node.level + 1], *(node.module or "").split("."))
-            base = tuple(filter(None, base))
-            for alias in node.names:
-                whole = addon.joinpath(*base, alias.name)
-                is_module = whole.is_dir() or whole.with_suffix(".py").exists()
-                yield node.lineno, (*base, alias.name) if is_module else base
-
-
-def is_there(addon: Path, module: tuple[str, ...]) -> bool:
-    path = addon.joinpath(*module)
-    return path.is_dir() or path.with_suffix(".py").exists()
-
-
-def is_pure(parts: tuple[str, ...]) -> bool:
-    return not PURE.isdisjoint(parts[:-1])
-
-
-def addon_problems(addon: Path = ROOT / "addon") -> list[str]:
-    """Modules in the add-on's root may import all others; no folder imports them. `()` is the package itself, which has
-    the version."""
-    order = [*BELOW, *sections(addon)]
-    problems = [
-        f"{addon.name}/{folder.name} is no section of registration.py"
-        for folder in sorted(addon.iterdir())
-        if folder.is_dir() and any(folder.rglob("*.py")) and folder.name not in [*order, "_vendor"]
+def type_problems(root: Path) -> list[str]:
+    return [
+        f"{name} is defined twice: {', '.join(places)}"
+        for name, places in cpp_types.definitions(root / "native").items()
+        if len(places) > 1
     ]
-    for path in sorted(p for folder in order for p in (addon / folder).rglob("*.py")):
-        own = path.relative_to(addon).with_suffix("").parts
-        rank = order.index(own[0])
-        for line, module in imports(addon, path):
-            place = f"{addon.name}/{path.relative_to(addon)}:{line}"
-            if isinstance(module, str):
-                if is_pure(own) and OF_BLENDER.fullmatch(module.partition(".")[0]):
-                    problems.append(f"{place}: a pure module imports {module}, which only Blender has")
-            elif not is_there(addon, module):
-                problems.append(f"{place}: {'.'.join(module)} is not there")
-            elif module and module[0] not in order[: rank + 1]:
-                problems.append(f"{place}: {own[0]} imports {'.'.join(module)}, which is not before it")
-            elif module and is_pure(own) and PURE.isdisjoint(module):
-                problems.append(f"{place}: a pure module imports {'.'.join(module)}, which is not pure")
-    return problems
+
+
+CHECKS = [
+    core_problems,
+    folder_problems,
+    circle_problems,
+    beside_problems,
+    device_problems,
+    header_problems,
+    type_problems,
+    addon_layers.problems,
+]
 
 
 def entry() -> None:
-    problems = core_problems() + beside_problems() + device_problems() + header_problems() + addon_problems()
-    print(
-        "\n".join(problems)
-        or "layers: every include and import points upwards, every source includes its own header first"
-    )
+    problems = [problem for check in CHECKS for problem in check(ROOT)]
+    print("\n".join(problems) or "layers: every include and import points upwards, no circles, no type defined twice")
     sys.exit(bool(problems))
 
 

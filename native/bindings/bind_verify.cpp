@@ -58,7 +58,7 @@ auto verify(const py::object& program, GivenArguments given, const py::object& p
   }
   if (!py::isinstance<py::iterable>(program))
     throw py::value_error("program must be a Program or an iterable of Programs");
-  if (wants_task(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
+  if (is_task_request(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
   const Progress listener = to_progress(progress);
   std::unique_ptr<SlabRun> run;
   {
@@ -66,7 +66,7 @@ auto verify(const py::object& program, GivenArguments given, const py::object& p
     run = make_run(given, listener);
   }
   VerifyReport report = run_stream(*run, py::reinterpret_borrow<py::iterable>(program), part(listener, 0.1, 1));
-  return Found<std::shared_ptr<SharedReport>>(py::cast(share(std::move(report))));
+  return ValueOrTask<std::shared_ptr<SharedReport>>(py::cast(share(std::move(report))));
 }
 
 auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<Program>& program,

@@ -4,8 +4,8 @@
 #include <map>
 #include <tuple>
 
-#include "dexel/from_mesh.hpp"
-#include "nc/reader.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
+#include "nc/read/reader.hpp"
 
 namespace riffler {
 

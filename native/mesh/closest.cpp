@@ -6,8 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "geom/directions.hpp"
-#include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/orient.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "geom/vec.hpp"
 #include "mesh/mesh.hpp"
 

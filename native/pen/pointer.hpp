@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pen/device.hpp"
+#include "pen/published.hpp"
 
 namespace riffler {
 

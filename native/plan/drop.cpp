@@ -5,7 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "plan/cc_frame.hpp"
 
 namespace riffler {

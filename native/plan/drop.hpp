@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "mesh/mesh.hpp"
 #include "plan/lower_side.hpp"
 #include "tool/tool.hpp"

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 #include "sweep/clay.hpp"
 #include "sweep/grid_carver.hpp"
 
@@ -59,7 +59,7 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   check_options(options, moves);
   require_tolerance_for(options.tolerance, std::max(tool.length(), tool.diameter()));
   check_memory(moves);
-  if (options.mode == CarveMode::Add || options.protect) return carve_clay(volume, tool, poses, options);
+  if (options.mode == CarveMode::Add || options.protect) return carve_clay(volume, tool, poses, options, carve);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
   Rollback rollback;

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "dexel/boolean.hpp"
-#include "geom/parallel.hpp"
 #include "sweep/clay_tile.hpp"
 #include "sweep/tile_cutter.hpp"
 
@@ -85,7 +85,8 @@ void for_each_tile(std::vector<Touched>& tiles, bool with_normals, const F& f) {
 
 }  // namespace
 
-Cut carve_clay(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options) {
+Cut carve_clay(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options,
+               PlainCarve& carve) {
   if (options.protect) check_same_grid(volume.frame(), options.protect->frame(), "protect");
   const bool with_normals = volume.grids().front().has_normals();
   const Clay clay(volume, options);

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "dexel/volume.hpp"
-#include "sweep/carve.hpp"
+#include "sweep/carve_options.hpp"
 
 namespace riffler {
 

@@ -3,14 +3,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/check.hpp"
+
 namespace riffler::cutters {
 
 namespace {
-
-void need_positive(double x, const char* name) {
-  if (!std::isfinite(x) || !(x > 0))
-    throw std::invalid_argument(std::string(name) + " must be a positive length in mm");
-}
 
 void need_angle(double x, const char* name) {
   if (!std::isfinite(x) || !(x > 0) || !(x < std::acos(-1.0) / 2))
@@ -42,22 +39,22 @@ Profile up_to(std::vector<ProfileSegment> segments, double length) {
 }  // namespace
 
 Tool ball(double diameter, double length) {
-  need_positive(diameter, "diameter");
-  need_positive(length, "length");
+  require_length(diameter, "diameter");
+  require_length(length, "length");
   const double r = diameter / 2;
   return {"ball", {{"diameter", diameter}, {"length", length}}, up_to({arc(r, r, 0, r)}, length)};
 }
 
 Tool flat(double diameter, double length) {
-  need_positive(diameter, "diameter");
-  need_positive(length, "length");
+  require_length(diameter, "diameter");
+  require_length(length, "length");
   return {"flat", {{"diameter", diameter}, {"length", length}}, up_to({line(diameter / 2, 0)}, length)};
 }
 
 Tool fillet(double diameter, double corner_radius, double length) {
-  need_positive(diameter, "diameter");
-  need_positive(corner_radius, "corner_radius");
-  need_positive(length, "length");
+  require_length(diameter, "diameter");
+  require_length(corner_radius, "corner_radius");
+  require_length(length, "length");
   const double e = diameter / 2 - corner_radius;
   if (e < 0) throw std::invalid_argument("corner_radius must not exceed half the diameter");
   std::vector<ProfileSegment> segments;
@@ -69,10 +66,10 @@ Tool fillet(double diameter, double corner_radius, double length) {
 }
 
 Tool taper(double tip_radius, double half_angle, double diameter, double length, bool flat_tip) {
-  if (!std::isfinite(tip_radius) || tip_radius < 0) throw std::invalid_argument("tip_radius must not be negative");
+  require_not_negative(tip_radius, "tip_radius");
   need_angle(half_angle, "half_angle");
-  need_positive(diameter, "diameter");
-  need_positive(length, "length");
+  require_length(diameter, "diameter");
+  require_length(length, "length");
   const double r = diameter / 2, t = tip_radius;
   const Vec2 start = flat_tip ? Vec2(t, 0) : t * Vec2(std::cos(half_angle), 1 - std::sin(half_angle));
   if (start.x > r) throw std::invalid_argument("tip_radius is too large for the diameter");
@@ -90,10 +87,10 @@ Tool taper(double tip_radius, double half_angle, double diameter, double length,
 
 Tool cone_end(double tip_half_angle, double tip_height, double half_angle, double diameter, double length) {
   need_angle(tip_half_angle, "tip_half_angle");
-  need_positive(tip_height, "tip_height");
+  require_length(tip_height, "tip_height");
   need_angle(half_angle, "half_angle");
-  need_positive(diameter, "diameter");
-  need_positive(length, "length");
+  require_length(diameter, "diameter");
+  require_length(length, "length");
   const double r = diameter / 2, shoulder = tip_height * std::tan(tip_half_angle);
   if (shoulder > r) throw std::invalid_argument("tip_height: the first cone is wider there than the diameter");
   std::vector<ProfileSegment> segments{line(shoulder, tip_height)};
@@ -108,7 +105,7 @@ Tool cone_end(double tip_half_angle, double tip_height, double half_angle, doubl
 }
 
 Tool profile(std::vector<ProfileSegment> segments, double length) {
-  need_positive(length, "length");
+  require_length(length, "length");
   if (segments.empty()) throw std::invalid_argument("segments must not be empty");
   return {"profile", {{"length", length}}, up_to(std::move(segments), length)};
 }

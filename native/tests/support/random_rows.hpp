@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "nc/limits.hpp"
-#include "nc/machines.hpp"
+#include "nc/machine/machines.hpp"
+#include "nc/machine/shipped_machines.hpp"
 #include "nc/program.hpp"
-#include "nc/shipped_machines.hpp"
-#include "nc/write_options.hpp"
+#include "nc/write/write_options.hpp"
 #include "support/tilted.hpp"
 #include "tool/cutters.hpp"
 

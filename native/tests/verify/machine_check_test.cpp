@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nc/writer.hpp"
+#include "nc/write/writer.hpp"
 #include "support/effort.hpp"
 #include "support/random_rows.hpp"
 

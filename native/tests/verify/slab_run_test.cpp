@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "dexel/file.hpp"
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
+#include "dexel/file/file.hpp"
 #include "nc/edit.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"

@@ -1,0 +1,54 @@
+// What the controls read: one language per file. A post writes the blocks that a program becomes
+// (nc/write/block_maker.hpp).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nc/machine/post_options.hpp"
+#include "nc/write/block_sink.hpp"
+
+namespace riffler {
+
+class Post : public BlockSink {
+ public:
+  Post(const Machine& machine, PostOptions options) : machine_(machine), options_(std::move(options)) {}
+
+  /// Whether blocks need joints: where not, poses are written as they are.
+  virtual bool wants_joints() const { return true; }
+
+  virtual bool has_arcs() const { return false; }
+
+  /// Called only where has_arcs().
+  void arc(const PostArc&) override {}
+
+  /// The text before the first block and after the last one.
+  virtual void begin(std::span<const std::string> comments) = 0;
+  virtual void end() = 0;
+
+  const std::string& text() const { return text_; }
+  std::size_t blocks() const { return blocks_; }
+
+ protected:
+  /// Whether tools come from where they are out of everything's way: the machine's file, or its user, says how.
+  bool comes_safely() const { return options_.safe_start && (options_.retract || !machine_.control().retract.empty()); }
+
+  const Machine& machine_;
+  PostOptions options_;
+  std::string text_;
+  std::size_t blocks_ = 0;  ///< with a motion
+};
+
+/// std::invalid_argument for a machine whose language is not known.
+std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options);
+
+// The factories, each in its own file. A new one is one line in posts.cpp and one in kLanguages.
+std::unique_ptr<Post> make_rs274(const Machine& machine, PostOptions options);
+std::unique_ptr<Post> make_heidenhain(const Machine& machine, PostOptions options);
+std::unique_ptr<Post> make_sinumerik(const Machine& machine, PostOptions options);
+std::unique_ptr<Post> make_apt(const Machine& machine, PostOptions options);
+
+}  // namespace riffler
