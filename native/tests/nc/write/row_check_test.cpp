@@ -48,7 +48,8 @@ TEST(RowCheck, FindsWhatTheWriterRefusesAndNothingElse) {
   std::map<std::string, int> faults;
   int accepted = 0, refused = 0;
   test::RandomRows rows(17);
-  for (int round = 0; round < test::cases(120); ++round) {
+  constexpr int kRounds = 120;
+  for (int round = 0; round < test::cases(kRounds); ++round) {
     const Program program = rows.program();
     for (const WriteOptions& how : machines) {
       const Said by_check = said(RowCheck(how).first_fault(program)), by_writer = said_by_writer(program, how);
@@ -61,6 +62,7 @@ TEST(RowCheck, FindsWhatTheWriterRefusesAndNothingElse) {
   }
   EXPECT_GT(accepted, 200);
   EXPECT_GT(refused, 200);
+  if (test::cases(kRounds) < kRounds) return;  // the rarest faults are not among so few
   for (const auto& [sentence, count] : faults) EXPECT_GT(count, 0) << sentence;
 }
 
