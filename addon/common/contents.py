@@ -26,6 +26,19 @@ class Content:
     def nbytes(self) -> int:
         return self.volume.nbytes + (self.mask.nbytes if self.mask is not None else 0)
 
+    def copy(self) -> Content:
+        """With volumes and a list of cuts of its own."""
+        mask = None if self.mask is None else self.mask.copy()
+        return Content(self.volume.copy(), list(self.cuts), mask, self.shaped)
+
+    def differs(self, volume, mask) -> bool:
+        """Whether the volume or the mask has another revision than this one's."""
+        return _revision(self.volume) != _revision(volume) or _revision(self.mask) != _revision(mask)
+
+
+def _revision(volume):
+    return None if volume is None else volume.revision
+
 
 class ContentCache:
     """Of things that have `nbytes`; those used last stay."""

@@ -19,7 +19,7 @@ from ..common.poses import moving
 from . import brushes, chunks, idle_detection, persistence, sculpt_store, sculpts, undo_states
 from .pure import reach, symmetry
 from .pure.stages import Stages
-from .pure.stroke_record import StrokeRecord, copy_of, revision
+from .pure.stroke_record import StrokeRecord
 from .sculpt_identity import SculptIdentity
 from .shown_surface import ShownSurface
 from .undo_states import State
@@ -83,8 +83,7 @@ class LiveSculpt:
     # ------------------------------------------------------------------ where things are
     @property
     def object(self):
-        """The sculpt, as long as it is the one that this was begun with and nothing else has changed it; otherwise
-        None."""
+        """The sculpt's object, or None where it was removed or something else has changed it."""
         return self._identity.object
 
     @property
@@ -112,11 +111,11 @@ class LiveSculpt:
     # ------------------------------------------------------------------ what it is
     def _become(self, content):
         """Takes over a state: volume, mask, cuts, and whether other means have shaped it."""
-        self.volume = content.volume.copy()
-        self.mask, self.cuts, self.shaped = copy_of(content.mask), list(content.cuts), content.shaped
+        own = content.copy()
+        self.volume, self.mask, self.cuts, self.shaped = own.volume, own.mask, own.cuts, own.shaped
 
     def _content(self):
-        return Content(self.volume.copy(), self.cuts, copy_of(self.mask), self.shaped)
+        return Content(self.volume, self.cuts, self.mask, self.shaped).copy()
 
     @property
     def facts(self):
@@ -148,8 +147,7 @@ class LiveSculpt:
 
     def begin_device_stroke(self):
         """What a device has begun to take belongs to a stroke."""
-        content = undo_states.snapshots.get(self.token).content
-        self.stroke = StrokeRecord(Content(content.volume.copy(), content.cuts, copy_of(content.mask), content.shaped))
+        self.stroke = StrokeRecord(undo_states.snapshots.get(self.token).content.copy())
         versions.lighten(self.object.data)
 
     @property
@@ -233,7 +231,7 @@ class LiveSculpt:
         """What was carved since `begin_stroke` is a state of its own. The caller's operator makes the undo step; a
         caller that has none gives it a `label`. False where nothing has changed."""
         stroke, self.stroke = self.stroke, None
-        if stroke is None or not stroke.changed(self.volume, self.mask):
+        if stroke is None or not stroke.begin.differs(self.volume, self.mask):
             return False
         self.cuts = [*self.cuts, *stroke.cuts(self.mask is not None)]
         self.shaped |= stroke.shaped
@@ -324,7 +322,7 @@ class LiveSculpt:
             content = sculpt_store.content(ob.data)
         except ValueError:  # what is packed is damaged: what is in memory takes its place
             return True
-        return content.volume.revision != self.volume.revision or revision(content.mask) != revision(self.mask)
+        return content.differs(self.volume, self.mask)
 
     def end(self):
         """Commits, and shows the sculpt itself again. An undo may bring the work back."""

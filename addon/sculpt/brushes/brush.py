@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import NamedTuple
 
 from ...common.poses import moving
@@ -15,7 +16,7 @@ class Path(NamedTuple):
     more: dict = {}  # of stroke_path.Settings, where it differs from what suits the tool
 
 
-class Brush:
+class Brush(ABC):
     """What a stroke does to a sculpt. A subclass says what differs from this one; its module lists its objects in
     BRUSHES, and everything that offers, draws, carves or records brushes reads the table of them all
     (brushes/__init__.py). Strings in files: `id`, `journal`, `cuts`."""
@@ -69,9 +70,9 @@ class Brush:
         ones."""
         return moving(poses, dt)
 
+    @abstractmethod
     def apply(self, sculpt, tool, poses, dt):
         """Changes the sculpt's volume or mask. Returns riffler.Cut, or None where there is no chip."""
-        raise NotImplementedError
 
     def record(self, stroke, copy: int, tool, poses, new: bool) -> None:
         """Notes in a StrokeRecord what of it can be cut again; `copy`: of symmetry."""
@@ -83,5 +84,5 @@ class Brush:
         return self.id
 
     def picture(self, draw) -> list:
-        """Its icon, drawn with the functions of tools/icons.py."""
-        raise NotImplementedError
+        """Its icon, drawn with the functions of tools/icons.py: the cutter on the surface."""
+        return draw.cutter(draw.FLOOR)

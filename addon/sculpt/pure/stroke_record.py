@@ -47,16 +47,3 @@ class StrokeRecord:
     def cuts(self, masked: bool) -> list[Cut]:
         """`masked`: the sculpt has a mask, beside which they were made."""
         return [Cut(m.tool, np.vstack(m.pieces), mode=m.mode, masked=masked) for m in self.moves]
-
-    def changed(self, volume, mask) -> bool:
-        """Whether the volume or the mask is another one than at the beginning."""
-        before = self.begin
-        return before.volume.revision != volume.revision or revision(before.mask) != revision(mask)
-
-
-def copy_of(volume):
-    return None if volume is None else volume.copy()
-
-
-def revision(volume):
-    return None if volume is None else volume.revision
