@@ -1,7 +1,9 @@
 """What a wheel is made of is all that its build reads."""
 
+import re
 import shutil
 import subprocess
+import tomllib
 
 import pytest
 
@@ -20,3 +22,12 @@ def test_the_sources_of_the_wheel_configure_where_nothing_else_lies(distribution
     command = [VENV / "bin" / "cmake", "-S", copy, "-B", tmp_path / "build", *what, f"-DPython_EXECUTABLE={PYTHON}"]
     done = subprocess.run(command, capture_output=True, text=True, env=tool_environment(), check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_both_distributions_are_of_the_version_of_the_build():
+    """riffler-bench reads the objects of the riffler of its version (riffler_bench/__init__.py)."""
+    build = re.search(r"project\(riffler VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    for distribution in (wheel.RIFFLER, wheel.BENCH):
+        project = tomllib.loads((distribution.project / "pyproject.toml").read_text())["project"]
+        assert project["version"] == build
+    assert project["dependencies"] == [f"riffler=={build}"]
