@@ -30,7 +30,7 @@ class WorkProgress:
     simulating: StringProperty(description="The program that is simulated; empty where none is")
     shading: StringProperty(description="How views were shaded before they showed colours of distances")
     percent: FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100, precision=0)
-    notice: StringProperty(description="What happened to a sculpt that nobody asked for; empty where all is well")
+    notice: StringProperty(description="Message about sculpts that no command reports; empty if there is none")
     text: StringProperty(description="How far it is, in its own words")
 
 

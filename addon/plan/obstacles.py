@@ -1,5 +1,5 @@
-"""What a plan's tool must stay clear of, the part that the plan was made on and the scene's fixtures: their surfaces,
-kept until one of them is another, and plan/pure/clearance.py of them, made by native tasks once somebody asks for it.
+"""What a plan's tool must stay clear of: the part that the plan was made on and the scene's fixtures. Keeps their
+surfaces until one of them changes. Native tasks make the Surroundings of plan/pure/clearance.py at the first query.
 
 Blender is not believed at once that something has changed, as undo says so of every object; nor, by whoever may not be
 wrong (`take`, `now`), that nothing has: a script's changes are told later.

@@ -12,8 +12,8 @@ THROUGH = {"WIRE", "BOUNDS"}  # objects that are shown so are looked through
 
 def hider(context, view):
     """A function of a place (3,) in mm, outside of its own surface: True where something hides it in the context's 3D
-    view, whose ViewRays is given. The way is gone from there to whoever looks, who may be far away: numbers are
-    single precision."""
+    view, whose ViewRays is given. Rays start at the place and end at the eye: Blender's single precision is finer near
+    the surface than near an eye that is far away."""
     scene, space = context.scene, context.space_data
     if _looks_through(space):
         return lambda place: False

@@ -25,7 +25,7 @@ _now = None
 
 
 class Simulation:
-    """Of a programs.Setup. `prefix.volume` is the stock as it is shown."""
+    """Simulates the program of a programs.Setup. `prefix.volume` is the stock that the view shows."""
 
     def __init__(self, context, setup):
         ob = bpy.data.objects[setup.sculpt]
@@ -227,7 +227,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, b
 
 
 class RIFFLER_OT_simulate_stop(bpy.types.Operator):
-    """End the simulation: the stock is seen as it is"""
+    """End the simulation and show the uncut stock again"""
 
     bl_idname = "riffler.simulate_stop"
     bl_label = "End Simulation"

@@ -1,7 +1,7 @@
-"""How long Blender draws its 3D views while somebody sculpts: the stage "draw" of sculpt/pure/stages.py.
+"""Measures how long Blender draws its 3D views during a stroke: the stage "draw" of sculpt/pure/stages.py.
 
-From before a view is drawn until after it, so what the processor does for a picture: a graphics card goes on by itself,
-while a renderer in software is the processor.
+The time runs from before a view is drawn until after it. That is the processor's share of a picture: a graphics card
+works on after it, a software renderer does not.
 """
 
 import time

@@ -16,7 +16,7 @@ _told = {}  # mark of a sculpt → what went wrong with it last
 
 
 def of(ob):
-    """The LiveSculpt of that sculpt where somebody works at it, otherwise None."""
+    """The LiveSculpt of that object, or None where it has none."""
     # To ask an object that has none yet for its settings gives it some, and undo takes it for another one.
     live = lives.get(ob.riffler.mark) if lives and ob is not None else None
     return live if live is not None and live.awake and live.object == ob else None
@@ -198,7 +198,7 @@ def attach():
 
 
 def detach():
-    handlers.ignore(HANDLERS)  # nobody listens any more, whatever comes of the work
+    handlers.ignore(HANDLERS)  # first: ending the work below changes objects
     handlers.stop(_look)
     try:
         _end_safely()

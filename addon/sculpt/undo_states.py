@@ -46,6 +46,6 @@ def state_of(ob):
 
 
 def tell(message):
-    """What nobody asked for has no report line: the panel shows it (stock/recover_panel.py)."""
+    """Shows a message in the panel (stock/recover_panel.py): outside of an operator there is no report line."""
     print(f"Riffler: {message}")
     bpy.context.window_manager.riffler.notice = message

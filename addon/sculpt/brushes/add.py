@@ -7,7 +7,7 @@ from .brush import Brush
 
 
 def stub(tool, depth: float):
-    """The cutter without what stands on its end: put on, a whole one would be a pillar as long as it is."""
+    """The end of the cutter only: putting on a whole cutter would make a pillar of its full length."""
     line = outline_of(tool)
     widest = line[line[:, 0] >= line[:, 0].max() * (1 - 1e-9), 1].min()
     data = tool.to_dict()
