@@ -28,7 +28,7 @@ std::span<const ShippedText> @function@() {
 endfunction()
 
 # A new description is one file and its name here.
-ship_texts(shipped_machines nc/shipped_machines.hpp native/nc/machines
+ship_texts(shipped_machines nc/machine/shipped_machines.hpp native/nc/machine/shipped
            tcp tcp-bc linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc
            sinumerik sinumerik-bc apt)
-ship_texts(shipped_pens pen/shipped_pens.hpp device/geometry riffler)
+ship_texts(shipped_pens pen/arms/shipped_pens.hpp device/geometry riffler)

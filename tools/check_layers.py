@@ -1,25 +1,46 @@
-"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, the core touches neither Python
-nor what it is judged by, the pen's C files touch nothing but each other, and addon/core never touches Blender. And a
-source includes its own header first, which shows that the header stands alone. Prints every line that breaks a rule and
-exits 1."""
+"""Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, a folder of a topic only those
+that FOLDERS names, no file leads back to itself, the core touches neither Python nor what it is judged by, the pen's C
+files touch nothing but each other, and addon/core never touches Blender. A source includes its own header first, which
+shows that the header stands alone. No type is defined twice in one namespace (cpp_types.py). Prints every line that
+breaks a rule and exits 1."""
 
 from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import cpp_types
 from shell import ROOT, StepError, main
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Folders beside the topics, and which topics and other such folders they may include. The reference must not share code
 # with what it judges; `None` is every topic.
 BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
-    "reference": (["geom", "tool"], []),
+    "reference": (["base", "geom", "tool"], []),
     "bench": (None, ["reference"]),
     "stress": (None, ["reference"]),
     "fuzz": (None, []),
     "bindings": (None, ["bench", "stress"]),
+}
+# Folders of one topic: which others of it each may include. A folder that is not here may include all of its topic.
+FOLDERS = {
+    "dexel": [],
+    "dexel/file": ["dexel"],
+    "dexel/from_mesh": ["dexel"],
+    "dexel/smooth": ["dexel"],
+    "mesh": [],
+    "mesh/decimate": ["mesh"],
+    "mesh/io": ["mesh"],
+    "nc": [],
+    "nc/machine": ["nc"],
+    "nc/read": ["nc", "nc/machine"],
+    "nc/write": ["nc", "nc/machine"],
+    "pen/arms": [],
+    "pen/hid": [],
+    "pen/models": ["pen", "pen/arms", "pen/hid"],
+    "pen/simulated": ["pen", "pen/arms", "pen/hid", "pen/models"],
 }
 # Topics that may include the pen's protocol and firmware.
 USES_DEVICE = {"pen"}
@@ -28,32 +49,32 @@ FREESTANDING = {"stddef.h", "stdint.h", "string.h"}
 IMPORTS_BLENDER = re.compile(r"^\s*(?:import|from)\s+(?:bpy|bmesh|gpu|mathutils|blf|bl_\w+)\b")
 
 
-def topics() -> list[str]:
+def topics(root: Path) -> list[str]:
     """The order of the topics, as the build has it."""
-    match = re.search(r"set\(RIFFLER_TOPICS ([^)]*)\)", (ROOT / "CMakeLists.txt").read_text())
+    match = re.search(r"set\(RIFFLER_TOPICS ([^)]*)\)", (root / "CMakeLists.txt").read_text())
     if not match:
         raise StepError("CMakeLists.txt sets no RIFFLER_TOPICS")
     return match[1].split()
 
 
-def lines(folder: Path, *suffixes: str):
+def lines(root: Path, folder: Path, *suffixes: str) -> Iterator[tuple[str, str]]:
     for path in sorted(folder.rglob("*")):
         if path.suffix in suffixes:
             for number, line in enumerate(path.read_text().splitlines(), 1):
-                yield f"{path.relative_to(ROOT)}:{number}", line
+                yield f"{path.relative_to(root)}:{number}", line
 
 
-def includes(folder: Path):
-    for place, line in lines(folder, ".cpp", ".hpp", ".c", ".h"):
+def includes(root: Path, folder: Path) -> Iterator[tuple[str, str, str]]:
+    for place, line in lines(root, folder, ".cpp", ".hpp", ".c", ".h"):
         if match := INCLUDE.match(line):
             yield place, match[1], match[2]
 
 
-def core_problems() -> list[str]:
-    order = topics()
+def core_problems(root: Path) -> list[str]:
+    order = topics(root)
     problems = []
     for rank, topic in enumerate(order):
-        for place, quote, name in includes(ROOT / "native" / topic):
+        for place, quote, name in includes(root, root / "native" / topic):
             folder = name.split("/")[0]
             if name == "Python.h" or folder == "pybind11":
                 problems.append(f"{place}: the core includes {name}")
@@ -66,12 +87,50 @@ def core_problems() -> list[str]:
     return problems
 
 
-def beside_problems() -> list[str]:
-    order = topics()
+def folder_problems(root: Path) -> list[str]:
+    problems = []
+    for topic in topics(root):
+        for place, quote, name in includes(root, root / "native" / topic):
+            folder = str(Path(place).parent).removeprefix("native/")
+            used = name.rpartition("/")[0]
+            if quote != '"' or folder not in FOLDERS or used == folder or used.split("/")[0] != topic:
+                continue
+            if used not in FOLDERS[folder]:
+                allowed = ", ".join(FOLDERS[folder]) or "none"
+                problems.append(f"{place}: {folder} includes {name}; of its topic's other folders it may use {allowed}")
+    return problems
+
+
+def circle_problems(root: Path) -> list[str]:
+    """A header and its source are one here; a -inl.hpp belongs to the sources that include it."""
+    used: dict[str, set[str]] = {}
+    for topic in topics(root):
+        for place, quote, name in includes(root, root / "native" / topic):
+            path = place.removeprefix("native/").split(":")[0]
+            if quote == '"' and not path.endswith("-inl.hpp"):
+                used.setdefault(path.rsplit(".", 1)[0], set()).add(name.rsplit(".", 1)[0])
+    problems = []
+    done: set[str] = set()
+
+    def visit(file: str, way: list[str]) -> None:
+        if file in way:
+            problems.append("a circle of files: " + " → ".join([*way[way.index(file) :], file]))
+        elif file not in done:
+            for other in sorted(used.get(file, set()) - {file}):
+                visit(other, [*way, file])
+            done.add(file)
+
+    for file in sorted(used):
+        visit(file, [])
+    return problems
+
+
+def beside_problems(root: Path) -> list[str]:
+    order = topics(root)
     problems = []
     for name, (above, beside) in BESIDE.items():
         allowed = [name, *(order if above is None else above), *beside]
-        for place, quote, header in includes(ROOT / "native" / name):
+        for place, quote, header in includes(root, root / "native" / name):
             folder = header.split("/")[0]
             if quote == '"' and "/" in header and folder not in allowed:
                 problems.append(
@@ -80,11 +139,11 @@ def beside_problems() -> list[str]:
     return problems
 
 
-def device_problems() -> list[str]:
+def device_problems(root: Path) -> list[str]:
     """A path is taken from the file that includes it, so that the two folders can be copied into a firmware's tree."""
     problems = []
     for folder, above in (("protocol", []), ("firmware", ["../protocol"])):
-        for place, quote, name in includes(ROOT / "device" / folder):
+        for place, quote, name in includes(root, root / "device" / folder):
             if quote == "<" and name not in FREESTANDING:
                 problems.append(f"{place}: {folder} includes <{name}>, which a pen may not have")
             elif quote == '"' and name.rpartition("/")[0] not in ["", *above]:
@@ -92,27 +151,49 @@ def device_problems() -> list[str]:
     return problems
 
 
-def header_problems() -> list[str]:
+def header_problems(root: Path) -> list[str]:
     """Where sources are compiled one by one, that shows that their headers stand alone (cmake/headers.cmake)."""
     problems = []
-    for topic in [*topics(), "reference"]:
-        for source in sorted((ROOT / "native" / topic).glob("*.cpp")):
+    for topic in [*topics(root), "reference"]:
+        for source in sorted((root / "native" / topic).rglob("*.cpp")):
             own = source.with_suffix(".hpp")
             found = [INCLUDE.match(line) for line in source.read_text().splitlines()]
             first = next((match[2] for match in found if match), None)
-            if own.exists() and first != f"{topic}/{own.name}":
-                problems.append(f"{source.relative_to(ROOT)}: includes {first} before {topic}/{own.name}")
+            name = str(own.relative_to(root / "native"))
+            if own.exists() and first != name:
+                problems.append(f"{source.relative_to(root)}: includes {first} before {name}")
     return problems
 
 
-def addon_problems() -> list[str]:
-    core = ROOT / "addon" / "core"
-    return [f"{place}: addon/core imports Blender" for place, line in lines(core, ".py") if IMPORTS_BLENDER.match(line)]
+def type_problems(root: Path) -> list[str]:
+    return [
+        f"{name} is defined twice: {', '.join(places)}"
+        for name, places in cpp_types.definitions(root / "native").items()
+        if len(places) > 1
+    ]
+
+
+def addon_problems(root: Path) -> list[str]:
+    core = root / "addon" / "core"
+    python = lines(root, core, ".py")
+    return [f"{place}: addon/core imports Blender" for place, line in python if IMPORTS_BLENDER.match(line)]
+
+
+CHECKS = [
+    core_problems,
+    folder_problems,
+    circle_problems,
+    beside_problems,
+    device_problems,
+    header_problems,
+    type_problems,
+    addon_problems,
+]
 
 
 def entry() -> None:
-    problems = core_problems() + beside_problems() + device_problems() + header_problems() + addon_problems()
-    print("\n".join(problems) or "layers: every include points upwards, every source includes its own header first")
+    problems = [problem for check in CHECKS for problem in check(ROOT)]
+    print("\n".join(problems) or "layers: every include points upwards, no circles, no type defined twice")
     sys.exit(bool(problems))
 
 

@@ -6,10 +6,10 @@
 #include <coal/shape/geometric_shapes.h>
 
 #include <memory>
-#include <numbers>
 
 #include "bench/contact_rivals.hpp"
 #include "bench/process.hpp"
+#include "geom/math.hpp"
 
 namespace riffler::bench {
 
@@ -53,7 +53,7 @@ std::vector<Shape> shapes(const Tool& tool) {
   const Frustum &shank = tool.shank()[0], &taper = tool.shank()[1], &holder = tool.holder()[0];
   const double r = tool.diameter() / 2, cone = taper.r1 * (taper.z1 - taper.z0) / (taper.r1 - taper.r0);
   const auto up = [](double z) { return coal::Transform3s(coal::Vec3s(0, 0, z)); };
-  const coal::Transform3s over(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()).toRotationMatrix(),
+  const coal::Transform3s over(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()).toRotationMatrix(),
                                coal::Vec3s(0, 0, taper.z1 - cone / 2));
   return {{std::make_shared<coal::Sphere>(r), up(r)},
           {std::make_shared<coal::Cylinder>(r, shank.z1 - r), up((r + shank.z1) / 2)},

@@ -2,10 +2,10 @@
 #include <fcl/fcl.h>
 
 #include <memory>
-#include <numbers>
 
 #include "bench/contact_rivals.hpp"
 #include "bench/process.hpp"
+#include "geom/math.hpp"
 
 namespace riffler::bench {
 
@@ -65,7 +65,7 @@ std::vector<Shape> shapes(const Tool& tool) {
 /// A cone's tip is above in FCL, and below in a tool.
 Place at(const Place& tool, const Shape& shape) {
   Place out = tool * Eigen::Translation3d(0, 0, shape.middle);
-  if (shape.geometry->getNodeType() == fcl::GEOM_CONE) out = out * Eigen::AngleAxisd(std::numbers::pi, Vector::UnitX());
+  if (shape.geometry->getNodeType() == fcl::GEOM_CONE) out = out * Eigen::AngleAxisd(kPi, Vector::UnitX());
   return out;
 }
 

@@ -7,9 +7,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/own_thread.hpp"
 #include "bench/process.hpp"
 #include "collide/collider.hpp"
-#include "geom/thread_time.hpp"
 #include "reference/surface_distance.hpp"
 #include "reference/surface_entry.hpp"
 #include "tool/cutters.hpp"

@@ -5,10 +5,11 @@
 #include <memory>
 #include <stdexcept>
 
+#include "base/check.hpp"
+#include "base/own_thread.hpp"
 #include "bench/contact_scene.hpp"
-#include "geom/thread_time.hpp"
-#include "haptics/held_over.hpp"
 #include "haptics/sculpt_step.hpp"
+#include "haptics/wrench_extrapolator.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::bench {
@@ -93,7 +94,7 @@ HapticScene scene_of(const HapticOptions& o) {
 
 HapticRun haptic_run(const HapticOptions& o) {
   if (o.period < 1) throw std::invalid_argument("period must be at least 1");
-  if (!(o.speed > 0) || !std::isfinite(o.speed)) throw std::invalid_argument("speed must be positive");
+  require_positive(o.speed, "speed");
   HapticScene scene = scene_of(o);
   SculptSettings settings;
   settings.parts = o.parts, settings.queries = o.queries, settings.memory = o.memory, settings.budget = o.budget;
@@ -108,7 +109,7 @@ HapticRun haptic_run(const HapticOptions& o) {
     if (k % o.period == 0) {
       const double dt = o.period * kTick;
       const Pose before = scene.grip(k * kTick - dt);
-      const Stretch way = stretch(grip, before);
+      const PoseError way = pose_error(grip, before);
       const double start = thread_seconds();
       const SculptStep::Result r = step.step(grip, {1 / dt * way.translation, 1 / dt * way.rotation}, dt);
       out.seconds.push_back(thread_seconds() - start);

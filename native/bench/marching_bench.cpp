@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "bench/scenes.hpp"
-#include "geom/parallel.hpp"
 #include "marching/mesher.hpp"
 #include "marching/to_mesh.hpp"
 #include "sweep/carve.hpp"

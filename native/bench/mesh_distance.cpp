@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler::bench {
 

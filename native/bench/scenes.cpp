@@ -1,8 +1,8 @@
 #include "bench/scenes.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "geom/math.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::bench {
@@ -13,10 +13,9 @@ Vec3 centre(int k) {
 }
 
 std::vector<Pose> path(double centre_height, bool turning) {
-  constexpr double kDegree = std::numbers::pi / 180;
   std::vector<Pose> poses;
   for (int k = 0; k <= kMoves; ++k) {
-    const double turn = 4 * std::numbers::pi * k / kMoves;
+    const double turn = 4 * kPi * k / kMoves;
     const double x = turning ? 30 * kDegree * std::sin(turn) : 0, y = turning ? 20 * kDegree * std::cos(turn) : 0;
     const Vec3 axis{std::sin(y) * std::cos(x), -std::sin(x), std::cos(y) * std::cos(x)};
     poses.push_back({centre(k) - centre_height * axis, glm::normalize(axis)});

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "reference/swept_path.hpp"
 
 namespace riffler::bench {

@@ -3,11 +3,11 @@
 #include <memory>
 #include <mutex>
 
+#include "base/parallel.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "collide/collider.hpp"
-#include "geom/parallel.hpp"
 #include "haptics/material.hpp"
 
 namespace riffler {
@@ -31,13 +31,13 @@ bool same(const Tool& a, const Tool& b) {
 
 /// The tool ready for contact: those asked for last are kept, for all colliders.
 std::shared_ptr<const Assembly> prepared(const Tool& tool) {
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMax = 8;
   static std::mutex mutex;
   static std::vector<std::shared_ptr<const Assembly>> kept;
   const std::lock_guard lock(mutex);
   for (const auto& a : kept)
     if (same(a->tool(), tool)) return a;
-  if (kept.size() == kMost) kept.erase(kept.begin());
+  if (kept.size() == kMax) kept.erase(kept.begin());
   return kept.emplace_back(std::make_shared<const Assembly>(tool));
 }
 
@@ -82,7 +82,7 @@ auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& f
         report(listener, 1);
         return collider;
       };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, Identity());
 }
 
 ColliderPtr make(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,

@@ -1,7 +1,7 @@
 // What riffler.files is made of. Not public.
+#include "base/atomic_file.hpp"
+#include "base/io.hpp"
 #include "bindings/bindings.hpp"
-#include "geom/atomic_file.hpp"
-#include "geom/io.hpp"
 
 namespace riffler {
 

@@ -228,14 +228,14 @@ was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.)"
           "take_back",
           [](T& self, std::size_t n) {
             [[maybe_unused]] const auto only = only_caller(self);
-            self.take_back(n);
+            self.undo(n);
           },
           py::arg("n") = 1, "The last n strokes no longer count: undo.")
       .def(
           "bring_back",
           [](T& self, std::size_t n) {
             [[maybe_unused]] const auto only = only_caller(self);
-            self.bring_back(n);
+            self.redo(n);
           },
           py::arg("n") = 1, "The last n that were taken back count again: redo. A new stroke ends that.");
 }

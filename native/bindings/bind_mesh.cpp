@@ -8,10 +8,10 @@
 #include "bindings/task.hpp"
 #include "mesh/audit.hpp"
 #include "mesh/closest.hpp"
-#include "mesh/decimate.hpp"
-#include "mesh/io.hpp"
+#include "mesh/decimate/decimate.hpp"
+#include "mesh/io/io.hpp"
+#include "mesh/io/scan.hpp"
 #include "mesh/orient.hpp"
-#include "mesh/scan.hpp"
 #include "mesh/smooth.hpp"
 #include "mesh/weld.hpp"
 
@@ -146,7 +146,7 @@ auto decimated(const MeshPtr& mesh, std::optional<std::int64_t> triangles, std::
                const py::object& progress) {
   const DecimateLimits limits{to_count(triangles), tolerance};
   const auto work = [=](const Progress& listener) { return std::make_shared<Mesh>(decimate(*mesh, limits, listener)); };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, Identity());
 }
 
 auto smoothed(const MeshPtr& mesh, int iterations, std::optional<double> tolerance, double feature_angle,
@@ -154,7 +154,7 @@ auto smoothed(const MeshPtr& mesh, int iterations, std::optional<double> toleran
   const auto work = [=](const Progress& listener) {
     return std::make_shared<Mesh>(smooth(*mesh, iterations, tolerance, feature_angle, listener));
   };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, Identity());
 }
 
 auto deviation_array(const MeshPtr& mesh, const MeshPtr& other, bool with_sign, const py::object& progress) {

@@ -1,10 +1,10 @@
-#include <numbers>
 #include <optional>
 #include <variant>
 
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
+#include "geom/math.hpp"
 #include "marching/mesher.hpp"
 #include "marching/patch_edges.hpp"
 
@@ -48,8 +48,7 @@ py::list to_list(const std::vector<std::size_t>& numbers) {
 using BrickOrBricks = std::variant<std::size_t, std::vector<std::size_t>>;
 
 py::tuple patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges, const std::optional<double>& sharp) {
-  if (sharp && !(*sharp >= 0 && *sharp <= std::numbers::pi))
-    throw std::invalid_argument("normals: the angle must be 0 to pi rad");
+  if (sharp && !(*sharp >= 0 && *sharp <= kPi)) throw std::invalid_argument("normals: the angle must be 0 to pi rad");
   MeshPatch patch;
   PatchEdges edges;
   BulkVector<Vec3f> normals;

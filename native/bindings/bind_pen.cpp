@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "bindings/bindings.hpp"
+#include "pen/arms/motors.hpp"
+#include "pen/arms/pens.hpp"
+#include "pen/arms/redundancy.hpp"
+#include "pen/arms/wrench_split.hpp"
 #include "pen/capability.hpp"
-#include "pen/motors.hpp"
-#include "pen/pens.hpp"
-#include "pen/redundancy.hpp"
-#include "pen/wrench_split.hpp"
 
 namespace riffler {
 
@@ -139,17 +139,17 @@ py::array_t<double> noticed(const PenKinematics& pen, const Doubles& counts) {
                 {6});
 }
 
-const char* name_of(Reach reach) {
+const char* name_of(ReachResult reach) {
   switch (reach) {
-    case Reach::Reached:
+    case ReachResult::Reached:
       return "reached";
-    case Reach::TooFar:
+    case ReachResult::TooFar:
       return "too far";
-    case Reach::TooNear:
+    case ReachResult::TooNear:
       return "too near";
-    case Reach::OnAxis:
+    case ReachResult::OnAxis:
       return "on axis";
-    case Reach::Limits:
+    case ReachResult::Limits:
       return "limits";
     default:
       return "not finite";

@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "bindings/bindings.hpp"
-#include "pen/kinematics.hpp"
-#include "pen/open_error.hpp"
+#include "pen/arms/kinematics.hpp"
+#include "pen/hid/open_error.hpp"
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
 #include "pen/registry.hpp"
-#include "pen/simulated_device.hpp"
+#include "pen/simulated/simulated_device.hpp"
 
 namespace riffler {
 namespace {
@@ -31,7 +31,7 @@ py::dict dict_of(const FoundDevice& found) {
   out["id"] = found.info.id();
   out["serial"] = found.info.serial;
   out["kind"] = found.family == nullptr ? py::object(py::none()) : py::object(py::str(found.family->kind));
-  out["tried"] = found.tried;
+  out["tried"] = found.was_opened;
   out["problem"] =
       found.problem == OpenProblem::None ? py::object(py::none()) : py::object(py::str(problem_text(found.problem)));
   out["text"] = or_none(found.text);

@@ -2,9 +2,9 @@
 #include <limits>
 #include <memory>
 
+#include "base/parallel.hpp"
 #include "bindings/task.hpp"
 #include "collide/collider.hpp"
-#include "geom/parallel.hpp"
 #include "plan/contact_location.hpp"
 #include "plan/cutter_locations.hpp"
 #include "plan/drop.hpp"

@@ -11,11 +11,11 @@
 #include "nc/edit.hpp"
 #include "nc/follow.hpp"
 #include "nc/limits.hpp"
-#include "nc/machines.hpp"
-#include "nc/option_texts.hpp"
+#include "nc/machine/machines.hpp"
+#include "nc/machine/option_texts.hpp"
 #include "nc/program.hpp"
-#include "nc/reader.hpp"
-#include "nc/writer.hpp"
+#include "nc/read/reader.hpp"
+#include "nc/write/writer.hpp"
 #include "verify/motion_check.hpp"
 
 namespace riffler {
@@ -517,7 +517,7 @@ would take).)")
            "Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.")
       .def("transformed", &edited_transform, py::arg("matrix"),
            "In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.")
-      .def("retimed", &retimed, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
+      .def("retimed", &scale_feeds, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
       .def_static(
           "joined",
           [](const std::vector<std::reference_wrapper<const Program>>& programs) {
@@ -526,7 +526,7 @@ would take).)")
             return joined(all);
           },
           py::arg("programs"), "One after the other. ValueError where one number stands for tools of two shapes.")
-      .def("retooled", &retooled, py::arg("numbers"),
+      .def("retooled", &renumber_tools, py::arg("numbers"),
            "Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share "
            "one.")
       .def("cuts", &cuts,

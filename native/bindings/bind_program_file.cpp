@@ -1,6 +1,6 @@
 // riffler.Program.save, .load, .to_bytes, and pickling: programs to the bit.
+#include "base/bytes.hpp"
 #include "bindings/bindings.hpp"
-#include "geom/bytes.hpp"
 #include "nc/program_file.hpp"
 
 namespace riffler {

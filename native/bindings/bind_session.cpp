@@ -4,7 +4,7 @@
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
-#include "dexel/file.hpp"
+#include "dexel/file/file.hpp"
 #include "haptics/material.hpp"
 #include "pen/pointer.hpp"
 #include "session/journal_sink.hpp"
@@ -134,7 +134,7 @@ struct Options {
       else
         read_other(name, py::reinterpret_borrow<py::object>(value));
     }
-    loop.held_over.most = loop.limits.wrench;
+    loop.wrench_extrapolator.most = loop.limits.wrench;
     settings.validate();
   }
 
@@ -354,7 +354,7 @@ tip, in the part's.)")
           "strokes", [](const F& f) { return f.frame.strokes; }, "That were begun since the start.")
       .def_property_readonly("in_stroke", [](const F& f) { return f.frame.in_stroke; })
       .def_property_readonly(
-          "untold", [](const F& f) { return f.frame.untold; },
+          "untold", [](const F& f) { return f.frame.dropped_ticks; },
           "Steps since the start that are in no frame: they were asked for too seldom (4096 are kept).")
       .def("__len__", [](const F& f) { return f.frame.ticks.size(); });
 }

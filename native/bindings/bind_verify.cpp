@@ -4,8 +4,8 @@
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_report.hpp"
 #include "bindings/task.hpp"
-#include "dexel/from_mesh.hpp"
-#include "nc/reader.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
+#include "nc/read/reader.hpp"
 
 namespace riffler {
 
@@ -149,12 +149,12 @@ auto verify(const py::object& program, SharedVolume& stock, const py::object& pa
   }
   if (!py::isinstance<py::iterable>(program))
     throw py::value_error("program must be a Program or an iterable of Programs");
-  if (wants_task(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
+  if (is_task_request(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
   const Progress listener = to_progress(progress);
   const auto verification = make_verification_here(arguments, part(listener, 0, 0.1));
   VerifyReport report =
       run_stream(*verification, py::reinterpret_borrow<py::iterable>(program), part(listener, 0.1, 1));
-  return Found<std::shared_ptr<SharedReport>>(py::cast(share(std::move(report))));
+  return ValueOrTask<std::shared_ptr<SharedReport>>(py::cast(share(std::move(report))));
 }
 
 auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<Program>& program,

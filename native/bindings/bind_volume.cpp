@@ -5,8 +5,8 @@
 #include "bindings/task.hpp"
 #include "bindings/volume_class.hpp"
 #include "dexel/boolean.hpp"
-#include "dexel/file.hpp"
-#include "dexel/from_mesh.hpp"
+#include "dexel/file/file.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
 #include "marching/to_mesh.hpp"
 #include "sweep/carve.hpp"
 

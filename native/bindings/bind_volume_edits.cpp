@@ -3,7 +3,7 @@
 #include "bindings/volume_class.hpp"
 #include "dexel/clip.hpp"
 #include "dexel/contains.hpp"
-#include "dexel/from_mesh.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/grown.hpp"
 #include "dexel/parts.hpp"
 #include "dexel/quadrics.hpp"
@@ -28,7 +28,7 @@ auto sphere_volume(const py::object& centre, double radius, double pitch, const 
   const Sphere solid{to_vec3(centre, "centre"), radius};
   const Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
   const auto work = [solid, frame](const Progress& listener) { return share(sphere(solid, frame, listener)); };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, Identity());
 }
 
 auto cylinder_volume(const py::object& centre, double radius, double height, double pitch,
@@ -37,14 +37,14 @@ auto cylinder_volume(const py::object& centre, double radius, double height, dou
   const Cylinder solid{to_vec3(centre, "centre"), radius, height, to_vec3(axis, "axis")};
   const Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
   const auto work = [solid, frame](const Progress& listener) { return share(cylinder(solid, frame, listener)); };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, Identity());
 }
 
 auto grown_volume(SharedVolume& self, const py::object& lower, const py::object& upper, const py::object& progress) {
   const Volume state = Reading(self).volume.snapshot();
   const Box3 wanted = box_or(state.frame().box, lower, upper);
   const auto work = [state, wanted](const Progress& listener) { return share(grown(state, wanted, listener)); };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, Identity());
 }
 
 std::shared_ptr<SharedVolume> clip_volume(const std::shared_ptr<SharedVolume>& self, const py::object& point,
@@ -92,7 +92,7 @@ auto resampled(SharedVolume& self, double pitch, const std::optional<std::string
     if (mesh.empty()) return share(fresh.snapshot());
     return share(from_mesh(mesh, fresh.frame(), part(listener, 0.5, 1)));
   };
-  return long_call(progress, work, AsItIs());
+  return long_call(progress, work, Identity());
 }
 
 }  // namespace

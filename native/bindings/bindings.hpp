@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
+#include "base/progress.hpp"
 #include "bindings/gil.hpp"
 #include "collide/contact.hpp"
 #include "geom/pose.hpp"
-#include "geom/progress.hpp"
 #include "geom/vec.hpp"
 #include "nc/options.hpp"
 #include "plan/orientation.hpp"
@@ -29,7 +29,7 @@ void bind_files(py::module_& m);
 void bind_mesh(py::module_& m);
 void bind_tool(py::module_& m);
 void bind_volume(py::module_& m);
-void bind_soften(py::module_& m);
+void bind_smooth_dabs(py::module_& m);
 void bind_mesher(py::module_& m);
 void bind_program(py::module_& m);
 void bind_program_file(py::module_& m);

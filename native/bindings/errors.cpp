@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "base/error.hpp"
 #include "bindings/bindings.hpp"
-#include "geom/error.hpp"
-#include "pen/open_error.hpp"
+#include "pen/hid/open_error.hpp"
 
 namespace riffler {
 

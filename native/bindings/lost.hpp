@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bindings/bindings.hpp"
-#include "dexel/mesh_report.hpp"
+#include "dexel/from_mesh/mesh_report.hpp"
 #include "marching/thin.hpp"
 
 namespace riffler {

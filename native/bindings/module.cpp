@@ -15,7 +15,7 @@ PYBIND11_MODULE(_core, m) {
   bind_mesh(m);
   bind_tool(m);
   bind_volume(m);
-  bind_soften(m);
+  bind_smooth_dabs(m);
   bind_mesher(m);
   bind_collide(m);
   bind_program(m);

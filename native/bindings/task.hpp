@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/background.hpp"
 #include "bindings/bindings.hpp"
-#include "geom/background.hpp"
 
 namespace riffler {
 
@@ -42,10 +42,10 @@ class Task {
 
 /// A T as Python has it, or a Task of one; signatures say T.
 template <class T>
-class Found : public py::object {
+class ValueOrTask : public py::object {
  public:
   using py::object::object;
-  explicit Found(py::object&& found) : py::object(std::move(found)) {}
+  explicit ValueOrTask(py::object&& found) : py::object(std::move(found)) {}
 };
 
 /// As Python has it.
@@ -58,7 +58,7 @@ py::object to_python_object(T&& value) {
 }
 
 /// Whether the caller gave the class riffler.Task as `progress`.
-inline bool wants_task(const py::object& progress) {
+inline bool is_task_request(const py::object& progress) {
   return progress.is(py::type::of<Task>());
 }
 
@@ -69,8 +69,8 @@ inline bool wants_task(const py::object& progress) {
 template <class Work, class Convert>
 auto long_call(const py::object& progress, Work&& work, Convert convert) {
   using Value = std::invoke_result_t<Work&, const Progress&>;
-  using Result = Found<std::invoke_result_t<Convert&, Value&&>>;
-  if (!wants_task(progress)) {
+  using Result = ValueOrTask<std::invoke_result_t<Convert&, Value&&>>;
+  if (!is_task_request(progress)) {
     const Progress listener = to_progress(progress);
     Value value = [&] {
       const NoGil release;
@@ -88,7 +88,7 @@ auto long_call(const py::object& progress, Work&& work, Convert convert) {
 }
 
 /// For what is as Python has it already.
-struct AsItIs {
+struct Identity {
   template <class T>
   T operator()(T&& value) const {
     return std::move(value);
@@ -98,6 +98,6 @@ struct AsItIs {
 }  // namespace riffler
 
 template <class T>
-struct pybind11::detail::handle_type_name<riffler::Found<T>> {
+struct pybind11::detail::handle_type_name<riffler::ValueOrTask<T>> {
   static constexpr auto name = make_caster<T>::name;
 };

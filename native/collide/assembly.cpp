@@ -76,7 +76,7 @@ Assembly::Assembly(const Tool& tool)
 }
 
 Part Assembly::part_at(double z) const {
-  for (const Stretch& s : stretches_)
+  for (const HeightBand& s : stretches_)
     if (z <= s.high) return s.part;
   return stretches_.back().part;
 }

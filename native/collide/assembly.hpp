@@ -23,12 +23,12 @@ class Assembly {
   /// Of all of it, mm: no point is deeper than this.
   double max_radius() const { return max_radius_; }
   /// Cutter, shank and holder by their heights: which is the widest there.
-  struct Stretch {
+  struct HeightBand {
     double low, high;
     Part part;
     double radius, bottom, top;  // where it is widest, and at both ends
   };
-  const std::vector<Stretch>& stretches() const { return stretches_; }
+  const std::vector<HeightBand>& stretches() const { return stretches_; }
   Part part_at(double z) const;
   /// Places on the axis and off it (radius, height) that are deeper than what is round them: at least one of every
   /// connected set of such. Found when first asked for.
@@ -43,7 +43,7 @@ class Assembly {
   Outline outline_;
   OutlineRuns runs_;
   std::vector<LaneEdge> lane_edges_;
-  std::vector<Stretch> stretches_;
+  std::vector<HeightBand> stretches_;
   double reach_, max_radius_;
   struct Deepest;
   std::shared_ptr<Deepest> deepest_;

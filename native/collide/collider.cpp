@@ -11,7 +11,7 @@
 #include "collide/nearest_search.hpp"
 #include "collide/winding.hpp"
 #include "marching/to_mesh.hpp"
-#include "mesh/decimate.hpp"
+#include "mesh/decimate/decimate.hpp"
 #include "mesh/orient.hpp"
 
 namespace riffler {

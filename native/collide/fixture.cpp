@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/block_pool.hpp"
 #include "collide/box_lanes.hpp"
-#include "geom/block_pool.hpp"
 
 namespace riffler {
 
@@ -52,7 +52,7 @@ class FixtureSum {
         widest_(0.5 * boxes.spacing() * (1 + 1e-9)) {
     nodes_.reserve(512), pieces_.reserve(512);
     // The tool's surface is to be flat across a box.
-    for (const Assembly::Stretch& s : assembly.stretches()) widest_ = std::min(widest_, 0.2 * s.radius);
+    for (const Assembly::HeightBand& s : assembly.stretches()) widest_ = std::min(widest_, 0.2 * s.radius);
   }
 
   void run(Deadline& deadline, Counts& counts) {
@@ -91,8 +91,8 @@ class FixtureSum {
   /// from one to the other, so that the force has no step there, and within the narrower one: a box that the face of
   /// the wider one cuts is pushed by that. Where they are as wide, half in each.
   double target(double z) const {
-    const std::vector<Assembly::Stretch>& all = assembly_.stretches();
-    const auto middle = [](const Assembly::Stretch& s) { return 0.5 * (s.low + s.high); };
+    const std::vector<Assembly::HeightBand>& all = assembly_.stretches();
+    const auto middle = [](const Assembly::HeightBand& s) { return 0.5 * (s.low + s.high); };
     const double width = boxes_.spacing();
     double out = middle(all[0]);
     for (std::size_t i = 1; i < all.size(); ++i) {
@@ -104,12 +104,12 @@ class FixtureSum {
 
   /// 1 where the material of a node that is wholly in the tool pushes as if it were all in one place, 0 where it is to
   /// be looked at box by box, and between them in part.
-  double together(const Sphere& s, double distance) const {
+  double together(const BoundingSphere& s, double distance) const {
     const double room = -distance - s.radius;  // to the tool's surface
     if (!(room > 0) || s.radius == 0) return room > 0;
     const Vec3 p = frame_.to_tool(s.centre);
     double least = room;  // in radii: the room, and how far it is to where the direction changes
-    for (const Assembly::Stretch& st : assembly_.stretches())
+    for (const Assembly::HeightBand& st : assembly_.stretches())
       if (st.low > 0) least = std::min(least, std::abs(p.z - st.low) - s.radius - 1.5 * boxes_.spacing());
     const double far = glm::length(p - Vec3(0, 0, target(p.z)));
     return std::clamp(std::min(least / s.radius, (far / s.radius - 6) / 3), 0.0, 1.0);
@@ -183,7 +183,7 @@ class FixtureSum {
     const bool late = deadline.passed();
     Push sum;
     for (int k = 0; k < kLanes; ++k) {
-      const Sphere s = spheres.sphere(k);
+      const BoundingSphere s = spheres.sphere(k);
       if (!(distance[k] < s.radius)) continue;
       const double whole = late ? std::clamp(0.5 - 0.5 * distance[k] / s.radius, 0.0, 1.0) : together(s, distance[k]);
       sum.add(s.centre - frame_.tip, n.weight * whole * boxes.volume[k]);

@@ -37,7 +37,7 @@ class Fixture {
   MaterialBoxes boxes_;
   Surface surface_;
   Closest sides_;
-  Sphere whole_;  // round all of it
+  BoundingSphere whole_;  // round all of it
 };
 
 }  // namespace riffler

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geom/block_pool.hpp"
+#include "base/block_pool.hpp"
 
 namespace riffler {
 
@@ -19,7 +19,7 @@ class ForceSum {
         stiffness_(stiffness),
         widest_(0.5 * coarse * points.spacing()),
         contact_(contact) {
-    for (const Assembly::Stretch& s : assembly.stretches())
+    for (const Assembly::HeightBand& s : assembly.stretches())
       if (s.part == Part::Cutter) cutter_top_ = s.high;
   }
 
@@ -44,7 +44,7 @@ class ForceSum {
 
   /// 1 where a node stands for its points, 0 where it does not, and between them where both count in part: it changes
   /// with the distance from the cutter, here from a cylinder round it.
-  double share(const Sphere& s) const {
+  double share(const BoundingSphere& s) const {
     if (s.radius > widest_) return 0;
     const Vec3 p = frame_.to_tool(s.centre);
     const double past = std::max(

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 
@@ -110,7 +110,7 @@ MaterialBoxes::MaterialBoxes(const std::vector<Piece>& pieces, double spacing)
       tree_({pieces.size(), [&](std::size_t i) { return pieces[i].box; },
              [&](std::size_t i) {
                const Box3& b = pieces[i].box;
-               return Sphere{0.5 * (b.lower + b.upper), 0.5 * glm::length(b.size())};
+               return BoundingSphere{0.5 * (b.lower + b.upper), 0.5 * glm::length(b.size())};
              },
              [&](std::size_t i, const Vec3& p) {
                const Box3& b = pieces[i].box;

@@ -1,5 +1,5 @@
 // Points in the half-plane of a tool, in vector lanes: what the kernels over its outline have in common. Included once
-// for every instruction set, as geom/lanes-inl.hpp.
+// for every instruction set, as base/lanes-inl.hpp.
 #if defined(RIFFLER_COLLIDE_OUTLINE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_COLLIDE_OUTLINE_INL_HPP
 #undef RIFFLER_COLLIDE_OUTLINE_INL_HPP
@@ -7,8 +7,8 @@
 #define RIFFLER_COLLIDE_OUTLINE_INL_HPP
 #endif
 
+#include "base/lanes-inl.hpp"
 #include "collide/outline_lanes.hpp"
-#include "geom/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 
@@ -35,11 +36,11 @@ void split(const Corners& t, double most, const Visit& visit) {
 }  // namespace
 
 double chosen_spacing(const Surface& surface, double spacing) {
-  constexpr double kChosen = 1e5, kMost = 5e7;
-  if (!std::isfinite(spacing) || spacing < 0) throw std::invalid_argument("spacing must not be negative or not finite");
+  constexpr double kChosen = 1e5, kMax = 5e7;
+  require_not_negative(spacing, "spacing", "must not be negative or not finite");
   const double area = area_of(surface);
   if (spacing == 0) return area > 0 ? std::sqrt(area / kChosen) : 1;
-  if (area / (spacing * spacing) > kMost)
+  if (area / (spacing * spacing) > kMax)
     throw std::invalid_argument("spacing: so small that the part would have more than 50 million points");
   return spacing;
 }
@@ -55,7 +56,7 @@ SamplePoints::SamplePoints(std::vector<Piece> pieces, double spacing)
                box.add(pieces[i].centroid);
                return box;
              },
-             [&](std::size_t i) { return Sphere{pieces[i].centroid, 0}; },
+             [&](std::size_t i) { return BoundingSphere{pieces[i].centroid, 0}; },
              [&](std::size_t i, const Vec3& p) { return glm::length(pieces[i].centroid - p); },
              [&](std::span<const std::uint32_t> some) {
                Vec3 sum(0);

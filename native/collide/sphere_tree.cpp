@@ -4,8 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include "base/parallel.hpp"
 #include "geom/median_tree.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 
@@ -29,21 +29,21 @@ SphereGroup::SphereGroup() {
   for (int k = 0; k < kLanes; ++k) put(k, {Vec3(0), -std::numeric_limits<double>::infinity()});
 }
 
-Sphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   // Of the longest side where the opposite corner lies in its sphere, otherwise the circle through all three.
   const double ab = glm::dot(b - a, b - a), bc = glm::dot(c - b, c - b), ca = glm::dot(a - c, a - c);
   const auto over = [](const Vec3& p, const Vec3& q, const Vec3& r) {
     const Vec3 centre = 0.5 * (p + q);
-    return Sphere{centre,
-                  std::max(glm::length(p - centre), std::max(glm::length(q - centre), glm::length(r - centre)))};
+    return BoundingSphere{
+        centre, std::max(glm::length(p - centre), std::max(glm::length(q - centre), glm::length(r - centre)))};
   };
   const bool first = ab >= bc && ab >= ca, second = !first && bc >= ca;
-  const Sphere wide = first ? over(a, b, c) : second ? over(b, c, a) : over(c, a, b);
+  const BoundingSphere wide = first ? over(a, b, c) : second ? over(b, c, a) : over(c, a, b);
   if (2 * std::max({ab, bc, ca}) >= ab + bc + ca) return wide;
   const Vec3 n = glm::cross(b - a, c - a);
   const Vec3 centre = a + (glm::cross(n, b - a) * ca + glm::cross(c - a, n) * ab) / (2 * glm::dot(n, n));
   const double radius = std::max({glm::length(a - centre), glm::length(b - centre), glm::length(c - centre)});
-  return radius < wide.radius ? Sphere{centre, radius} : wide;
+  return radius < wide.radius ? BoundingSphere{centre, radius} : wide;
 }
 
 SphereTree::SphereTree(const Items& items) : order_(items.count) {
@@ -86,7 +86,7 @@ void SphereTree::bound(const Items& items) {
       const std::size_t from = first(levels_, leaf), to = first(levels_, leaf + 1);
       std::sort(order_.begin() + static_cast<std::ptrdiff_t>(from), order_.begin() + static_cast<std::ptrdiff_t>(to));
       for (std::size_t i = from; i < to; ++i) {
-        Sphere s = items.sphere(order_[i]);
+        BoundingSphere s = items.sphere(order_[i]);
         s.radius = grown(s.radius, s.centre);
         groups_[first_leaf_ + leaf].put(static_cast<int>(i - from), s);
       }

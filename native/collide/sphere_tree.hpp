@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "geom/lanes.hpp"
+#include "base/lanes.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {
 
-struct Sphere {
+struct BoundingSphere {
   Vec3 centre{0};
   double radius = 0;
 };
@@ -21,8 +21,10 @@ struct alignas(64) SphereGroup {
   double x[kLanes], y[kLanes], z[kLanes], radius[kLanes];
 
   SphereGroup();
-  void put(int k, const Sphere& s) { x[k] = s.centre.x, y[k] = s.centre.y, z[k] = s.centre.z, radius[k] = s.radius; }
-  Sphere sphere(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
+  void put(int k, const BoundingSphere& s) {
+    x[k] = s.centre.x, y[k] = s.centre.y, z[k] = s.centre.z, radius[k] = s.radius;
+  }
+  BoundingSphere sphere(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 };
 
 /// Complete: group g has the groups 8 g + 1 … 8 g + 8 below it, and the last level's groups hold the items themselves.
@@ -33,7 +35,7 @@ class SphereTree {
   struct Items {
     std::size_t count;
     std::function<Box3(std::size_t)> box;
-    std::function<Sphere(std::size_t)> sphere;              ///< round the item
+    std::function<BoundingSphere(std::size_t)> sphere;      ///< round the item
     std::function<double(std::size_t, const Vec3&)> reach;  ///< greatest distance of the item from a point
     /// Centre for the sphere round some items; without it that of their box.
     std::function<Vec3(std::span<const std::uint32_t>)> centre = {};
@@ -65,6 +67,6 @@ class SphereTree {
 };
 
 /// The smallest sphere round a triangle, also one without area.
-Sphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c);
+BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace riffler

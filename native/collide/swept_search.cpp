@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.hpp"
 #include "geom/math.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 
@@ -40,7 +40,7 @@ void SweptSearch::push(const Entry& e) {
 
 /// The same for either half of the stretch, of a group looked at anew there; false where it has none.
 bool SweptSearch::halve(const Surface& surface, Entry e) {
-  const Stretch& whole = stretches_[e.stretch];
+  const MoveInterval& whole = stretches_[e.stretch];
   const double from = whole.from, to = whole.to, middle = 0.5 * (from + to);
   if (to - from < kShortest) return false;
   if (whole.half == 0) {
@@ -61,7 +61,7 @@ bool SweptSearch::halve(const Surface& surface, Entry e) {
 void SweptSearch::look_again(const Surface& surface, Entry& e) {
   const SphereGroup& siblings = surface.tree().group((e.index - 1) / kLanes);
   const int k = static_cast<int>((e.index - 1) % kLanes);
-  const Stretch& s = stretches_[e.stretch];
+  const MoveInterval& s = stretches_[e.stretch];
   double distance[kLanes];
   centre_distances(assembly_.lane_edges(), s.frame, siblings, distance);
   ++out_.evaluations;
@@ -81,7 +81,7 @@ bool SweptSearch::is_better_halved(const Entry& e) const {
 void SweptSearch::attained(const Entry& e) {
   const TriangleSearch::Least& least = search_.least();
   if (!(least.distance < out_.clearance)) return;
-  const Stretch& s = stretches_[e.stretch];
+  const MoveInterval& s = stretches_[e.stretch];
   out_.clearance = least.distance, out_.at = 0.5 * (s.from + s.to);
   out_.touch = e.surface > 0 ? Touch::Fixture : static_cast<Touch>(least.part);
 }
@@ -89,7 +89,7 @@ void SweptSearch::attained(const Entry& e) {
 void SweptSearch::open(const Surface& surface, const Entry& e) {
   const SphereTree& tree = surface.tree();
   const SphereGroup& spheres = tree.group(e.index);
-  const Stretch& s = stretches_[e.stretch];
+  const MoveInterval& s = stretches_[e.stretch];
   double distance[kLanes], low[kLanes];
   centre_distances(assembly_.lane_edges(), s.frame, spheres, distance);
   const bool items = tree.holds_items(e.index);
@@ -109,7 +109,7 @@ void SweptSearch::open(const Surface& surface, const Entry& e) {
 }
 
 void SweptSearch::test(const Surface& surface, const Entry& e) {
-  const Stretch& s = stretches_[e.stretch];
+  const MoveInterval& s = stretches_[e.stretch];
   const Corners& c = surface.corners(e.index);
   const Corners t{s.frame.to_tool(c.a), s.frame.to_tool(c.b), s.frame.to_tool(c.c)};
   search_.forget();

@@ -39,7 +39,7 @@ class SweptSearch {
   Swept operator()(std::span<const Surface* const> surfaces);
 
  private:
-  struct Stretch {
+  struct MoveInterval {
     double from, to;
     ToolFrame frame;  // in its middle
     Drift drift;
@@ -68,7 +68,7 @@ class SweptSearch {
   const Motion& motion_;
   double wanted_;
   std::size_t most_;
-  std::vector<Stretch> stretches_;
+  std::vector<MoveInterval> stretches_;
   std::vector<Entry> heap_;
   TriangleSearch search_;
   Swept out_;

@@ -249,7 +249,7 @@ void TriangleSearch::push(const Cell& cell) {
 
 void TriangleSearch::search(const Corners& t, double low_of_all, Deadline& deadline) {
   const double near = std::max(slack(size_of(t)), loose_);
-  const std::size_t most = cells_ + kMostCells;
+  const std::size_t most = cells_ + kMaxCells;
   heap_.assign(1, {t, low_of_all});
   while (!heap_.empty() && heap_.front().low < least_.distance - near && least_.distance >= enough_) {
     if (cells_ > most || deadline.passed()) {

@@ -4,10 +4,10 @@
 #include <array>
 #include <limits>
 
+#include "base/block_pool.hpp"
 #include "collide/deadline.hpp"
 #include "collide/drift.hpp"
 #include "collide/outline_runs.hpp"
-#include "geom/block_pool.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {
@@ -46,10 +46,10 @@ class TriangleSearch {
   /// Places that are lower by less than this need not be found, mm.
   void loose(double by) { loose_ = by; }
 
-  /// No place on any triangle is lower than this: the least, or less where kMostCells or the time did not suffice. The
+  /// No place on any triangle is lower than this: the least, or less where kMaxCells or the time did not suffice. The
   /// first happens deep in a tool where three of its surfaces are equally near.
   double low() const { return std::min(left_, least_.distance); }
-  static constexpr std::size_t kMostCells = 50000;
+  static constexpr std::size_t kMaxCells = 50000;
 
   std::size_t cells() const { return cells_; }
 

@@ -52,7 +52,7 @@ double WindingNumber::operator()(const Vec3& p) const {
     open.pop_back();
     const bool items = tree.holds_items(g);
     for (int k = 0; k < kLanes; ++k) {
-      const Sphere s = tree.group(g).sphere(k);
+      const BoundingSphere s = tree.group(g).sphere(k);
       if (s.radius < 0) continue;
       const Dipole& d = dipoles_[g][k];
       if (glm::length(s.centre - p) > kFar * s.radius) {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "dexel/joiner.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 
 namespace riffler {
 

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "dexel/boolean.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 
@@ -41,7 +42,7 @@ void fill(Grid& grid, std::size_t tile, const HalfSpace& half) {
 }  // namespace
 
 void clip(Volume& volume, const Vec3& point, const Vec3& normal, const Progress& progress) {
-  if (!finite(point)) throw std::invalid_argument("point must be finite");
+  require(finite(point), "point", "must be finite");
   const double length = glm::length(normal);
   if (!finite(normal) || !(length > 0) || !std::isfinite(length))
     throw std::invalid_argument("normal must be finite and not of length 0");

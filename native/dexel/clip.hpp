@@ -1,8 +1,8 @@
 // A volume cut off by a plane.
 #pragma once
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 
 namespace riffler {
 

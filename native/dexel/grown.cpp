@@ -9,7 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 
@@ -100,8 +101,8 @@ void move_rays(const Grid& from, Grid& to, int du, int dv, const Progress& progr
 }  // namespace
 
 Frame grown(const Frame& frame, const Box3& wanted) {
-  if (!finite(wanted.lower)) throw std::invalid_argument("lower must be finite");
-  if (!finite(wanted.upper)) throw std::invalid_argument("upper must be finite");
+  require(finite(wanted.lower), "lower", "must be finite");
+  require(finite(wanted.upper), "upper", "must be finite");
   if (wanted.empty()) throw std::invalid_argument("lower must not be above upper");
   Frame out = frame;
   const double h = frame.pitch;

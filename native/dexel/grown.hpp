@@ -1,8 +1,8 @@
 // A volume in a larger box: rays stay where they stand, and more are put beside them.
 #pragma once
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 
 namespace riffler {
 

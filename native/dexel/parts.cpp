@@ -132,9 +132,9 @@ Pieces number_pieces(const Volume& volume, const std::vector<Numbers>& numbers, 
     if (volume_of[k] >= 0) order.push_back(k);
   std::stable_sort(order.begin(), order.end(), [&](Number a, Number b) { return volume_of[a] > volume_of[b]; });
   while (order.size() > 1 && volume_of[order.back()] < least) order.pop_back();
-  if (order.size() > kMostParts)
+  if (order.size() > kMaxParts)
     throw std::invalid_argument("the volume has " + std::to_string(order.size()) + " pieces, more than " +
-                                std::to_string(kMostParts) + "; ask for those that are larger, by least (mm³)");
+                                std::to_string(kMaxParts) + "; ask for those that are larger, by least (mm³)");
   std::vector<Number> piece(spans, 0);
   for (std::size_t k = 0; k < order.size(); ++k) piece[order[k]] = static_cast<Number>(k);
   Pieces out{order.size(), std::vector<Number>(spans)};

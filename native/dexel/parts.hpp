@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 
 namespace riffler {
 
@@ -14,9 +14,9 @@ namespace riffler {
 /// Spans of neighbouring rays hang together where they overlap, and rays of two directions where both hold the point in
 /// which they meet. What no ray of the reference direction sees, as a fin thinner than the pitch may be, goes with the
 /// largest piece, and so do pieces smaller than `least` mm³. An empty volume has no pieces. Throws
-/// std::invalid_argument for more than `kMostParts`.
+/// std::invalid_argument for more than `kMaxParts`.
 std::vector<Volume> parts(const Volume& volume, double least = 0, const Progress& progress = {});
 
-inline constexpr std::size_t kMostParts = 1000;
+inline constexpr std::size_t kMaxParts = 1000;
 
 }  // namespace riffler

@@ -8,10 +8,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "dexel/joiner.hpp"
 #include "geom/interval.hpp"
 #include "geom/math.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 
@@ -163,13 +164,8 @@ Volume made(const char* name, const Solid& solid, double inner, const Frame& fra
   return volume;
 }
 
-void check_size(double value, const char* name) {
-  if (!std::isfinite(value) || !(value > 0))
-    throw std::invalid_argument(std::string(name) + " must be a positive length in mm");
-}
-
 Box3 checked_box(const Vec3& centre, const Vec3& reach, const char* name) {
-  if (!finite(centre)) throw std::invalid_argument("centre must be finite");
+  require(finite(centre), "centre", "must be finite");
   const Box3 box{centre - reach, centre + reach};
   for (int k = 0; k < 3; ++k)
     if (!finite(box.lower) || !finite(box.upper) || !(box.lower[k] < box.upper[k]))
@@ -181,12 +177,12 @@ Box3 checked_box(const Vec3& centre, const Vec3& reach, const char* name) {
 }  // namespace
 
 Box3 bounds(const Sphere& solid) {
-  check_size(solid.radius, "radius");
+  require_length(solid.radius, "radius");
   return checked_box(solid.centre, Vec3(solid.radius), "sphere");
 }
 
 Box3 bounds(const Cylinder& solid) {
-  check_size(solid.radius, "radius"), check_size(solid.height, "height");
+  require_length(solid.radius, "radius"), require_length(solid.height, "height");
   const Vec3 a = glm::abs(checked_axis(solid.axis));
   const Vec3 disc(std::hypot(a.y, a.z), std::hypot(a.z, a.x), std::hypot(a.x, a.y));
   return checked_box(solid.centre, 0.5 * solid.height * a + solid.radius * disc, "cylinder");

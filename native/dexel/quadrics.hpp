@@ -1,8 +1,8 @@
 // Spheres and cylinders as volumes, made of exact rays: no facets.
 #pragma once
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 
 namespace riffler {
 

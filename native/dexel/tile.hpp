@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "base/block_pool.hpp"
 #include "dexel/span.hpp"
-#include "geom/block_pool.hpp"
 #include "geom/interval.hpp"
 
 namespace riffler {

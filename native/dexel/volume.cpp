@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 
 namespace riffler {
 

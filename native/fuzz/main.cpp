@@ -17,10 +17,10 @@
 #include <map>
 #include <string>
 
+#include "base/parallel.hpp"
 #include "fuzz/coverage.hpp"
 #include "fuzz/mutator.hpp"
 #include "fuzz/targets.hpp"
-#include "geom/parallel.hpp"
 
 // Of the sanitizers' runtime, where there is one.
 extern "C" [[gnu::weak]] void __sanitizer_set_death_callback(void (*callback)());
@@ -31,9 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr unsigned kSlowest = 10;             // s of one input
-constexpr std::size_t kMostBytes = 1 << 16;   // of one input
-constexpr std::size_t kMostInputs = 1 << 16;  // that are held
+constexpr unsigned kSlowest = 10;            // s of one input
+constexpr std::size_t kMaxBytes = 1 << 16;   // of one input
+constexpr std::size_t kMaxInputs = 1 << 16;  // that are held
 
 /// The input that runs; `save` writes it before the process ends.
 Bytes running;
@@ -117,11 +117,11 @@ int fuzz(const Target& target, const Arguments& given) {
     // Half of the time one of the newest.
     const std::size_t n = inputs.size(), recent = std::min<std::size_t>(n, 64);
     Bytes input = inputs[mutator.below(2) == 0 ? n - 1 - mutator.below(recent) : mutator.below(n)];
-    mutator.mutate(input, inputs[mutator.below(n)], kMostBytes);
+    mutator.mutate(input, inputs[mutator.below(n)], kMaxBytes);
     if (target.repair && mutator.below(8) != 0) target.repair(input);
     begin_coverage();
     run(target, input);
-    if (is_new_coverage() && n < kMostInputs) inputs.push_back(std::move(input));
+    if (is_new_coverage() && n < kMaxInputs) inputs.push_back(std::move(input));
   }
   std::printf("%s: %llu runs in %.0f s from %zu inputs, %zu more that reach something new, %llu branches\n",
               target.name, static_cast<unsigned long long>(runs), seconds, first, inputs.size() - first,

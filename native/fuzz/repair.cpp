@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "geom/bytes.hpp"
+#include "base/bytes.hpp"
 
 namespace riffler::fuzz {
 

@@ -1,12 +1,12 @@
 #include "fuzz/samples.hpp"
 
-#include "dexel/file.hpp"
-#include "mesh/obj.hpp"
-#include "mesh/ply.hpp"
-#include "mesh/stl.hpp"
+#include "dexel/file/file.hpp"
+#include "mesh/io/obj.hpp"
+#include "mesh/io/ply.hpp"
+#include "mesh/io/stl.hpp"
+#include "nc/machine/shipped_machines.hpp"
 #include "nc/program_file.hpp"
-#include "nc/shipped_machines.hpp"
-#include "pen/shipped_pens.hpp"
+#include "pen/arms/shipped_pens.hpp"
 #include "session/journal_file.hpp"
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
@@ -74,7 +74,7 @@ Samples journal_samples() {
   stroke.poses = {{{1, 1, 2}, kUp}, {{5, 4, 1.5}, kUp}};
   stroke.times = {0, 0.5};
   journal.add_stroke(stroke);
-  journal.take_back(1);
+  journal.undo(1);
   return {to_bytes(journal), to_bytes(Journal())};
 }
 

@@ -1,14 +1,34 @@
-// Constants of geometry, once for every topic.
+// Small mathematics, once for every topic: constants, rotations, perpendiculars.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "geom/vec.hpp"
 
 namespace riffler {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2 * kPi;     ///< rad of a whole turn
 inline constexpr double kDegree = kPi / 180;  ///< rad of one degree
+inline constexpr double kRadian = 180 / kPi;  ///< deg of one radian
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// `v` turned by `angle` (rad) about the unit vector `k`, right-handed (Rodrigues).
+inline Vec3 rotate_about(const Vec3& v, const Vec3& k, double angle) {
+  return std::cos(angle) * v + std::sin(angle) * glm::cross(k, v) + (1 - std::cos(angle)) * glm::dot(k, v) * k;
+}
+
+/// `v` turned by the rotation vector `turn` (rad).
+inline Vec3 rotate_by(const Vec3& v, const Vec3& turn) {
+  const double angle = glm::length(turn);
+  return angle == 0 ? v : rotate_about(v, turn / angle, angle);
+}
+
+/// A unit vector perpendicular to the unit vector `v`.
+inline Vec3 any_perpendicular(const Vec3& v) {
+  return glm::normalize(glm::cross(v, std::abs(v.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+}
 
 }  // namespace riffler

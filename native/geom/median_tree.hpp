@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {

@@ -35,4 +35,9 @@ class Motion {
   Vec3 rotation_, side_;  // side_: unit vector in the plane of the great circle, normal to from_.axis
 };
 
+/// The great circle from unit vector `a` to unit vector `b` at constant rate, u in [0, 1]. Not for opposite ones.
+inline Vec3 slerp(const Vec3& a, const Vec3& b, double u) {
+  return Motion({Vec3(0), a}, {Vec3(0), b}).axis(u);
+}
+
 }  // namespace riffler

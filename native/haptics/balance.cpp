@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
@@ -41,8 +43,7 @@ void Balance::add_contact(const Wrench& wrench, const ContactStiffness& stiffnes
 
 Twist Balance::solve() const {
   // Three translations and the two turns square to the axis: basis · coordinates.
-  const Vec3 helper = std::abs(axis_.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-  const Vec3 u = glm::normalize(glm::cross(axis_, helper)), v = glm::cross(axis_, u);
+  const Vec3 u = any_perpendicular(axis_), v = glm::cross(axis_, u);
   double basis[6][kFree]{};
   for (std::size_t i = 0; i < 3; ++i) {
     basis[i][i] = 1;

@@ -12,7 +12,8 @@ namespace riffler {
 
 namespace {
 
-/// A unit vector square to `a`, from the coordinate axis that is farthest from it.
+/// A unit vector square to `a`, from the coordinate axis that is farthest from it: more accurate than
+/// any_perpendicular(), and other bits.
 Vec3 any_square_to(const Vec3& a) {
   const Vec3 m = glm::abs(a);
   const Vec3 far = m.x <= m.y && m.x <= m.z ? Vec3(1, 0, 0) : m.y <= m.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
@@ -65,13 +66,13 @@ Vec3 along(const Vec3& v, double length, double x) {
 }  // namespace
 
 void CouplingSettings::validate() const {
-  require_not_negative("stiffness", stiffness);
-  require_not_negative("damping", damping);
-  require_not_negative("turn_stiffness", turn_stiffness);
-  require_not_negative("turn_damping", turn_damping);
-  require_positive("max_stretch", max_stretch);
-  require_positive("max_turn", max_turn);
-  require_between("max_turn", max_turn, 0, kPi / 2);
+  require_not_negative(stiffness, "stiffness");
+  require_not_negative(damping, "damping");
+  require_not_negative(turn_stiffness, "turn_stiffness");
+  require_not_negative(turn_damping, "turn_damping");
+  require_positive(max_stretch, "max_stretch");
+  require_positive(max_turn, "max_turn");
+  require_between(max_turn, 0, kPi / 2, "max_turn");
 }
 
 double CouplingSettings::capacity(double longest) const {
@@ -79,15 +80,15 @@ double CouplingSettings::capacity(double longest) const {
          turn_stiffness * spring(kPi, max_turn, kPi).energy;
 }
 
-Stretch stretch(const Pose& device, const Pose& tool) {
+PoseError pose_error(const Pose& device, const Pose& tool) {
   return {device.tip - tool.tip, turn(tool.axis, device.axis)};
 }
 
-Stretch stretch(const Placement& device, const Placement& tool) {
+PoseError pose_error(const RigidFrame& device, const RigidFrame& tool) {
   return {device.point - tool.point, rotation_vector(device.axes * glm::transpose(tool.axes))};
 }
 
-CouplingWrenches couple(const CouplingSettings& settings, const Stretch& stretch, const Twist& device,
+CouplingWrenches couple(const CouplingSettings& settings, const PoseError& stretch, const Twist& device,
                         const Twist& tool) {
   const double length = glm::length(stretch.translation), angle = std::min(glm::length(stretch.rotation), kPi);
   const Law pull = spring(length, settings.max_stretch, std::numeric_limits<double>::infinity());

@@ -23,20 +23,20 @@ struct CouplingSettings {
 };
 
 /// A body that does not look the same all round.
-struct Placement {
+struct RigidFrame {
   Vec3 point{0};
   Mat3 axes{1};  ///< orthonormal, right-handed; columns in the part frame
 };
 
 /// How far the device is ahead of the tool: what would take the tool to the device.
-struct Stretch {
+struct PoseError {
   Vec3 translation{0};  ///< mm
   Vec3 rotation{0};     ///< rotation vector, rad, of length 0 … π
 };
 
 /// Of two bodies of revolution: the shortest turn from axis to axis. Opposite axes have no shortest turn: one of them.
-Stretch stretch(const Pose& device, const Pose& tool);
-Stretch stretch(const Placement& device, const Placement& tool);
+PoseError pose_error(const Pose& device, const Pose& tool);
+PoseError pose_error(const RigidFrame& device, const RigidFrame& tool);
 
 /// Both wrenches about the device's point: equal and opposite, so the coupling adds no momentum.
 struct CouplingWrenches {
@@ -47,7 +47,7 @@ struct CouplingWrenches {
 /// The spring's torque is continuous in both poses, everywhere: beyond π − max_turn it falls to zero at π, where its
 /// direction is undefined, as every continuous torque that opposes the turn must. Spring forces are the gradient of
 /// `energy`. `device` and `tool` are the twists of the two bodies about the device's point (`moved` brings them there).
-CouplingWrenches couple(const CouplingSettings& settings, const Stretch& stretch, const Twist& device,
+CouplingWrenches couple(const CouplingSettings& settings, const PoseError& stretch, const Twist& device,
                         const Twist& tool);
 
 }  // namespace riffler

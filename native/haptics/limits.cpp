@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 namespace {
@@ -20,15 +22,11 @@ double ramp_down(double speed, double full, double none) {
 }  // namespace
 
 void LimitSettings::validate() const {
-  require_not_negative("wrench.linear", wrench.linear);
-  require_not_negative("wrench.angular", wrench.angular);
-  require_not_negative("rate.linear", rate.linear);
-  require_not_negative("rate.angular", rate.angular);
-  require_not_negative("power", power);
-  require_not_negative("full_speed.linear", full_speed.linear);
-  require_not_negative("full_speed.angular", full_speed.angular);
-  require_positive("no_force_at.linear", no_force_at.linear);
-  require_positive("no_force_at.angular", no_force_at.angular);
+  require_not_negative(wrench, "wrench");
+  require_not_negative(rate, "rate");
+  require_not_negative(power, "power");
+  require_not_negative(full_speed, "full_speed");
+  require_positive(no_force_at, "no_force_at");
   if (no_force_at.linear <= full_speed.linear)
     throw std::invalid_argument("no_force_at.linear must be above full_speed.linear");
   if (no_force_at.angular <= full_speed.angular)

@@ -5,10 +5,10 @@
 namespace riffler {
 
 void Material::validate(const std::string& what) const {
-  require_not_negative((what + ": stiffness").c_str(), stiffness);
-  require_not_negative((what + ": removal_constant").c_str(), removal_constant);
-  require_not_negative((what + ": damping").c_str(), damping);
-  require_positive((what + ": density").c_str(), density);
+  require_not_negative(stiffness, what + ": stiffness");
+  require_not_negative(removal_constant, what + ": removal_constant");
+  require_not_negative(damping, what + ": damping");
+  require_positive(density, what + ": density");
 }
 
 }  // namespace riffler

@@ -3,27 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
-namespace {
-
-void require_bounds(const char* linear, const char* angular, const Bounds& b) {
-  require_not_negative(linear, b.linear), require_not_negative(angular, b.angular);
-}
-
-}  // namespace
-
 void PassivitySettings::validate() const {
-  require_positive("period", period);
-  require_between("jitter", jitter, 0, period);
-  require_between("latency", latency, 0, 8 * period);
-  require_bounds("acceleration.linear", "acceleration.angular", acceleration);
-  require_bounds("resolution.linear", "resolution.angular", resolution);
-  require_bounds("max_damping.linear", "max_damping.angular", max_damping);
-  require_bounds("device_damping.linear", "device_damping.angular", device_damping);
-  require_bounds("device_friction.linear", "device_friction.angular", device_friction);
-  require_not_negative("reserve", reserve);
-  require_not_negative("storage", storage);
+  require_positive(period, "period");
+  require_between(jitter, 0, period, "jitter");
+  require_between(latency, 0, 8 * period, "latency");
+  require_not_negative(acceleration, "acceleration");
+  require_not_negative(resolution, "resolution");
+  require_not_negative(max_damping, "max_damping");
+  require_not_negative(device_damping, "device_damping");
+  require_not_negative(device_friction, "device_friction");
+  require_not_negative(reserve, "reserve");
+  require_not_negative(storage, "storage");
   if (storage < reserve) throw std::invalid_argument("storage must be at least reserve");
 }
 

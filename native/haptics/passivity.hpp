@@ -80,8 +80,8 @@ class Passivity {
   std::array<double, kCoordinates> way_time_{};
   std::array<double, kCoordinates> absorbed_{};
   double kept_ = 1, damped_ = 0;
-  static constexpr std::size_t kMostOnTheWay = 8;
-  std::array<Wrench, kMostOnTheWay> on_the_way_{};  // the first `waiting_`, oldest first
+  static constexpr std::size_t kMaxOnTheWay = 8;
+  std::array<Wrench, kMaxOnTheWay> on_the_way_{};  // the first `waiting_`, oldest first
   std::size_t waiting_ = 0;
 };
 

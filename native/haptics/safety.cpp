@@ -3,22 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.hpp"
 #include "geom/directions.hpp"
 
 namespace riffler {
 
 void SafetySettings::validate() const {
-  require_positive("ramp", ramp);
-  require_positive("fresh", fresh);
-  require_positive("fade", fade);
-  require_not_negative("rest", rest);
-  require_positive("overspeed.linear", overspeed.linear);
-  require_positive("overspeed.angular", overspeed.angular);
-  require_positive("jump.linear", jump.linear);
-  require_positive("jump.angular", jump.angular);
-  require_positive("redundancy", redundancy);
-  require_positive("wrench_ceiling.linear", wrench_ceiling.linear);
-  require_positive("wrench_ceiling.angular", wrench_ceiling.angular);
+  require_positive(ramp, "ramp");
+  require_positive(fresh, "fresh");
+  require_positive(fade, "fade");
+  require_not_negative(rest, "rest");
+  require_positive(overspeed, "overspeed");
+  require_positive(jump, "jump");
+  require_positive(redundancy, "redundancy");
+  require_positive(wrench_ceiling, "wrench_ceiling");
 }
 
 Safety::Safety(const SafetySettings& settings) : settings_(settings) {

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 namespace {
@@ -25,7 +27,7 @@ Pose moved(const Pose& from, const Twist& way) {
 
 /// As a displacement about `from`'s tip.
 Twist way_between(const Pose& from, const Pose& to) {
-  const Stretch s = stretch(to, from);
+  const PoseError s = pose_error(to, from);
   return {s.translation, s.rotation};
 }
 
@@ -56,19 +58,18 @@ Wrench times(const ContactStiffness& k, const Twist& way) {
 
 void SculptSettings::validate() const {
   coupling.validate();
-  require_positive("coupling.stiffness", coupling.stiffness);
-  require_positive("coupling.turn_stiffness", coupling.turn_stiffness);
-  if (memory) require_positive("memory", *memory);
-  require_not_negative("damping", damping);
-  require_between("parts", parts, 1, 64);
-  require_between("queries", queries, 1, 64);
-  require_not_negative("settled", settled);
-  require_positive("most.linear", most.linear);
-  require_between("most.angular", most.angular, 0, 1);
-  require_positive("rest.linear", rest.linear);
-  require_positive("rest.angular", rest.angular);
-  require_positive("missed", missed);
-  if (budget) require_not_negative("budget", *budget);
+  require_positive(coupling.stiffness, "coupling.stiffness");
+  require_positive(coupling.turn_stiffness, "coupling.turn_stiffness");
+  if (memory) require_positive(*memory, "memory");
+  require_not_negative(damping, "damping");
+  require_between(parts, 1, 64, "parts");
+  require_between(queries, 1, 64, "queries");
+  require_not_negative(settled, "settled");
+  require_positive(most.linear, "most.linear");
+  require_between(most.angular, 0, 1, "most.angular");
+  require_positive(rest, "rest");
+  require_positive(missed, "missed");
+  if (budget) require_not_negative(*budget, "budget");
 }
 
 /// One part of a step.
@@ -110,7 +111,7 @@ void SculptStep::place(const Pose& pose) {
 /// Where everything that is known now balances, as a displacement of the tool.
 Twist SculptStep::balanced(const Part& part) const {
   const CouplingSettings& c = settings_.coupling;
-  const Stretch ahead = stretch(part.grip, tool_);
+  const PoseError ahead = pose_error(part.grip, tool_);
   // The spring as it is at this stretch: where it pulls less than in proportion, it is softer.
   const CouplingWrenches pull = couple(c, ahead, {}, {});
   const auto stiffness = [](double force, double length, double small) { return length > 0 ? force / length : small; };
@@ -232,7 +233,7 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
       parts = k + 1, result.shortened = true;  // what is left in one
   }
   grip_ = grip;
-  const Stretch ahead = stretch(grip, tool_);
+  const PoseError ahead = pose_error(grip, tool_);
   const Twist at_grip{rate_.linear + glm::cross(rate_.angular, ahead.translation), rate_.angular};
   result.on_grip = couple(settings_.coupling, ahead, twist, at_grip).on_device;
   result.tool = tool_, result.depth_bound = bound_;

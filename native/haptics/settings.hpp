@@ -1,9 +1,9 @@
-// What the settings of the haptic step have in common: bounds that are checked once, with the field's name.
+// What the settings of the haptic step have in common: pairs of bounds and their checks.
 #pragma once
 
-#include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "base/check.hpp"
 
 namespace riffler {
 
@@ -14,21 +14,14 @@ struct Bounds {
   double operator[](int coordinate) const { return coordinate < 3 ? linear : angular; }
 };
 
-/// std::invalid_argument naming `field` unless `value` is finite and in [low, high]; high may be infinite.
-inline void require_between(const char* field, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  std::string range = "of at least " + std::to_string(low);
-  if (std::isfinite(high)) range = "between " + std::to_string(low) + " and " + std::to_string(high);
-  throw std::invalid_argument(std::string(field) + " must be a number " + range);
+/// std::invalid_argument naming the one that is not positive and finite: "NAME.linear must be positive".
+inline void require_positive(const Bounds& b, const std::string& name) {
+  require_positive(b.linear, name + ".linear"), require_positive(b.angular, name + ".angular");
 }
 
-inline void require_positive(const char* field, double value) {
-  if (!std::isfinite(value) || value <= 0) throw std::invalid_argument(std::string(field) + " must be positive");
-}
-
-/// Zero is allowed: it switches off what is bounded.
-inline void require_not_negative(const char* field, double value) {
-  if (!std::isfinite(value) || value < 0) throw std::invalid_argument(std::string(field) + " must not be negative");
+/// As require_positive, but zero is allowed: it switches off what is bounded.
+inline void require_not_negative(const Bounds& b, const std::string& name) {
+  require_not_negative(b.linear, name + ".linear"), require_not_negative(b.angular, name + ".angular");
 }
 
 }  // namespace riffler

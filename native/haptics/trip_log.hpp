@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "geom/sequence_lock.hpp"
+#include "base/sequence_lock.hpp"
 #include "haptics/states.hpp"
 
 namespace riffler {

@@ -21,7 +21,7 @@ Mat3 rotation(const Vec3& turn) {
 }  // namespace
 
 void WorkspaceSettings::validate() const {
-  require_positive("scale", scale);
+  require_positive(scale, "scale");
   const Mat3 square = glm::transpose(turn) * turn - Mat3(1);
   double off = 0;
   for (int i = 0; i < 3; ++i) off += glm::length(square[i]);
@@ -49,7 +49,7 @@ void Workspace::pair_here() {
   grip_pair_ = grip_, target_pair_ = target_;
   // The shortest turn that is still missing, after the one there was: turns on the way are kept as they are.
   const Vec3 shown = glm::normalize(aslant_ * (settings_.turn * grip_.axis));
-  aslant_ = rotation(stretch(Pose{Vec3(0), target_.axis}, Pose{Vec3(0), shown}).rotation) * aslant_;
+  aslant_ = rotation(pose_error(Pose{Vec3(0), target_.axis}, Pose{Vec3(0), shown}).rotation) * aslant_;
   // Rounding must not gather.
   aslant_[0] = glm::normalize(aslant_[0]);
   aslant_[1] = glm::normalize(aslant_[1] - glm::dot(aslant_[0], aslant_[1]) * aslant_[0]);

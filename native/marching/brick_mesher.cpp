@@ -1,6 +1,6 @@
 #include <bit>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "marching/neighbourhood.hpp"
 #include "marching/surface.hpp"
 #include "marching/vertices.hpp"

@@ -50,7 +50,7 @@ struct CellVertex {
 };
 
 /// A vertex that did not simply fall into its cell: the few that later stages look at.
-struct Special {
+struct VertexChoice {
   CellVertex at;
   Vec3 safe;       // whatever the neighbours do, the quads round it have a diagonal here
   Vec3 candidate;  // a better place, or `safe`
@@ -61,7 +61,7 @@ struct Special {
 };
 
 /// A vertex that was moved to unfold triangles, and where it was before.
-struct Pulled {
+struct MovedVertex {
   CellVertex at;
   Vec3 before;
 };
@@ -76,9 +76,9 @@ struct ActiveBrick {
   std::array<std::uint32_t, kBrickSide + 1> plane_vertex{};
   std::array<std::uint16_t, kBrickColumns> column_edge{};  // of its plane, before each column
   std::array<std::uint16_t, kBrickColumns> column_vertex{};
-  std::vector<Special> specials;  // by vertex, ascending
-  std::vector<QuadRef> suspects;  // quads that may fold onto a neighbour
-  std::vector<Pulled> pulled;
+  std::vector<VertexChoice> specials;  // by vertex, ascending
+  std::vector<QuadRef> suspects;       // quads that may fold onto a neighbour
+  std::vector<MovedVertex> pulled;
 
   std::size_t edges() const { return plane_edge[kBrickSide]; }
   std::size_t vertices() const { return plane_vertex[kBrickSide]; }

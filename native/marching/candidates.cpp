@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {
@@ -35,7 +35,7 @@ class Surroundings {
 };
 
 /// Moves a vertex from its safe place as far towards its candidate as its quads let it.
-void advance(Surface& surface, const Surroundings& around, Special& special) {
+void advance(Surface& surface, const Surroundings& around, VertexChoice& special) {
   const FloatGrid& grid = surface.grid;
   const Vec3i& cell = special.at.cell;
   Vec3& place = surface.mesh.vertices[special.at.vertex];
@@ -51,10 +51,10 @@ void advance(Surface& surface, const Surroundings& around, Special& special) {
   special.chosen = place;
 }
 
-using Groups = std::array<std::vector<Special*>, 8>;
+using Groups = std::array<std::vector<VertexChoice*>, 8>;
 
-void add_to(Groups& groups, const std::vector<Special*>& specials) {
-  for (Special* s : specials) {
+void add_to(Groups& groups, const std::vector<VertexChoice*>& specials) {
+  for (VertexChoice* s : specials) {
     const Vec3i& cell = s->at.cell;
     groups[(cell.x & 1) | (cell.y & 1) << 1 | (cell.z & 1) << 2].push_back(s);
   }
@@ -62,31 +62,31 @@ void add_to(Groups& groups, const std::vector<Special*>& specials) {
 
 }  // namespace
 
-std::vector<Special*> undecided(Surface& surface, const std::vector<std::size_t>& bricks) {
-  std::vector<Special*> found;
+std::vector<VertexChoice*> undecided(Surface& surface, const std::vector<std::size_t>& bricks) {
+  std::vector<VertexChoice*> found;
   for (const std::size_t n : bricks)
-    for (Special& s : surface.bricks.active(n)->specials)
+    for (VertexChoice& s : surface.bricks.active(n)->specials)
       if (surface.marks[s.at.vertex] & kCandidate) found.push_back(&s);
   return found;
 }
 
-void choose_candidates(Surface& surface, const std::vector<Special*>& open, const std::vector<Special*>& known,
-                       const Progress& progress) {
+void choose_candidates(Surface& surface, const std::vector<VertexChoice*>& open,
+                       const std::vector<VertexChoice*>& known, const Progress& progress) {
   // Cells whose indices have equal parities share no quad: eight groups, one after the other, whose members do not see
   // each other. The result depends neither on an order within a group nor on threads, and on near cells only.
   if (open.empty()) return;
   Groups open_groups, known_groups;
   add_to(open_groups, open), add_to(known_groups, known);
   std::vector<Vec3i> cells;
-  for (const Special* s : open) cells.push_back(s->at.cell);
+  for (const VertexChoice* s : open) cells.push_back(s->at.cell);
   const Surroundings around(surface, cells);
-  for (const Special* s : known) surface.mesh.vertices[s->at.vertex] = s->safe;
+  for (const VertexChoice* s : known) surface.mesh.vertices[s->at.vertex] = s->safe;
   for (std::size_t g = 0; g < open_groups.size(); ++g) {
     report(progress, static_cast<double>(g) / open_groups.size());
     parallel_for(open_groups[g].size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) advance(surface, around, *open_groups[g][n]);
     });
-    for (const Special* s : known_groups[g]) surface.mesh.vertices[s->at.vertex] = s->chosen;
+    for (const VertexChoice* s : known_groups[g]) surface.mesh.vertices[s->at.vertex] = s->chosen;
   }
   parallel_for(around.quads().size(), 1024, [&](std::size_t begin, std::size_t end) {
     HitFinder finder = surface.hits;

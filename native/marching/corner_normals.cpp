@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
-#include "geom/each_once.hpp"
+#include "base/sort_unique.hpp"
+#include "geom/math.hpp"
 #include "marching/mesh_state.hpp"
 
 namespace riffler::marching {
@@ -32,7 +32,7 @@ std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> 
             if (const std::size_t m = all.index(i, j, k); !std::binary_search(own.begin(), own.end(), m))
               out.push_back(m);
   }
-  each_once(out);
+  sort_unique(out);
   return out;
 }
 
@@ -106,7 +106,7 @@ Corners corners_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   if (!(twice > 0)) return out;
   out.normal = cross / twice;
   out.angle = {std::atan2(twice, glm::dot(b - a, c - a)), std::atan2(twice, glm::dot(c - b, a - b)), 0};
-  out.angle[2] = std::numbers::pi - out.angle[0] - out.angle[1];
+  out.angle[2] = kPi - out.angle[0] - out.angle[1];
   return out;
 }
 

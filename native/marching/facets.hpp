@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geom/block_pool.hpp"
+#include "base/block_pool.hpp"
 #include "marching/sight.hpp"
 #include "marching/surface.hpp"
 

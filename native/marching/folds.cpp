@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geom/each_once.hpp"
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
+#include "base/sort_unique.hpp"
 #include "marching/surface.hpp"
 
 namespace riffler::marching {
@@ -69,7 +69,7 @@ struct Folds {
   std::vector<CellVertex> ends;
   std::vector<std::size_t> seen;
 
-  void tidy() { each_once(ends), each_once(seen); }
+  void tidy() { sort_unique(ends), sort_unique(seen); }
 };
 
 /// The corners of one of a quad's triangles.
@@ -146,7 +146,7 @@ bool coincides(const Mesh& mesh, std::int32_t vertex, const Vec3& place) {
 bool pull(Surface& surface, const CellVertex& v, double share, Region& region) {
   const Vec3 place = surface.mesh.vertices[v.vertex];
   const FloatGrid& grid = surface.grid;
-  Special* const special = surface.marks[v.vertex] & kSpecial ? &surface.special(v) : nullptr;
+  VertexChoice* const special = surface.marks[v.vertex] & kSpecial ? &surface.special(v) : nullptr;
   if (special && place != special->fallback) {
     const Vec3 from = grid.to_cell(v.cell, place), to = grid.to_cell(v.cell, special->fallback);
     const Vec3 part = from + share * (to - from);
@@ -208,13 +208,13 @@ void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region,
 std::vector<Vec3i> undo_unfold(Surface& surface, std::size_t brick) {
   ActiveBrick& active = *surface.bricks.active(brick);
   std::vector<Vec3i> cells;
-  for (const Pulled& p : active.pulled) {
+  for (const MovedVertex& p : active.pulled) {
     cells.push_back(p.at.cell);
     surface.mesh.vertices[p.at.vertex] = p.before;
     surface.marks[p.at.vertex] &= static_cast<std::uint8_t>(~kPulled);
   }
   active.pulled.clear();
-  for (Special& s : active.specials) s.fallback = s.safe;
+  for (VertexChoice& s : active.specials) s.fallback = s.safe;
   return cells;
 }
 

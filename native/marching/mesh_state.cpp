@@ -4,8 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "geom/each_once.hpp"
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
+#include "base/sort_unique.hpp"
 
 namespace riffler::marching {
 
@@ -65,7 +65,7 @@ std::vector<QuadRef> MeshState::quads_to_look_at(const std::vector<std::size_t>&
     const ActiveBrick& brick = *bricks.active(n);
     quads.insert(quads.end(), brick.suspects.begin(), brick.suspects.end());
   }
-  for (const Special* s : undecided(surface, list)) cells.push_back(s->at.cell);
+  for (const VertexChoice* s : undecided(surface, list)) cells.push_back(s->at.cell);
   const std::vector<QuadRef> chosen = quads_near(surface, cells, kCandidate);
   quads.insert(quads.end(), chosen.begin(), chosen.end());
   return quads;
@@ -145,7 +145,7 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
     if (!changes.empty()) changed = mesh_again(changes);
   }
   broken_ = false;
-  each_once(changed);
+  sort_unique(changed);
   for (const std::size_t n : changed) facets[n].reset();
   return changed;
 }
@@ -168,20 +168,20 @@ std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
   mesh_bricks(surface, fresh, {});
   link_bricks(surface, without(around(changes.mesh_bricks, 0, 1), fresh));
   // Vertices near these that had a choice, or that were pulled, begin again as well.
-  std::vector<Unsettled> unsettled;
+  std::vector<BrickSnapshot> unsettled;
   for (const std::size_t n : around(changes.mesh_bricks, -1, 1)) {
     if (changes.meshes[n]) continue;
-    Unsettled was = unsettle(n);
+    BrickSnapshot was = unsettle(n);
     if (was.places.empty()) continue;
     unsettled.push_back(std::move(was));
     fresh.push_back(n);
   }
-  each_once(fresh);
+  sort_unique(fresh);
   choose_again(fresh, unsettled);
   std::vector<std::size_t> others = unfold_again(fresh);
-  for (const Unsettled& u : unsettled)
+  for (const BrickSnapshot& u : unsettled)
     if (moved(u)) others.push_back(u.brick);
-  each_once(others);
+  sort_unique(others);
   others = around(others, 0, 1);
   changed.insert(changed.end(), others.begin(), others.end());
   return changed;
@@ -226,50 +226,50 @@ std::vector<std::size_t> MeshState::around(const std::vector<std::size_t>& list,
         for (int c = from; c <= to; ++c)
           if (bricks.active(at.x + a, at.y + b, at.z + c)) out.push_back(bricks.index(at.x + a, at.y + b, at.z + c));
   }
-  each_once(out);
+  sort_unique(out);
   return out;
 }
 
 /// Puts a brick's vertices to where they were before they could choose, and before they were pulled.
-MeshState::Unsettled MeshState::unsettle(std::size_t n) {
-  Unsettled out{n, {}, {}};
+MeshState::BrickSnapshot MeshState::unsettle(std::size_t n) {
+  BrickSnapshot out{n, {}, {}};
   const auto note = [&](const CellVertex& v) { out.places.emplace_back(v.vertex, surface.mesh.vertices[v.vertex]); };
-  const std::vector<Special*> open = undecided(surface, {n});
-  for (const Pulled& p : bricks.active(n)->pulled) note(p.at);
-  for (const Special* s : open) note(s->at);
+  const std::vector<VertexChoice*> open = undecided(surface, {n});
+  for (const MovedVertex& p : bricks.active(n)->pulled) note(p.at);
+  for (const VertexChoice* s : open) note(s->at);
   out.pulled = undo_unfold(surface, n);
-  for (const Special* s : open) surface.mesh.vertices[s->at.vertex] = s->safe;
+  for (const VertexChoice* s : open) surface.mesh.vertices[s->at.vertex] = s->safe;
   return out;
 }
 
-bool MeshState::moved(const Unsettled& was) const {
+bool MeshState::moved(const BrickSnapshot& was) const {
   const auto elsewhere = [&](const auto& v) { return surface.mesh.vertices[v.first] != v.second; };
   if (std::any_of(was.places.begin(), was.places.end(), elsewhere)) return true;
-  const auto noted = [&](const Pulled& p) {
+  const auto noted = [&](const MovedVertex& p) {
     return std::any_of(was.places.begin(), was.places.end(), [&](const auto& v) { return v.first == p.at.vertex; });
   };
-  const std::vector<Pulled>& pulled = bricks.active(was.brick)->pulled;
+  const std::vector<MovedVertex>& pulled = bricks.active(was.brick)->pulled;
   return !std::all_of(pulled.begin(), pulled.end(), noted);
 }
 
 /// Candidates of fresh bricks. What those of the next bricks chose does not depend on the change: it is too far away
 /// (a choice reaches eight cells at most, one a group), but their turns come as they did.
-void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::vector<Unsettled>& unsettled) {
+void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::vector<BrickSnapshot>& unsettled) {
   const std::vector<std::size_t> ring = without(around(fresh, -1, 1), fresh);
-  const std::vector<Special*> known = undecided(surface, ring);
+  const std::vector<VertexChoice*> known = undecided(surface, ring);
   std::vector<std::pair<std::int32_t, Vec3>> pulled;
   std::vector<Vec3i> cells;
   for (const std::size_t n : ring)
-    for (const Pulled& p : bricks.active(n)->pulled) {
+    for (const MovedVertex& p : bricks.active(n)->pulled) {
       pulled.emplace_back(p.at.vertex, surface.mesh.vertices[p.at.vertex]);
       cells.push_back(p.at.cell);
       surface.mesh.vertices[p.at.vertex] = p.before;
     }
-  for (const Special* s : known) cells.push_back(s->at.cell);
+  for (const VertexChoice* s : known) cells.push_back(s->at.cell);
   choose_candidates(surface, undecided(surface, fresh), known, {});
   for (const auto& [vertex, place] : pulled) surface.mesh.vertices[vertex] = place;
   // Fresh quads took their corners for undecided ones, and others lost what their diagonals were chosen for.
-  for (const Unsettled& u : unsettled) cells.insert(cells.end(), u.pulled.begin(), u.pulled.end());
+  for (const BrickSnapshot& u : unsettled) cells.insert(cells.end(), u.pulled.begin(), u.pulled.end());
   for (const QuadRef& ref : quads_near(surface, cells, kAnyMark)) surface.split(ref, surface.hits);
 }
 
@@ -290,7 +290,7 @@ std::vector<std::size_t> MeshState::unfold_again(const std::vector<std::size_t>&
     unfold(surface, quads_to_look_at(around(bricks_in, -1, 1)), region, {});
     if (region.missing.empty()) return without(bricks_in, fresh);
     bricks_in.insert(bricks_in.end(), region.missing.begin(), region.missing.end());
-    each_once(bricks_in);
+    sort_unique(bricks_in);
   }
 }
 

@@ -40,14 +40,14 @@ struct MeshState {
   std::vector<std::size_t> around(const std::vector<std::size_t>& list, int from, int to) const;
   /// A brick beside changed ones, where its vertices were that had a choice or were pulled, and the cells of the
   /// pulled.
-  struct Unsettled {
+  struct BrickSnapshot {
     std::size_t brick;
     std::vector<std::pair<std::int32_t, Vec3>> places;
     std::vector<Vec3i> pulled;
   };
-  Unsettled unsettle(std::size_t brick);
-  bool moved(const Unsettled& was) const;
-  void choose_again(const std::vector<std::size_t>& fresh, const std::vector<Unsettled>& unsettled);
+  BrickSnapshot unsettle(std::size_t brick);
+  bool moved(const BrickSnapshot& was) const;
+  void choose_again(const std::vector<std::size_t>& fresh, const std::vector<BrickSnapshot>& unsettled);
   std::vector<std::size_t> unfold_again(const std::vector<std::size_t>& fresh);
   std::vector<QuadRef> quads_to_look_at(const std::vector<std::size_t>& list);
 

@@ -1,6 +1,6 @@
 #include "marching/mesher.hpp"
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "marching/corner_normals.hpp"
 #include "marching/facets.hpp"
 #include "marching/mesh_state.hpp"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 #include "marching/patch.hpp"
 #include "marching/pick.hpp"
 #include "mesh/mesh.hpp"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "geom/each_once.hpp"
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
+#include "base/sort_unique.hpp"
 #include "marching/cases.hpp"
 #include "marching/surface.hpp"
 
@@ -30,9 +30,10 @@ bool Surface::split(const QuadRef& ref, HitFinder& finder) {
   return diagonal >= 0;
 }
 
-Special& Surface::special(const CellVertex& v) {
-  std::vector<Special>& all = bricks.owner(v.cell).specials;
-  return *std::lower_bound(all.begin(), all.end(), v, [](const Special& s, const CellVertex& w) { return s.at < w; });
+VertexChoice& Surface::special(const CellVertex& v) {
+  std::vector<VertexChoice>& all = bricks.owner(v.cell).specials;
+  return *std::lower_bound(all.begin(), all.end(), v,
+                           [](const VertexChoice& s, const CellVertex& w) { return s.at < w; });
 }
 
 namespace {
@@ -64,11 +65,11 @@ std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>
   parallel_for(cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
     std::vector<QuadRef>& found = parts[begin / chunk];
     for (std::size_t n = begin; n < end; ++n) add_quads(surface, cells[n], mark, found);
-    each_once(found);
+    sort_unique(found);
   });
   std::vector<QuadRef> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  if (parts.size() > 1) each_once(all);
+  if (parts.size() > 1) sort_unique(all);
   return all;
 }
 

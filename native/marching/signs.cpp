@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler::marching {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 #include "marching/bricks.hpp"
 
 namespace riffler::marching {

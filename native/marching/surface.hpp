@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "marching/bricks.hpp"
 #include "marching/diagonal.hpp"
 #include "marching/float_grid.hpp"
@@ -18,7 +18,7 @@ enum VertexMark : std::uint8_t {
   kCandidate = 2,  // may stand at another place than its safe one
   kSharp = 4,      // its hits' normals differ: triangles round it may fold
   kMoved = 8,      // moved in the last round of `unfold`
-  kPulled = 16,    // its brick has a Pulled for it
+  kPulled = 16,    // its brick has a MovedVertex for it
   kAnyMark = 255,  // for quads_near: all quads
 };
 
@@ -63,7 +63,7 @@ struct Surface {
   /// Writes the quad's two triangles along its best diagonal; false if none is valid.
   bool split(const QuadRef& ref, HitFinder& finder);
   /// The special of a vertex marked kSpecial.
-  Special& special(const CellVertex& v);
+  VertexChoice& special(const CellVertex& v);
 };
 
 /// The cell whose vertex is corner n of the quad that stands for an edge.
@@ -85,12 +85,12 @@ void mesh_bricks(Surface& surface, const std::vector<std::size_t>& bricks, const
 void link_bricks(Surface& surface, const std::vector<std::size_t>& bricks);
 
 /// The specials of some bricks that have a candidate.
-std::vector<Special*> undecided(Surface& surface, const std::vector<std::size_t>& bricks);
+std::vector<VertexChoice*> undecided(Surface& surface, const std::vector<std::size_t>& bricks);
 
 /// Moves specials from their safe places to their candidates, or part of the way, as long as all quads keep a valid
 /// diagonal, and splits the quads round them again. Those of `known` move to the place they chose before, in turn.
-void choose_candidates(Surface& surface, const std::vector<Special*>& open, const std::vector<Special*>& known,
-                       const Progress& progress);
+void choose_candidates(Surface& surface, const std::vector<VertexChoice*>& open,
+                       const std::vector<VertexChoice*>& known, const Progress& progress);
 
 /// Bricks that `unfold` may change, by number; all if it is empty.
 struct Region {

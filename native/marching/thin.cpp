@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "marching/lattice.hpp"
 #include "marching/signs.hpp"
 

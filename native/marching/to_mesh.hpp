@@ -1,8 +1,8 @@
 // Volume → closed, outward, two-manifold mesh.
 #pragma once
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/near_points.hpp"
 

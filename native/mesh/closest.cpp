@@ -6,9 +6,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "geom/directions.hpp"
 #include "geom/median_tree.hpp"
-#include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/orient.hpp"
 

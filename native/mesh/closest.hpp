@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "geom/median_tree.hpp"
-#include "geom/progress.hpp"
 #include "geom/vec.hpp"
 #include "mesh/mesh.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

@@ -1,7 +1,7 @@
 // Indexed triangle mesh: the currency between files, volumes and Blender.
 #pragma once
 
-#include "geom/bulk.hpp"
+#include "base/bulk.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler {

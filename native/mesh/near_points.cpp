@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geom/mix.hpp"
+#include "base/mix.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/weld.hpp"
 

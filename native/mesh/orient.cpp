@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/near_points.hpp"
 #include "mesh/shells.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "geom/float32.hpp"
-#include "geom/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/fold.hpp"
 #include "mesh/weld.hpp"

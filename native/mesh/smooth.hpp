@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "mesh/mesh.hpp"
 
 namespace riffler {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 
@@ -33,7 +33,8 @@ double hang(std::span<const CutterPath> paths, const std::map<int, Tool>& tools)
   return out;
 }
 
-Space space_of(std::span<const CutterPath> paths, const std::map<int, Tool>& tools, const Clearance& clearance) {
+ClearanceZone space_of(std::span<const CutterPath> paths, const std::map<int, Tool>& tools,
+                       const Clearance& clearance) {
   if (!(std::isfinite(clearance.distance) && clearance.distance > 0))
     throw std::invalid_argument("clearance must be positive and finite");
   Box3 box;
@@ -71,8 +72,8 @@ struct Ends {
 };
 
 /// With a collider they are found in parallel; the first path that has none is an error.
-std::vector<Ends> ends_of(std::span<const CutterPath> paths, const std::map<int, Tool>& tools, const Space& space,
-                          const LinkRule& rule) {
+std::vector<Ends> ends_of(std::span<const CutterPath> paths, const std::map<int, Tool>& tools,
+                          const ClearanceZone& space, const LinkRule& rule) {
   std::vector<Ends> out(paths.size());
   std::map<int, LinkFinder> finders;
   for (std::size_t k = 0; k < paths.size() && rule.collider; ++k) {
@@ -93,7 +94,7 @@ std::vector<Ends> ends_of(std::span<const CutterPath> paths, const std::map<int,
         if (rule.collider)
           link = finders.at(path.tool).find(pose);
         else
-          link.poses = way_out(pose, ToolEnvelope(find(tools, path.tool)), space);
+          link.poses = retract_path(pose, ToolEnvelope(find(tools, path.tool)), space);
       } catch (const std::invalid_argument& e) {
         faults[i] = e.what();
       }
@@ -141,7 +142,7 @@ Program program_from_paths(std::span<const CutterPath> given, std::map<int, Tool
   validate(links);
   Clearance room = clearance;
   if (links.collider) room.occupied.add(links.collider->bounds());
-  const Space space = space_of(paths, tools, room);
+  const ClearanceZone space = space_of(paths, tools, room);
   const double level = space.box.upper.z - clearance.distance;
   const std::vector<Ends> ends = ends_of(paths, tools, space, links);
   Program program;

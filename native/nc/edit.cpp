@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/check.hpp"
 #include "nc/limits.hpp"
 #include "tool/outline.hpp"
 
@@ -75,8 +76,8 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
   });
 }
 
-Program retimed(const Program& program, double factor) {
-  if (!(factor > 0) || !std::isfinite(factor)) throw std::invalid_argument("factor must be positive and finite");
+Program scale_feeds(const Program& program, double factor) {
+  require_positive(factor, "factor", kPositiveAndFinite);
   return copied(program, [&](Move& move) { move.feed *= factor; });
 }
 
@@ -101,7 +102,7 @@ Program joined(std::span<const Program* const> programs) {
   return out;
 }
 
-Program retooled(const Program& program, const std::map<int, int>& numbers) {
+Program renumber_tools(const Program& program, const std::map<int, int>& numbers) {
   const auto renamed = [&](int number) {
     const auto at = numbers.find(number);
     return at == numbers.end() ? number : at->second;

@@ -16,7 +16,7 @@ Program trimmed(const Program& program, std::size_t first, std::size_t last);
 Program transformed(const Program& program, const Mat3& turn, const Vec3& shift);
 
 /// Feeds times `factor`, which must be positive and finite; rapids as they are.
-Program retimed(const Program& program, double factor);
+Program scale_feeds(const Program& program, double factor);
 
 /// One after the other: the way from one's last row to the next one's first is as that row says. Of provenance that
 /// several have the first stays. std::invalid_argument where one number stands for tools of two shapes.
@@ -24,6 +24,6 @@ Program joined(std::span<const Program* const> programs);
 
 /// Tool numbers by `numbers`; those that are not in it stay. std::invalid_argument naming a number that is not positive
 /// or that two tools of different shapes would have.
-Program retooled(const Program& program, const std::map<int, int>& numbers);
+Program renumber_tools(const Program& program, const std::map<int, int>& numbers);
 
 }  // namespace riffler

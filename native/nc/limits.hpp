@@ -6,6 +6,8 @@
 
 namespace riffler {
 
+inline constexpr double kInch = 25.4;  // mm
+
 inline constexpr double kMaxLength = 1e6;      // mm: a kilometre, with 1e-10 mm to spare in a double
 inline constexpr double kMaxAngle = 1e8;       // deg: rotary axes may count turns
 inline constexpr double kMaxFeed = 1e9;        // mm/min, or 1/min under G93

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <stdexcept>
+
+#include "geom/math.hpp"
 
 namespace riffler {
 
 namespace {
 
 /// Evaluations after which a stretch counts as not clear.
-constexpr std::size_t kMostEvaluations = 200'000;
+constexpr std::size_t kMaxEvaluations = 200'000;
 constexpr const char* kRemedy =
     "tilt the tool otherwise there (another key), let it stick out further, take a slimmer holder or move the fixture";
 
@@ -62,7 +63,7 @@ Pose deepest_pose(const Collider& collider, const Assembly& assembly, const Moti
   return worst;
 }
 
-LinkFinder::LinkFinder(const Tool& tool, const Space& space, const LinkRule& rule)
+LinkFinder::LinkFinder(const Tool& tool, const ClearanceZone& space, const LinkRule& rule)
     : space_(space),
       rule_(rule),
       assembly_(tool),
@@ -71,7 +72,7 @@ LinkFinder::LinkFinder(const Tool& tool, const Space& space, const LinkRule& rul
 
 bool LinkFinder::clear(const Pose& from, const Pose& to) const {
   if (!reach_.swept_box(from, to).overlaps(around_)) return true;
-  const Swept found = rule_.collider->sweep(assembly_, Motion(from, to), -rule_.tolerance, kMostEvaluations);
+  const Swept found = rule_.collider->sweep(assembly_, Motion(from, to), -rule_.tolerance, kMaxEvaluations);
   return found.answer == Swept::Answer::Clear;
 }
 
@@ -85,7 +86,7 @@ Link LinkFinder::find(const Pose& pose) const {
         "the cut itself stands where " + meeting(*rule_.collider, assembly_, pose) +
         ": find its cutter locations with this collider (plan.cutter_locations), or let the tool stick "
         "out further");
-  const std::vector<Pose> direct = way_out(pose, reach_, space_);
+  const std::vector<Pose> direct = retract_path(pose, reach_, space_);
   if (!rule_.retract && !rule_.direction) {
     bool free = true;
     const Pose* from = &pose;
@@ -128,7 +129,7 @@ std::optional<Link> LinkFinder::from_stretch(const Pose& pose, const Vec3& direc
     for (const Pose& from : reached)
       for (const double rise : {1.0, 0.0})
         for (int k = 0; k < kAround; ++k) {
-          const double a = 2 * std::numbers::pi * k / kAround;
+          const double a = 2 * kPi * k / kAround;
           const Vec3 way = glm::normalize(Vec3(std::cos(a), std::sin(a), rise));
           const Pose end = moved(from, aside * reach_.radius * way);
           if (clear(from, end) && clear(end, above(end))) return Link{{from, end, above(end)}, false};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "collide/collider.hpp"
-#include "nc/way_out.hpp"
+#include "nc/retract_path.hpp"
 
 namespace riffler {
 
@@ -26,7 +26,7 @@ void validate(const LinkRule& rule);
 /// The way from a cut to the clearance plane, the axis kept: the last pose lies in it, the cut's own is left out.
 struct Link {
   std::vector<Pose> poses;
-  /// As way_out has it: through what the tool has cut, or a plunge along its axis. Other ways may cross stock.
+  /// As retract_path has it: through what the tool has cut, or a plunge along its axis. Other ways may cross stock.
   bool direct = true;
 };
 
@@ -35,7 +35,7 @@ struct Link {
 class LinkFinder {
  public:
   /// `rule`, with a collider, and `space` must outlive this.
-  LinkFinder(const Tool& tool, const Space& space, const LinkRule& rule);
+  LinkFinder(const Tool& tool, const ClearanceZone& space, const LinkRule& rule);
 
   /// The way out of a cut at `pose`, or into it when it is gone backwards: along the axis up to the clearance plane; or
   /// a stretch along the axis, upwards or between both, one to a side where it takes that, and straight up. The first
@@ -48,7 +48,7 @@ class LinkFinder {
   std::string met(const std::vector<Pose>& way) const;
   Pose above(const Pose& pose) const;
 
-  const Space& space_;
+  const ClearanceZone& space_;
   const LinkRule& rule_;
   Assembly assembly_;
   ToolEnvelope reach_;

@@ -6,11 +6,11 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "dexel/planes.hpp"
-#include "geom/bytes.hpp"
-#include "geom/error.hpp"
-#include "geom/io.hpp"
-#include "geom/parallel.hpp"
+#include "base/bytes.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
+#include "base/parallel.hpp"
+#include "base/planes.hpp"
 
 namespace riffler {
 
@@ -220,7 +220,7 @@ class Reader {
   /// What `take` makes of the record's payload; what is wrong with it is at the record.
   template <class Take>
   auto taken(const Record& record, const Take& take) const {
-    ByteTaker from(record.payload);
+    ByteReader from(record.payload);
     try {
       auto out = take(from);
       from.done();
@@ -232,7 +232,7 @@ class Reader {
 
   Provenance notes(const Record& record) const {
     if (record.number != notes_) fail(record.at + 4, "the header announces another number of notes");
-    return taken(record, [&](ByteTaker& from) {
+    return taken(record, [&](ByteReader& from) {
       Provenance out;
       for (std::uint32_t k = 0; k < record.number; ++k) {
         std::string key = from.text();
@@ -242,12 +242,12 @@ class Reader {
     });
   }
 
-  static Vec2 take_point(ByteTaker& from) {
+  static Vec2 take_point(ByteReader& from) {
     const double x = from.number<double>();
     return {x, from.number<double>()};
   }
 
-  static std::vector<Frustum> take_pieces(ByteTaker& from) {
+  static std::vector<Frustum> take_pieces(ByteReader& from) {
     std::vector<Frustum> out;
     for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
       const auto numbers = from.number<std::array<double, 4>>();
@@ -256,7 +256,7 @@ class Reader {
     return out;
   }
 
-  static Tool take_tool(ByteTaker& from) {
+  static Tool take_tool(ByteReader& from) {
     const std::string kind = from.text(), name = from.text();
     std::vector<std::pair<std::string, double>> parameters;
     for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
@@ -289,7 +289,7 @@ class Reader {
     for (const Record& record : records) {
       if (record.kind != kVia) break;
       if (record.number <= last || record.number >= rows_) fail(record.at + 4, "no row to lead to, or not in order");
-      vias_.emplace(record.number, taken(record, [&](ByteTaker& from) {
+      vias_.emplace(record.number, taken(record, [&](ByteReader& from) {
                       auto out = std::make_shared<std::vector<Pose>>();
                       for (auto k = from.number<std::uint32_t>(); k > 0; --k) {
                         const auto n = from.number<std::array<double, 6>>();

@@ -11,7 +11,7 @@
 // name and value f64 of each; the count of the profile's segments, and of each whether it has a centre (u32, 0 or 1),
 // its end and, if so, its centre (2 or 4 × f64); shank and holder, each the count of pieces and 4 × f64 for each. Then
 // a record "via " for every row with via poses, by rising row, which is its number: the count u32, and tip and axis of
-// each (6 × f64). Then the rows, kChunkRows a record "rows" whose number is their count: columns (dexel/planes.hpp) of
+// each (6 × f64). Then the rows, kChunkRows a record "rows" whose number is their count: columns (base/planes.hpp) of
 // tip and axis x y z, feed and spindle (bits of doubles, u64), tool and line (u32), flags (u16): 1 for a rapid, 2 for a
 // position of the machine.
 #pragma once
@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "nc/program.hpp"
 
 namespace riffler {

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <system_error>
 
-#include "geom/error.hpp"
-#include "geom/io.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
 
 namespace riffler {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "geom/math.hpp"
-#include "pen/motors.hpp"
-#include "pen/wrench_split.hpp"
+#include "pen/arms/motors.hpp"
+#include "pen/arms/wrench_split.hpp"
 
 namespace riffler {
 

@@ -6,8 +6,9 @@
 
 #include "haptics/states.hpp"
 #include "pen/capability.hpp"
-#include "pen/driver_loop.hpp"
+#include "pen/link_status.hpp"
 #include "pen/passivity_settings.hpp"
+#include "pen/pen_step.hpp"
 #include "pen/sample.hpp"
 
 namespace riffler {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "geom/own_thread.hpp"
+#include "base/own_thread.hpp"
 #include "pen/driver_loop.hpp"
 
 namespace riffler {

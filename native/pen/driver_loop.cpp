@@ -3,30 +3,18 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 void DriverSettings::validate() const {
-  require_positive("read_timeout", read_timeout);
-  require_positive("silence", silence);
-  require_positive("first_retry", first_retry);
-  require_positive("longest_retry", longest_retry);
-  require_positive("poll", poll);
-  require_positive("most_reads", most_reads);
+  require_positive(read_timeout, "read_timeout");
+  require_positive(silence, "silence");
+  require_positive(first_retry, "first_retry");
+  require_positive(longest_retry, "longest_retry");
+  require_positive(poll, "poll");
+  require_positive(most_reads, "most_reads");
   if (longest_retry < first_retry) throw std::invalid_argument("longest_retry of the driver is less than first_retry");
-}
-
-const char* link_text(LinkState state) noexcept {
-  switch (state) {
-    case LinkState::Stopped:
-      return "stopped";
-    case LinkState::Connected:
-      return "connected";
-    case LinkState::Waiting:
-      return "waiting";
-    case LinkState::Connecting:
-      break;
-  }
-  return "connecting";
 }
 
 DriverLoop::DriverLoop(HidModel& model, PenStep& step, Connector& connector, Clock& clock,

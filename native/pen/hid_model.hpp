@@ -8,10 +8,10 @@
 
 #include "haptics/safety.hpp"
 #include "pen/capability.hpp"
-#include "pen/open_error.hpp"
+#include "pen/hid/open_error.hpp"
+#include "pen/hid/transport.hpp"
 #include "pen/passivity_settings.hpp"
 #include "pen/sample.hpp"
-#include "pen/transport.hpp"
 
 namespace riffler {
 

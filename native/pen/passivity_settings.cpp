@@ -5,7 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "pen/geometry.hpp"
+#include "geom/math.hpp"
+#include "pen/arms/geometry.hpp"
 
 namespace riffler {
 
@@ -20,7 +21,7 @@ struct ArmBounds {
 };
 
 ArmBounds bounds_of(const PenGeometry& pen, Arm arm) {
-  constexpr double kRight = std::numbers::pi / 2;
+  constexpr double kRight = kPi / 2;
   const ArmLinks& links = pen.arms[index(arm)];
   const auto sine = [&](double elbow) { return std::sin(std::clamp(elbow, -kRight, kRight)); };
   const double low = sine(pen.elbow_low), high = sine(pen.elbow_high);
@@ -41,7 +42,7 @@ ArmTraits traits_of(const PenGeometry& pen, Arm arm) {
     const auto j = static_cast<std::size_t>(c.joint);
     out.viscous[j] = c.viscous * c.ratio * c.ratio;
     out.coulomb[j] = c.coulomb * c.ratio;
-    out.step[j] = 2 * std::numbers::pi / c.steps;
+    out.step[j] = 2 * kPi / c.steps;
   }
   return out;
 }
@@ -73,7 +74,8 @@ double resolution(const ArmBounds& arm, const ArmTraits& joints) {
   return std::hypot(arm.lever[0] * joints.step[0], arm.lever[1] * joints.step[1] + arm.lever[2] * joints.step[2]);
 }
 
-/// s: a frame of USB out, the frame in which the motors have it, and the report of it (pen/simulated_cable.hpp).
+/// s: a frame of USB out, the frame in which the motors have it, and the report of it
+/// (pen/simulated/simulated_cable.hpp).
 constexpr double kLatency = 2e-3;
 
 }  // namespace

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "haptics/passivity.hpp"
+#include "pen/arms/compensation.hpp"
 #include "pen/capability.hpp"
-#include "pen/compensation.hpp"
 
 namespace riffler {
 

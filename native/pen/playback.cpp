@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/check.hpp"
 #include "pen/driver.hpp"
 
 namespace riffler {
@@ -35,7 +36,7 @@ void check(const RecordedStroke& stroke, std::size_t number) {
 
 PlaybackPen::PlaybackPen(std::vector<RecordedStroke> strokes, double speed, std::function<double()> clock)
     : clock_(clock ? std::move(clock) : std::function<double()>(steady_seconds)), speed_(speed), start_(kNotBegun) {
-  if (!(speed > 0 && std::isfinite(speed))) throw std::invalid_argument("speed must be positive");
+  require_positive(speed, "speed");
   if (strokes.empty()) throw std::invalid_argument("strokes: a recording needs a stroke");
   capability_.name = "recording";
   for (std::size_t k = 0; k < 5; ++k) capability_.coordinates[k].sensing = Sensing::Position;

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
+
+#include "geom/math.hpp"
 
 namespace riffler {
 
@@ -17,7 +18,7 @@ void PointerFrame::validate() const {
   if (!(std::abs(glm::dot(right, up)) < kSlack)) fail("right and up must be square to each other");
   if (!(scale > 0 && std::isfinite(scale))) fail("scale must be positive");
   if (!(depth >= 0 && std::isfinite(depth))) fail("depth must not be negative");
-  if (!(most_tilt >= 0 && most_tilt < std::numbers::pi / 2)) fail("most_tilt must be at least 0 and less than pi/2");
+  if (!(most_tilt >= 0 && most_tilt < kPi / 2)) fail("most_tilt must be at least 0 and less than pi/2");
 }
 
 Vec3 tilted_axis(const PointerFrame& frame, double tilt_x, double tilt_y) noexcept {

@@ -1,7 +1,7 @@
 // A value that one thread writes and any thread reads, without locks.
 #pragma once
 
-#include "geom/sequence_lock.hpp"
+#include "base/sequence_lock.hpp"
 
 namespace riffler {
 

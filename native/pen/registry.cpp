@@ -4,12 +4,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pen/hid_handle.hpp"
+#include "pen/hid/hid_handle.hpp"
 #include "pen/hid_pen.hpp"
-#include "pen/polhem_model.hpp"
-#include "pen/riffler_model.hpp"
-#include "pen/simulated_device.hpp"
-#include "pen/spacemouse_model.hpp"
+#include "pen/models/polhem_model.hpp"
+#include "pen/models/riffler_model.hpp"
+#include "pen/models/spacemouse_model.hpp"
+#include "pen/simulated/simulated_device.hpp"
 
 namespace riffler {
 namespace {
@@ -94,7 +94,7 @@ std::unique_ptr<Pen> open_one(const PenFamily& family, const HidInfo& info, cons
 std::unique_ptr<Pen> open_kind(const PenFamily& family, const PenOptions& options) {
   std::optional<OpenError> first;
   for (const HidInfo& info : list_hid()) {
-    if (!family.claims(info)) continue;
+    if (!family.matches(info)) continue;
     try {
       return open_one(family, info, options);
     } catch (const OpenError& error) {
@@ -113,7 +113,7 @@ std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options)
     if (family == nullptr)
       throw OpenError(OpenProblem::UnknownDevice,
                       info.path + ": " + info.name + " (" + info.id() + ") is no device that Riffler knows");
-    if (!family->tried)
+    if (!family->opened_by_search)
       throw OpenError(OpenProblem::UnknownDevice,
                       info.path + ": " + info.id() +
                           " is a number that many boards have; if it is one of these, open it as \"" + family->kind +
@@ -132,7 +132,7 @@ std::span<const PenFamily> pen_families() {
 
 const PenFamily* family_of(const HidInfo& info) {
   for (const PenFamily& family : kFamilies)
-    if (family.claims(info)) return &family;
+    if (family.matches(info)) return &family;
   return nullptr;
 }
 
@@ -142,8 +142,8 @@ std::vector<FoundDevice> find_devices() {
     FoundDevice& found = out.emplace_back();
     found.info = std::move(info);
     found.family = family_of(found.info);
-    found.tried = found.family != nullptr && found.family->tried;
-    if (!found.tried) {
+    found.was_opened = found.family != nullptr && found.family->opened_by_search;
+    if (!found.was_opened) {
       found.problem = why_not_open(found.info, found.text);
       continue;
     }

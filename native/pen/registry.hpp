@@ -7,12 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "pen/compensation.hpp"
+#include "pen/arms/compensation.hpp"
 #include "pen/device.hpp"
-#include "pen/hid_list.hpp"
+#include "pen/driver_loop.hpp"
+#include "pen/hid/hid_list.hpp"
+#include "pen/hid/open_error.hpp"
 #include "pen/hid_model.hpp"
-#include "pen/open_error.hpp"
-#include "pen/rate_control.hpp"
+#include "pen/models/rate_control.hpp"
 
 namespace riffler {
 
@@ -26,10 +27,11 @@ struct PenOptions {
 struct PenFamily {
   const char* kind;
   const char* what;
-  bool (*claims)(const HidInfo& info);
-  /// False where other makers' devices have the same numbers and nothing in them tells which it is: such a device is
-  /// opened where its kind is asked for by name, and never tried by itself. Pushing a stranger's motors is no test.
-  bool tried;
+  bool (*matches)(const HidInfo& info);
+  /// Whether the search for devices may open one. False where other makers' devices have the same numbers and nothing
+  /// in them tells which it is: such a device is opened only by the name of its kind. Pushing a stranger's motors is no
+  /// test.
+  bool opened_by_search;
   std::unique_ptr<HidModel> (*make)(Transport& transport, const HidInfo& info, const PenOptions& options);
 };
 
@@ -40,7 +42,7 @@ const PenFamily* family_of(const HidInfo& info);
 struct FoundDevice {
   HidInfo info;
   const PenFamily* family = nullptr;  ///< null: not a device for Riffler
-  bool tried = false;                 ///< it was opened and asked who it is; otherwise only whether it may be opened
+  bool was_opened = false;            ///< and asked who it is; otherwise only whether it may be opened
   OpenProblem problem = OpenProblem::None;
   std::string text;        ///< why it does not open, and what to do
   std::string capability;  ///< of those that opened: what is sensed and pushed

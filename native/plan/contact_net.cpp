@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

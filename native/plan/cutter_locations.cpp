@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "plan/contact_location.hpp"
 #include "plan/lift.hpp"
 
@@ -15,7 +15,7 @@ namespace riffler {
 
 namespace {
 
-constexpr int kMostInserted = 100'000;
+constexpr int kMaxInserted = 100'000;
 
 constexpr const char* kOf[] = {"the cutter meets the part", "the shank meets the part", "the holder meets the part",
                                "a fixture is in the way"};
@@ -38,12 +38,11 @@ std::string why_not_free(const Lift& lift, const LocationRule& rule) {
 void check(const PencilPath& path, const LocationRule& rule) {
   if (path.axes.size() != path.size() || path.axes.empty())
     throw std::invalid_argument("path: has no axes; orient it first");
-  if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
+  require(std::isfinite(rule.clearance), "clearance", "must be finite");
   require_tolerance(rule.tolerance);
-  if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
-    throw std::invalid_argument("max_lift must be finite and not negative");
-  if (rule.max_inserted < 0 || rule.max_inserted > kMostInserted)
-    throw std::invalid_argument("max_inserted must be from 0 to " + std::to_string(kMostInserted));
+  require_not_negative(rule.max_lift, "max_lift", kFiniteAndNotNegative);
+  if (rule.max_inserted < 0 || rule.max_inserted > kMaxInserted)
+    throw std::invalid_argument("max_inserted must be from 0 to " + std::to_string(kMaxInserted));
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
 }
 

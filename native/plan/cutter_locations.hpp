@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "collide/collider.hpp"
-#include "geom/progress.hpp"
 #include "plan/path.hpp"
 
 namespace riffler {

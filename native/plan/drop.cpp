@@ -5,8 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "geom/median_tree.hpp"
-#include "geom/parallel.hpp"
 #include "plan/cc_frame.hpp"
 
 namespace riffler {

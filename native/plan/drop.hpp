@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "geom/median_tree.hpp"
-#include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 #include "plan/lower_side.hpp"
 #include "tool/tool.hpp"

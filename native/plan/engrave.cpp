@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "mesh/closest.hpp"
 #include "mesh/orient.hpp"
 #include "mesh/smooth_normals.hpp"
@@ -18,7 +18,7 @@ namespace riffler {
 namespace {
 
 constexpr double kNothing = 1e-3;  // of the tolerance: a piece of curve too short to be divided
-constexpr std::size_t kMostPoints = 10'000'000, kPointsAReport = 1024;
+constexpr std::size_t kMaxPoints = 10'000'000, kPointsAReport = 1024;
 constexpr int kBridges = 6;  // 64 points over one edge
 
 struct OnPart {
@@ -30,11 +30,9 @@ struct OnPart {
 }
 
 void check(const EngraveOptions& o) {
-  const auto positive = [](double x, const char* name) {
-    if (!(x > 0) || !std::isfinite(x)) bad(std::string(name) + " must be positive and finite");
-  };
   require_tolerance(o.tolerance);
-  positive(o.turn, "turn"), positive(o.reach, "reach");
+  require_positive(o.turn, "turn", kPositiveAndFinite);
+  require_positive(o.reach, "reach", kPositiveAndFinite);
   if (!(o.crease >= 0 && o.crease <= 3.1416)) bad("crease must lie between 0 and π");
   if (!std::isfinite(o.depth)) bad("depth is not finite");
   if (!(std::abs(o.inclination) < 1.57) || !(std::abs(o.tilt) < 1.57))
@@ -91,7 +89,7 @@ class Sheet {
   }
 
   static void append(const OnPart& to, std::vector<OnPart>& out) {
-    if (out.size() >= kMostPoints)
+    if (out.size() >= kMaxPoints)
       bad("a curve of more than ten million points: take a larger tolerance or turn, or check the units");
     if (out.size() % kPointsAReport == 0) still_wanted();
     if (to.point != out.back().point || to.normal != out.back().normal) out.push_back(to);

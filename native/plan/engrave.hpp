@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "base/progress.hpp"
 #include "geom/pose.hpp"
-#include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 #include "tool/tool.hpp"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/math.hpp"
+
 namespace riffler {
 
 namespace {
@@ -68,7 +70,7 @@ std::optional<Lowest3> lowest_in_order(std::span<const HalfSpace<Vec3>> spaces, 
     if (glm::dot(normal, best.point) >= spaces[i].least - slack) continue;
     // In the plane of the one that is violated, the box's six sides first.
     const Vec3 foot = normal * spaces[i].least;
-    const Vec3 p = glm::normalize(glm::cross(normal, std::abs(normal.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+    const Vec3 p = any_perpendicular(normal);
     const Vec3 q = glm::cross(normal, p);
     flat.clear();
     const auto add = [&](const Vec3& along, double least) {

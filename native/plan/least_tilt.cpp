@@ -6,6 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 namespace {
@@ -109,10 +111,8 @@ std::vector<std::size_t> best_round(const Chain& chain, std::size_t n) {
 
 void check(const PencilPath& path, const TiltRule& rule) {
   if (path.size() == 0) throw std::invalid_argument("path: has no points");
-  if (!(rule.max_change > 0) || !std::isfinite(rule.max_change))
-    throw std::invalid_argument("max_change must be positive and finite");
-  if (!(rule.smoothness >= 0) || !std::isfinite(rule.smoothness))
-    throw std::invalid_argument("smoothness must be finite and not negative");
+  require_positive(rule.max_change, "max_change", kPositiveAndFinite);
+  require_not_negative(rule.smoothness, "smoothness", kFiniteAndNotNegative);
 }
 
 TiltAnswer none(std::size_t point, std::string reason) {

@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "plan/point_lift.hpp"
 
 namespace riffler {
@@ -62,7 +63,7 @@ class Climb {
   Range blocked() const {
     const Vec3 d = now_.point - pose_.tip;
     const double up = glm::dot(d, pose_.axis), z = up - at_, rho = glm::length(d - up * pose_.axis);
-    const GrownColumns::Column column = columns_.at(rho, z);
+    const OffsetToolColumns::Column column = columns_.at(rho, z);
     // A fixture is as deep as it is thick where no point of it is in the tool: then no more than its depth is known.
     return column.covered ? Range{up - column.high, up - column.low}
                           : Range{at_, at_ + rule_.clearance - now_.distance};
@@ -85,7 +86,7 @@ class Climb {
   const Assembly& assembly_;
   const Pose pose_;
   const LiftRule& rule_;
-  const GrownColumns columns_;
+  const OffsetToolColumns columns_;
   Collider::Nearest now_{};
   double at_ = 0;
   Lift out_;
@@ -94,11 +95,9 @@ class Climb {
 }  // namespace
 
 void validate(const LiftRule& rule) {
-  if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
-  if (!(rule.tolerance > 0) || !std::isfinite(rule.tolerance))
-    throw std::invalid_argument("tolerance must be positive and finite");
-  if (!(rule.max_lift >= 0) || !std::isfinite(rule.max_lift))
-    throw std::invalid_argument("max_lift must be finite and not negative");
+  require(std::isfinite(rule.clearance), "clearance", "must be finite");
+  require_positive(rule.tolerance, "tolerance", kPositiveAndFinite);
+  require_not_negative(rule.max_lift, "max_lift", kFiniteAndNotNegative);
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
 }
 

@@ -38,26 +38,26 @@ std::vector<double> stations(const PencilPath& path) {
 }
 
 /// Keys `from` and `to` in the numbering in which a loop goes on counting.
-struct Stretch {
+struct KeySpan {
   std::size_t from, to;
   Vec3 first, last;
 };
 
-std::vector<Stretch> spans_of(const PencilPath& path, const OrientationKeys& keys) {
-  std::vector<Stretch> out;
+std::vector<KeySpan> spans_of(const PencilPath& path, const OrientationKeys& keys) {
+  std::vector<KeySpan> out;
   for (auto at = keys.begin(), next = std::next(at); next != keys.end(); ++at, ++next)
     out.push_back({at->first, next->first, at->second, next->second});
   if (path.closed && keys.size() > 1) {
     const auto &last = *keys.rbegin(), &first = *keys.begin();
     out.push_back({last.first, first.first + path.size(), last.second, first.second});
   }
-  for (const Stretch& s : out)
+  for (const KeySpan& s : out)
     if (angle_between(s.first, s.last) > kPi - 1e-6)
       refuse(s.to % path.size(), "opposite to the key at point " + std::to_string(s.from));
   return out;
 }
 
-void fill_linear(const Stretch& span, std::vector<Vec3>& axes) {
+void fill_linear(const KeySpan& span, std::vector<Vec3>& axes) {
   for (std::size_t i = span.from + 1; i < span.to; ++i) {
     const double u = static_cast<double>(i - span.from) / static_cast<double>(span.to - span.from);
     axes[i % axes.size()] = glm::normalize(span.first + u * (span.last - span.first));
@@ -65,7 +65,7 @@ void fill_linear(const Stretch& span, std::vector<Vec3>& axes) {
 }
 
 /// Shares of a span by arc length; by number of points where its points coincide.
-void fill_slerp(const Stretch& span, const std::vector<double>& s, std::vector<Vec3>& axes) {
+void fill_slerp(const KeySpan& span, const std::vector<double>& s, std::vector<Vec3>& axes) {
   const std::size_t n = axes.size();
   const auto station = [&](std::size_t i) { return i < n ? s[i] : s[n] + s[i - n]; };
   const double length = station(span.to) - station(span.from);
@@ -133,10 +133,10 @@ PencilPath oriented(const PencilPath& path, const OrientationKeys& keys, Interpo
   for (std::size_t i = good.rbegin()->first; i < axes.size() && !(path.closed && good.size() > 1); ++i)
     axes[i] = good.rbegin()->second;
   for (const auto& [k, axis] : good) axes[k] = axis;
-  const std::vector<Stretch> spans = spans_of(path, good);
+  const std::vector<KeySpan> spans = spans_of(path, good);
   const std::vector<double> s = stations(path);
   if (rule == Interpolation::Smooth) fill_smooth(path, good, s, axes);
-  for (const Stretch& span : spans) {
+  for (const KeySpan& span : spans) {
     if (rule == Interpolation::Linear) fill_linear(span, axes);
     if (rule == Interpolation::Slerp) fill_slerp(span, s, axes);
   }

@@ -5,8 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "geom/math.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 
@@ -60,9 +61,8 @@ void fill(OrientationMap& map, std::size_t i, const PencilPath& path, std::size_
 void validate(const MapRule& rule) {
   check_angles(rule.inclinations, "inclinations", kPi);
   check_angles(rule.tilts, "tilts", kPi / 2);
-  if (!std::isfinite(rule.clearance)) throw std::invalid_argument("clearance must be finite");
-  if (!(rule.tolerance >= 0) || !std::isfinite(rule.tolerance))
-    throw std::invalid_argument("tolerance must be finite and not negative");
+  require(std::isfinite(rule.clearance), "clearance", "must be finite");
+  require_not_negative(rule.tolerance, "tolerance", kFiniteAndNotNegative);
   if (!rule.limit) return;
   unit_axis(rule.limit->about, "limit");
   if (!(rule.limit->angle >= 0 && rule.limit->angle < kPi))

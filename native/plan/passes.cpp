@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 
 namespace riffler {
 

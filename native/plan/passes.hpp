@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "plan/path.hpp"
 #include "plan/valley.hpp"
 

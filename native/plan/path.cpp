@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 double PencilPath::length() const {
@@ -14,7 +16,7 @@ double PencilPath::length() const {
 
 namespace {
 
-constexpr double kMostPoints = 1e7;
+constexpr double kMaxPoints = 1e7;
 
 Vec3 between(const Vec3& a, const Vec3& b, double t) {
   return a + t * (b - a);
@@ -30,9 +32,8 @@ Vec3 normal_between(const Vec3& a, const Vec3& b, double t) {
 }  // namespace
 
 PencilPath divided(const PencilPath& path, double step) {
-  if (!(step > 0) || !std::isfinite(step)) throw std::invalid_argument("step must be positive and finite");
-  if (path.length() / step > kMostPoints)
-    throw std::invalid_argument("step is too short: more than ten million points");
+  require_positive(step, "step", kPositiveAndFinite);
+  if (path.length() / step > kMaxPoints) throw std::invalid_argument("step is too short: more than ten million points");
   PencilPath out;
   out.radius = path.radius, out.closed = path.closed;
   const std::size_t n = path.size();

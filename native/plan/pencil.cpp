@@ -5,8 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "mesh/orient.hpp"
 #include "mesh/smooth.hpp"
 #include "plan/contact_location.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kWidestStep = 10;    // radii: beside a valley
 constexpr double kLargestBall = 100;  // sizes of the part
-constexpr double kMostCells = 1e9;    // of the net
+constexpr double kMaxCells = 1e9;     // of the net
 
 /// The lengths that a search goes by, mm.
 struct Scales {
@@ -266,19 +266,14 @@ class Additions {
 };
 
 void check(double radius, const PencilOptions& options) {
-  const auto positive = [](double x, const char* name) {
-    if (!(x > 0) || !std::isfinite(x)) throw std::invalid_argument(std::string(name) + " must be positive and finite");
-  };
-  positive(radius, "radius");
+  require_positive(radius, "radius", kPositiveAndFinite);
   require_tolerance(options.tolerance);
   if (const auto& angle = options.bitangency_angle; angle && !(*angle > 0 && *angle < 3.14159))
     throw std::invalid_argument("bitangency_angle must be between 0 and pi");
-  if (!(options.minimum_length >= 0) || !std::isfinite(options.minimum_length))
-    throw std::invalid_argument("minimum_length must not be negative, and finite");
-  if (!(options.overthickness >= 0) || !std::isfinite(options.overthickness))
-    throw std::invalid_argument("overthickness must not be negative, and finite");
+  require_not_negative(options.minimum_length, "minimum_length", "must not be negative, and finite");
+  require_not_negative(options.overthickness, "overthickness", "must not be negative, and finite");
   if (options.passes < 1 || options.passes > 1000) throw std::invalid_argument("passes must be from 1 to 1000");
-  if (options.stepover) positive(*options.stepover, "stepover");
+  if (options.stepover) require_positive(*options.stepover, "stepover", kPositiveAndFinite);
   if (options.stepover && !(*options.stepover <= kWidestStep * radius))
     throw std::invalid_argument("stepover must be at most ten times the ball's radius");
 }
@@ -288,7 +283,7 @@ void check_sizes(const Mesh& part, double radius, double spacing) {
   const double size = glm::length(bounds(part).size());
   if (radius > kLargestBall * size)
     throw std::invalid_argument("tool: the ball's radius is more than 100 times the part's size: check the units");
-  if (area(part) > kMostCells * spacing * spacing)
+  if (area(part) > kMaxCells * spacing * spacing)
     throw std::invalid_argument(
         "tool: the ball is too small for the part, which it would have to be laid on more than a billion "
         "times: check the units");

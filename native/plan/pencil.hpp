@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "mesh/mesh.hpp"
 #include "plan/path.hpp"
 #include "tool/tool.hpp"

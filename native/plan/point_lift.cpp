@@ -16,7 +16,7 @@ void add_circle(const Vec2& centre, double r, double rho, std::vector<double>& h
 
 }  // namespace
 
-void GrownColumns::candidates(double rho, std::vector<double>& heights) const {
+void OffsetToolColumns::candidates(double rho, std::vector<double>& heights) const {
   for (const OutlineEdge& e : outline_->edges()) {
     const double c = std::abs(c_);
     add_circle(e.from, c, rho, heights), add_circle(e.to, c, rho, heights);
@@ -32,7 +32,7 @@ void GrownColumns::candidates(double rho, std::vector<double>& heights) const {
   }
 }
 
-GrownColumns::Column GrownColumns::at(double rho, double z) const {
+OffsetToolColumns::Column OffsetToolColumns::at(double rho, double z) const {
   if (!covers(rho, z)) return {};
   std::vector<double> heights;
   candidates(rho, heights);

@@ -10,10 +10,10 @@ namespace riffler {
 /// The tool grown by c (shrunk where c < 0): all points whose signed distance from it is below c. In a column at radius
 /// ρ round the axis it covers some intervals of heights, whose ends are in closed form: an offset edge, a circle round
 /// a corner or an arc's centre. Nothing is sampled.
-class GrownColumns {
+class OffsetToolColumns {
  public:
   /// Keeps a pointer to the outline.
-  explicit GrownColumns(const Outline& outline, double c) : outline_(&outline), c_(c) {}
+  explicit OffsetToolColumns(const Outline& outline, double c) : outline_(&outline), c_(c) {}
 
   struct Column {
     bool covered = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/math.hpp"
 #include "mesh/smooth.hpp"
 #include "plan/half_spaces.hpp"
 
@@ -26,8 +27,7 @@ Frame frame_of(const Vec3& push, const Vec3& across) {
   Frame frame;
   frame.columns = flat ? 2 : 3;
   frame.e[0] = glm::normalize(push);
-  const Vec3 other = std::abs(frame.e[0].x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-  frame.e[2] = flat ? across : glm::normalize(glm::cross(frame.e[0], other));
+  frame.e[2] = flat ? across : any_perpendicular(frame.e[0]);
   frame.e[1] = glm::cross(frame.e[2], frame.e[0]);
   return frame;
 }

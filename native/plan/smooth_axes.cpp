@@ -25,10 +25,6 @@ Vec3 capped(const Vec3& v, double most) {
 
 }  // namespace
 
-Vec3 slerp(const Vec3& a, const Vec3& b, double u) {
-  return Motion({Vec3(0), a}, {Vec3(0), b}).axis(u);
-}
-
 Vec3 along_great_circle(const Vec3& a, const Vec3& v, double u) {
   const double rate = glm::length(v), angle = rate * u;
   return rate > 0 ? std::cos(angle) * a + std::sin(angle) * (v / rate) : a;

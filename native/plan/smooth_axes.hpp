@@ -38,8 +38,6 @@ class SmoothAxes {
   double period_;
 };
 
-/// The great circle from `a` to `b`, u in [0, 1], at constant rate. Not for opposite ones.
-Vec3 slerp(const Vec3& a, const Vec3& b, double u);
 /// Where the great circle from `a` with the velocity `v` (square to a, rad per unit) has come to after `u`.
 Vec3 along_great_circle(const Vec3& a, const Vec3& v, double u);
 /// The velocity that leads from `a` to `b` in one unit.

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "geom/math.hpp"
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
 #include "mesh/closest.hpp"
 #include "plan/cc_frame.hpp"
 #include "plan/contact_location.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "mesh/mesh.hpp"
 #include "plan/path.hpp"
 #include "tool/tool.hpp"

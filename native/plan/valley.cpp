@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 
@@ -54,15 +54,15 @@ ValleyTracer::Event ValleyTracer::accept(const RollingBall::Seat& seat, const St
     if (turn(0, 1) > rules_.jump) return Event::Jump;
   }
   const double angle = chord_angle(feet[0].away, feet[1].away);
-  if (glm::length(glm::cross(feet[0].away, feet[1].away)) < kOpposite) return Event::Faded;
-  if (angle < rules_.least_angle) return Event::Faded;
+  if (glm::length(glm::cross(feet[0].away, feet[1].away)) < kOpposite) return Event::TooFlat;
+  if (angle < rules_.least_angle) return Event::TooFlat;
   to.centre = seat.centre, to.feet = feet;
   for (int side = 0; side < 2; ++side) {
     const std::optional<Vec3> normal = ball_.faced(feet[side]);
-    if (!normal) return Event::Unfaced;
+    if (!normal) return Event::NoFace;
     to.normals[side] = *normal;
   }
-  return is_deep(to) ? Event::None : Event::Faded;
+  return is_deep(to) ? Event::None : Event::TooFlat;
 }
 
 ValleyTracer::Event ValleyTracer::advance(const Station& from, double sign, double length, Station& to) const {
@@ -89,7 +89,7 @@ ValleyTracer::Found ValleyTracer::start(const Unreached& from, Station& station)
     if (!(height > 0) || !(next < radius)) break;
     radius = next, other = hit.point;
   }
-  if (!(radius < full) || radius < 1e-4 * full) return Found::Stuck;
+  if (!(radius < full) || radius < 1e-4 * full) return Found::NoSeat;
   RollingBall::Seat seat;
   seat.centre = from.point + radius * from.normal;
   seat.feet[0].away = from.normal, seat.feet[1].away = glm::normalize(seat.centre - other);
@@ -99,7 +99,7 @@ ValleyTracer::Found ValleyTracer::start(const Unreached& from, Station& station)
   double longest = kFirst * full;
   while (radius < full) {
     const Vec3 push = seat.feet[0].away + seat.feet[1].away, across = glm::cross(seat.feet[0].away, seat.feet[1].away);
-    if (glm::length(across) < 1e-6 || glm::length(push) < 1e-6) return Found::Stuck;
+    if (glm::length(across) < 1e-6 || glm::length(push) < 1e-6) return Found::NoSeat;
     const double rate = 2 / glm::length(push);  // of the centre, in a valley of two planes
     const double move = std::min(longest, (full - radius) * rate), next = std::min(full, radius + move / rate);
     const bool set = move < 0.5 * radius;  // not beyond a wall
@@ -112,16 +112,16 @@ ValleyTracer::Found ValleyTracer::start(const Unreached& from, Station& station)
     } else if (longest > kShort * full) {
       longest = longest > kFirst * full ? kFirst * full : kShort * full;
     } else {
-      return Found::Stuck;
+      return Found::NoSeat;
     }
   }
   switch (accept(seat, nullptr, station)) {
     case Event::None:
       return Found::Valley;
-    case Event::Faded:
-      return Found::Faded;
+    case Event::TooFlat:
+      return Found::TooFlat;
     default:
-      return Found::Unfaced;
+      return Found::NoFace;
   }
 }
 
@@ -214,14 +214,14 @@ ValleyEnd ValleyTracer::follow(const Station& seed, double sign, std::vector<Sta
     const Event met = advance(last, sign, step, next);
     if (met != Event::None) {
       event = met, bracket = step, step *= 0.5, calm = 0;
-      if (bracket > (event == Event::Faded ? 0.1 * tolerance : shortest)) continue;
+      if (bracket > (event == Event::TooFlat ? 0.1 * tolerance : shortest)) continue;
       // A defect of the mesh that is shorter than the tolerance does not end a valley.
-      if (event == Event::Unfaced && advance(last, sign, tolerance, next) == Event::None) {
+      if (event == Event::NoFace && advance(last, sign, tolerance, next) == Event::None) {
         out.push_back(next), before = last, last = next, bracket = 0, step = tolerance, calm = 0;
         continue;
       }
-      if (event == Event::Faded) return ValleyEnd::Faded;
-      if (event == Event::Unfaced) return ValleyEnd::Part;
+      if (event == Event::TooFlat) return ValleyEnd::TooFlat;
+      if (event == Event::NoFace) return ValleyEnd::Part;
       if (const auto corner = corner_near(last, sign, 2 * bracket)) {
         out.push_back(*corner);
         return ValleyEnd::Corner;

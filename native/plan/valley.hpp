@@ -20,11 +20,11 @@ struct ValleyRules {
 /// Why a valley ends where it does.
 enum class ValleyEnd : unsigned char {
   Loop,
-  Corner,  ///< a third side holds the ball
-  Part,    ///< a contact leaves over a sharp edge or an open one
-  Faded,   ///< the sides come too near to one another
-  Cut,     ///< too many stations: something is wrong with the part there
-  Joined,  ///< another path continues here
+  Corner,   ///< a third side holds the ball
+  Part,     ///< a contact leaves over a sharp edge or an open one
+  TooFlat,  ///< the sides come too near to one another
+  Cut,      ///< too many stations: something is wrong with the part there
+  Joined,   ///< another path continues here
 };
 
 struct Valley {
@@ -38,7 +38,7 @@ class ValleyTracer {
   ValleyTracer(const RollingBall& ball, const ValleyRules& rules) : ball_(ball), rules_(rules) {}
 
   /// What became of a start.
-  enum class Found { Valley, Stuck, Faded, Unfaced };
+  enum class Found { Valley, NoSeat, TooFlat, NoFace };
   /// From where a ball cannot reach to where it is held: the ball that touches there and a second place, however small,
   /// grown to its full size.
   Found start(const Unreached& from, Station& station) const;
@@ -52,7 +52,7 @@ class ValleyTracer {
   std::vector<Station> branches(const Vec3& corner) const;
 
  private:
-  enum class Event { None, Jump, Unfaced, Faded };
+  enum class Event { None, Jump, NoFace, TooFlat };
 
   bool is_deep(const Station& station) const;
   Event accept(const RollingBall::Seat& seat, const Station* like, Station& station) const;

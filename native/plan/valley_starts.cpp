@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 
@@ -70,13 +70,13 @@ ValleyStarts valley_starts(const ValleyTracer& tracer, const std::vector<Unreach
   starts.pressed = n;
   for (std::size_t i = 0; i < n; ++i) {
     if (found[i] == Found::Valley) starts.stations.push_back(stations[i]);
-    starts.stuck += found[i] == Found::Stuck ? 1 : 0;
-    starts.faceting += found[i] == Found::Faded ? 1 : 0;
-    starts.edges += found[i] == Found::Unfaced ? 1 : 0;
+    starts.stuck += found[i] == Found::NoSeat ? 1 : 0;
+    starts.faceting += found[i] == Found::TooFlat ? 1 : 0;
+    starts.edges += found[i] == Found::NoFace ? 1 : 0;
   }
   starts.is_rest.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    starts.is_rest[i] = groups.of[i] < 0 || found[groups.of[i]] != Found::Faded;
+    starts.is_rest[i] = groups.of[i] < 0 || found[groups.of[i]] != Found::TooFlat;
   return starts;
 }
 

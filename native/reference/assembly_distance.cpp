@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "geom/math.hpp"
 
 namespace riffler::reference {
 
@@ -64,7 +65,7 @@ bool AssemblyDistance::inside(double rho, double z) const {
 /// Whether any of sixteen small steps leads out of all solids.
 bool AssemblyDistance::on_surface(const Vec2& q) const {
   for (int k = 0; k < 16; ++k) {
-    const double angle = (k + 0.37) * std::numbers::pi / 8;
+    const double angle = (k + 0.37) * kPi / 8;
     const Vec2 near = q + step_ * Vec2(std::cos(angle), std::sin(angle));
     if (!inside(std::abs(near.x), near.y)) return true;
   }

@@ -4,17 +4,9 @@
 #include <cmath>
 #include <queue>
 
+#include "geom/math.hpp"
+
 namespace riffler::reference {
-
-namespace {
-
-/// Any unit vector square to `o`.
-Vec3 across(const Vec3& o) {
-  const Vec3 other = std::abs(o.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-  return glm::normalize(glm::cross(o, other));
-}
-
-}  // namespace
 
 /// How the point moves in the tool's frame over an interval of half-width `half`.
 struct SweptDistance::Approach {
@@ -71,7 +63,7 @@ SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double
   double lower = at.distance - speed * half;
   if (lower >= best || lower > above) return {t, half, lower};  // left out already
   const Approach approach{
-      velocity,  here.rho > 0 ? here.radial / here.rho : across(here.axis),
+      velocity,  here.rho > 0 ? here.radial / here.rho : any_perpendicular(here.axis),
       here.axis, half,
       speed,     2 * glm::length(bend) + glm::length(turn) * (glm::length(turning) + half * glm::length(bend))};
   lower = std::max(lower, approach.by_slope(cutter_->with_free_radius(here.rho, here.z, at)));

@@ -30,12 +30,12 @@ void Journal::extend_stroke(const JournalRows& rows) {
   strokes_.back().append(rows);
 }
 
-void Journal::take_back(std::size_t n) {
-  rules_.take_back(n);
+void Journal::undo(std::size_t n) {
+  rules_.undo(n);
 }
 
-void Journal::bring_back(std::size_t n) {
-  rules_.bring_back(n);
+void Journal::redo(std::size_t n) {
+  rules_.redo(n);
 }
 
 namespace {

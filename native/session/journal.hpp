@@ -30,8 +30,8 @@ class Journal {
   void extend_stroke(const JournalRows& rows);
   /// The last n strokes no longer count (undo), and count again (redo), those taken back last first. The last stroke
   /// has ended with either.
-  void take_back(std::size_t n = 1);
-  void bring_back(std::size_t n = 1);
+  void undo(std::size_t n = 1);
+  void redo(std::size_t n = 1);
 
   const std::optional<JournalStock>& stock() const { return rules_.stock(); }
   const std::map<int, std::string>& tools() const { return rules_.tools(); }

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "geom/error.hpp"
-#include "geom/io.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
 #include "session/journal_records.hpp"
 
 namespace riffler {
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> to_bytes(const Journal& journal) {
   for (const auto& [number, json] : journal.tools()) add(tool_record(number, json));
   for (const auto strokes : {journal.strokes(), journal.taken_back()})
     for (const JournalStroke& stroke : strokes) add(stroke_record(stroke));
-  if (const std::size_t n = journal.taken_back().size()) add(take_back_record(n));
+  if (const std::size_t n = journal.taken_back().size()) add(undo_record(n));
   return out;
 }
 
@@ -186,12 +186,12 @@ void JournalWriter::extend_stroke(const JournalRows& rows) {
   change([&](auto& to) { to.extend_stroke(rows); }, [&] { return more_record(rows); });
 }
 
-void JournalWriter::take_back(std::size_t n) {
-  change([&](auto& to) { to.take_back(n); }, [&] { return take_back_record(n); });
+void JournalWriter::undo(std::size_t n) {
+  change([&](auto& to) { to.undo(n); }, [&] { return undo_record(n); });
 }
 
-void JournalWriter::bring_back(std::size_t n) {
-  change([&](auto& to) { to.bring_back(n); }, [&] { return bring_back_record(n); });
+void JournalWriter::redo(std::size_t n) {
+  change([&](auto& to) { to.redo(n); }, [&] { return redo_record(n); });
 }
 
 void JournalWriter::sync() {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "session/journal.hpp"
 
 namespace riffler {
@@ -52,8 +52,8 @@ class JournalWriter {
   void add_note(const std::string& key, const std::string& value);
   void add_stroke(const JournalStroke& stroke);
   void extend_stroke(const JournalRows& rows);
-  void take_back(std::size_t n = 1);
-  void bring_back(std::size_t n = 1);
+  void undo(std::size_t n = 1);
+  void redo(std::size_t n = 1);
 
   /// Another thread may go on writing meanwhile.
   void sync();

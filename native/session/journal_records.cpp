@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 
 namespace riffler::journal_format {
 
@@ -113,7 +113,7 @@ std::vector<Column> known_columns(std::uint32_t code) {
 }
 
 /// Fills the rows of an empty stroke.
-void take_rows(ByteTaker& from, JournalStroke& out) {
+void take_rows(ByteReader& from, JournalStroke& out) {
   const std::uint64_t n = from.number<std::uint64_t>();
   const std::vector<Column> columns = known_columns(from.number<std::uint32_t>());
   const View packed = from.raw(from.number<std::uint64_t>());
@@ -224,13 +224,13 @@ Bytes more_record(const JournalRows& rows) {
   return record(kMore, out);
 }
 
-Bytes take_back_record(std::size_t n) {
+Bytes undo_record(std::size_t n) {
   Bytes out;
   put(out, static_cast<std::uint64_t>(n));
   return record(kTakeBack, out);
 }
 
-Bytes bring_back_record(std::size_t n) {
+Bytes redo_record(std::size_t n) {
   Bytes out;
   put(out, static_cast<std::uint64_t>(n));
   return record(kBringBack, out);
@@ -264,7 +264,7 @@ bool record_follows(View bytes) {
 }
 
 void apply_record(const Record& record, Journal& journal) {
-  ByteTaker from(record.payload);
+  ByteReader from(record.payload);
   switch (record.kind) {
     case kStock:
     case kMaskedStock: {
@@ -307,11 +307,11 @@ void apply_record(const Record& record, Journal& journal) {
       break;
     }
     case kTakeBack: {
-      journal.take_back(from.number<std::uint64_t>());
+      journal.undo(from.number<std::uint64_t>());
       break;
     }
     case kBringBack: {
-      journal.bring_back(from.number<std::uint64_t>());
+      journal.redo(from.number<std::uint64_t>());
       break;
     }
     default:

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/bytes.hpp"
+#include "base/bytes.hpp"
 #include "session/journal.hpp"
 
 namespace riffler::journal_format {
@@ -19,8 +19,8 @@ Bytes tool_record(int number, const std::string& json);
 Bytes note_record(const std::string& key, const std::string& value);
 Bytes stroke_record(const JournalStroke& stroke);
 Bytes more_record(const JournalRows& rows);
-Bytes take_back_record(std::size_t n);
-Bytes bring_back_record(std::size_t n);
+Bytes undo_record(std::size_t n);
+Bytes redo_record(std::size_t n);
 
 /// The size of the header at the start of `bytes`. Throws FormatError (`name`) where it is not a journal's.
 std::size_t check_header(View bytes, const std::string& name);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 #include "nc/limits.hpp"
 #include "nc/program.hpp"
 
@@ -101,14 +101,14 @@ void JournalRules::extend_stroke(const JournalRows& rows) {
   if (!rows.times.empty()) last_->time = rows.times.back();
 }
 
-void JournalRules::take_back(std::size_t n) {
+void JournalRules::undo(std::size_t n) {
   if (counting_ == 0) fail("there is no stroke to take back");
   if (n < 1 || n > counting_) fail("strokes to take back must be from 1 to " + std::to_string(counting_));
   counting_ -= n, taken_ += n;
   last_.reset();
 }
 
-void JournalRules::bring_back(std::size_t n) {
+void JournalRules::redo(std::size_t n) {
   if (taken_ == 0) fail("there is no stroke to bring back");
   if (n < 1 || n > taken_) fail("strokes to bring back must be from 1 to " + std::to_string(taken_));
   counting_ += n, taken_ -= n;

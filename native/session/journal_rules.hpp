@@ -25,9 +25,9 @@ struct JournalStock {
 };
 
 /// What a stroke does where the tool sweeps: to the stock, but for what is protected, or to what is protected. Soften:
-/// a dab at the tip of each row, as wide as the tool (dexel/soften.hpp). Beside: removes as a session does beside what
-/// is protected (session/cuttable.hpp), and Build puts on as a session does; those of one mode that follow each other
-/// have one beginning, and no seams between them.
+/// a dab at the tip of each row, as wide as the tool (dexel/smooth/smooth_dabs.hpp). Beside: removes as a session does
+/// beside what is protected (session/masked_stock.hpp), and Build puts on as a session does; those of one mode that
+/// follow each other have one beginning, and no seams between them.
 enum class StrokeMode : std::uint32_t { Remove = 0, Add = 1, Mask = 2, Unmask = 3, Soften = 4, Beside = 5, Build = 6 };
 inline constexpr std::uint32_t kStrokeModes = 7;
 
@@ -72,8 +72,8 @@ class JournalRules {
   void add_stroke(const JournalStroke& stroke);
   void extend_stroke(const JournalRows& rows);
   /// n from 1: of those that count, and of those taken back since the last stroke was added.
-  void take_back(std::size_t n);
-  void bring_back(std::size_t n);
+  void undo(std::size_t n);
+  void redo(std::size_t n);
 
   const std::optional<JournalStock>& stock() const { return stock_; }
   const std::map<int, std::string>& tools() const { return tools_; }

@@ -19,8 +19,8 @@ class JournalSink final : public StrokeSink {
   void begin(double time, const Pose& tool) noexcept override;
   void row(double time, const Pose& tool, const Wrench& wrench, double removed) noexcept override;
   void end() noexcept override;
-  void take_back(std::size_t strokes) noexcept override { owe(-static_cast<int>(strokes)); }
-  void bring_back(std::size_t strokes) noexcept override { owe(static_cast<int>(strokes)); }
+  void undo(std::size_t strokes) noexcept override { owe(-static_cast<int>(strokes)); }
+  void redo(std::size_t strokes) noexcept override { owe(static_cast<int>(strokes)); }
 
   /// Nobody calls the functions above any more: everything is on the disk, and the file is closed. False where the disk
   /// refuses some of it: problem() says why.

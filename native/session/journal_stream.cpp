@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/check.hpp"
 #include "pen/driver.hpp"
 
 namespace riffler {
@@ -24,11 +25,9 @@ void add(JournalStroke& to, const JournalRow& row) {
 
 void check(const JournalStream::Options& options) {
   if (options.rows < 4) throw std::invalid_argument("rows must be 4 or more");
-  const auto positive = [](double value, const char* name) {
-    if (!(std::isfinite(value) && value > 0))
-      throw std::invalid_argument(std::string(name) + " must be positive, in s");
-  };
-  positive(options.drain, "drain"), positive(options.sync, "sync"), positive(options.retry, "retry");
+  constexpr const char* kSeconds = "must be positive, in s";
+  require_positive(options.drain, "drain", kSeconds), require_positive(options.sync, "sync", kSeconds);
+  require_positive(options.retry, "retry", kSeconds);
 }
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -135,9 +134,9 @@ bool JournalStream::write_next(std::uint64_t end) {
 void JournalStream::write_count(int strokes) {
   try {
     if (strokes < 0)
-      writer_.take_back(static_cast<std::size_t>(-strokes));
+      writer_.undo(static_cast<std::size_t>(-strokes));
     else
-      writer_.bring_back(static_cast<std::size_t>(strokes));
+      writer_.redo(static_cast<std::size_t>(strokes));
     unsynced_ = ended_ = true;
   } catch (const std::invalid_argument& e) {
     const std::scoped_lock lock(told_);

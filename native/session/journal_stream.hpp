@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/own_thread.hpp"
+#include "base/own_thread.hpp"
 #include "session/journal_file.hpp"
 
 namespace riffler {

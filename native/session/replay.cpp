@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "dexel/file.hpp"
-#include "dexel/soften.hpp"
-#include "session/cuttable.hpp"
+#include "dexel/file/file.hpp"
+#include "dexel/smooth/smooth_dabs.hpp"
+#include "session/masked_stock.hpp"
 #include "sweep/carve.hpp"
 
 namespace riffler {
@@ -40,17 +40,17 @@ Replayed begin(const Journal& journal, const std::filesystem::path& folder, cons
 void apply_dabs(const JournalStroke& stroke, const Tool& tool, Replayed& to, const Progress& progress) {
   std::vector<Vec3> centres;
   for (const Pose& pose : stroke.poses) centres.push_back(pose.tip);
-  SoftenOptions options;
+  SmoothOptions options;
   options.radius = 0.5 * tool.diameter();
   options.strength = stroke.strength;
   options.protect = to.mask ? &*to.mask : nullptr;
   options.progress = progress;
-  soften(to.volume, centres, options);
+  smooth_dabs(to.volume, centres, options);
 }
 
 /// Strokes of a session that cuts not the volume itself, from the first on: all of one mode.
 struct Run {
-  Cuttable cuttable;
+  MaskedStock cuttable;
   Volume left;
 };
 
@@ -64,7 +64,7 @@ std::optional<CarveMode> run_mode(const JournalStroke& stroke, const Replayed& t
 void apply_in_run(const JournalStroke& stroke, CarveMode mode, const Tool& tool, const Replayed& to,
                   std::optional<Run>& run, const Progress& progress) {
   if (!run) {
-    const Cuttable cuttable(to.volume, mode, to.mask ? &*to.mask : nullptr);
+    const MaskedStock cuttable(to.volume, mode, to.mask ? &*to.mask : nullptr);
     run.emplace(Run{cuttable, cuttable.volume()});
   }
   CarveOptions options;

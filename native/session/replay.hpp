@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 #include "session/journal.hpp"
 #include "tool/tool.hpp"
 

@@ -7,8 +7,8 @@
 #include <thread>
 #include <utility>
 
-#include "geom/numbers.hpp"
-#include "geom/thread_time.hpp"
+#include "base/check.hpp"
+#include "base/own_thread.hpp"
 #include "haptics/coupling.hpp"
 
 namespace riffler {
@@ -42,7 +42,7 @@ void SculptLoopSettings::validate() const {
   limits.validate();
   passivity.validate();
   safety.validate();
-  held_over.validate();
+  wrench_extrapolator.validate();
   workspace.validate();
 }
 
@@ -68,7 +68,7 @@ SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, 
       sink_(sink),
       safety_(settings.safety),
       passivity_(settings.passivity),
-      held_over_(settings.held_over),
+      wrench_extrapolator_(settings.wrench_extrapolator),
       last_tool_(start.value_or(Pose{})),
       absolute_(!start),
       scene_(std::make_unique<Scene>(settings, stock, tool, obstacles)),
@@ -102,7 +102,7 @@ SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noex
   tick.applied = sample.says_applied ? sample.applied : held_;
   if (sure(state)) {
     if (has_grip_) {
-      const Stretch moved = stretch(sample.pose, last_grip_);
+      const PoseError moved = pose_error(sample.pose, last_grip_);
       passivity_.observe(tick.applied, {moved.translation, moved.rotation}, dt);
     }
     last_grip_ = sample.pose, has_grip_ = true;
@@ -116,7 +116,7 @@ SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noex
   tick.state = safety_.state(), tick.cause = safety_.cause();
   if (tick.cutting && sink_) sink_->row(tick.time, tick.tool, tick.wrench, tick.removed);
   tick.seconds = thread_seconds() - start;
-  if (!ticks_.put(tick)) untold_.fetch_add(1, std::memory_order_relaxed);
+  if (!ticks_.put(tick)) dropped_ticks_.fetch_add(1, std::memory_order_relaxed);
   return safe;
 }
 
@@ -149,7 +149,7 @@ void SculptLoop::place(Scene& scene, const PenSample& sample) noexcept {
   end_stroke();
   if (absolute_) last_tool_ = sample.pose;
   scene.step.place(last_tool_), scene.workspace.place(last_tool_);
-  held_over_.reset();
+  wrench_extrapolator_.reset();
   owed_ = 0;
 }
 
@@ -167,7 +167,7 @@ Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, bool
     last_tool_ = tick.tool = r.tool;
     tick.on_tool = r.on_tool;
     tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
-    return held_over_.stepped(scene.workspace.to_grip(r.on_grip), dt);
+    return wrench_extrapolator_.stepped(scene.workspace.to_grip(r.on_grip), dt);
   } catch (const std::bad_alloc&) {
     return missed(dt, "there is no memory for the next cut", tick);
   } catch (const std::exception&) {
@@ -177,7 +177,7 @@ Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, bool
 
 Wrench SculptLoop::missed(double dt, const char* why, SculptTick& tick) noexcept {
   tick.missed = true, tick.problem = why;
-  return held_over_.missed(dt);
+  return wrench_extrapolator_.missed(dt);
 }
 
 /// Limits and the controller, in the order of haptics/safety.hpp.
@@ -236,8 +236,8 @@ void SculptLoop::finish() noexcept {
 /// In the thread that tells the sink everything else.
 void SculptLoop::tell_undo() noexcept {
   const std::int64_t strokes = std::exchange(brought_back_, 0);
-  if (sink_ && strokes < 0) sink_->take_back(static_cast<std::size_t>(-strokes));
-  if (sink_ && strokes > 0) sink_->bring_back(static_cast<std::size_t>(strokes));
+  if (sink_ && strokes < 0) sink_->undo(static_cast<std::size_t>(-strokes));
+  if (sink_ && strokes > 0) sink_->redo(static_cast<std::size_t>(strokes));
 }
 
 void SculptLoop::set_workspace(const WorkspaceSettings& settings) {

@@ -8,13 +8,13 @@
 #include <optional>
 #include <vector>
 
-#include "geom/ring.hpp"
-#include "haptics/held_over.hpp"
+#include "base/ring.hpp"
 #include "haptics/limits.hpp"
 #include "haptics/passivity.hpp"
 #include "haptics/safety.hpp"
 #include "haptics/sculpt_step.hpp"
 #include "haptics/workspace.hpp"
+#include "haptics/wrench_extrapolator.hpp"
 #include "pen/capability.hpp"
 #include "pen/driver_loop.hpp"
 #include "session/stroke_sink.hpp"
@@ -28,7 +28,7 @@ struct SculptLoopSettings {
   LimitSettings limits;
   PassivitySettings passivity;
   SafetySettings safety;
-  HeldOverSettings held_over;
+  WrenchExtrapolatorSettings wrench_extrapolator;
   WorkspaceSettings workspace;
 
   /// std::invalid_argument naming the field.
@@ -57,9 +57,9 @@ struct SculptTick {
 
 /// The tool goes where the hand goes, stays out of the obstacles, and cuts while the dead-man switch is held and every
 /// check has passed: from the first move that takes something to the end of that is a stroke. What the hand has to be
-/// given is computed in each tick from the volume. Where a step could not be made, the force is held over (HeldOver); a
-/// step that takes longer than its tick leaves the device with what it had, and the next tick turns from there at a
-/// limited rate.
+/// given is computed in each tick from the volume. Where a step could not be made, the force is held over
+/// (WrenchExtrapolator); a step that takes longer than its tick leaves the device with what it had, and the next tick
+/// turns from there at a limited rate.
 class SculptLoop final : public PenStep {
  public:
   using Place = TileExchange::Place;
@@ -84,7 +84,7 @@ class SculptLoop final : public PenStep {
   /// The next tick that was not taken yet; false where there is none.
   bool take(SculptTick& tick) noexcept { return ticks_.take(tick); }
   /// Ticks that nobody had room for.
-  std::uint64_t untold() const noexcept { return untold_.load(); }
+  std::uint64_t dropped_ticks() const noexcept { return dropped_ticks_.load(); }
   /// The volume is another one of the same frame from now on, and so many strokes were taken back (less than zero) or
   /// brought back. False during a stroke, and then nothing is changed.
   bool replace(const Volume& volume, std::int64_t strokes);
@@ -117,7 +117,7 @@ class SculptLoop final : public PenStep {
   // The device's thread's.
   Safety safety_;
   Passivity passivity_;
-  HeldOver held_over_;
+  WrenchExtrapolator wrench_extrapolator_;
   Wrench slewed_, held_;  // before the controller, and what was released
   Pose last_grip_;
   Pose last_tool_;
@@ -133,7 +133,7 @@ class SculptLoop final : public PenStep {
 
   TileExchange exchange_;
   Ring<SculptTick> ticks_{kTicks};
-  std::atomic<std::uint64_t> untold_{0};
+  std::atomic<std::uint64_t> dropped_ticks_{0};
   std::atomic<std::uint32_t> dead_man_mask_;
   std::atomic<bool> reset_{false};
 };

@@ -51,7 +51,7 @@ Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen
       shown_(stock.revision()) {
   if (!pen_) throw std::invalid_argument("a session needs a device");
   settings_.loop = for_device(for_mode(settings_.loop, settings.mode), pen_->capability());
-  if (protect || settings.mode == CarveMode::Add) left_ = cuttable_.emplace(stock, settings.mode, protect).volume();
+  if (protect || settings.mode == CarveMode::Add) left_ = masked_stock_.emplace(stock, settings.mode, protect).volume();
   moments_.push_back({0, stock, left_});
 }
 
@@ -132,16 +132,16 @@ SessionFrame Session::frame(Volume& shown) {
 
 /// What the loop has cut since comes into `shown`.
 TileExchange::Mark Session::follow(Volume& shown, std::vector<TileExchange::Place>& places) {
-  if (!cuttable_) return loop_->show(shown, places);
+  if (!masked_stock_) return loop_->show(shown, places);
   const std::size_t before = places.size();
   const TileExchange::Mark mark = loop_->show(*left_, places);
-  cuttable_->show(*left_, std::span(places).subspan(before), shown);
+  masked_stock_->show(*left_, std::span(places).subspan(before), shown);
   return mark;
 }
 
 void Session::take_ticks(SessionFrame& frame) {
   for (SculptTick tick; loop_->take(tick);) frame.ticks.push_back(tick);
-  frame.strokes = strokes_, frame.untold = loop_->untold();
+  frame.strokes = strokes_, frame.dropped_ticks = loop_->dropped_ticks();
 }
 
 void Session::look(Volume& shown, SessionFrame& frame) {

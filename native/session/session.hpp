@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "geom/block_pool.hpp"
-#include "geom/own_thread.hpp"
+#include "base/block_pool.hpp"
+#include "base/own_thread.hpp"
 #include "pen/device.hpp"
-#include "session/cuttable.hpp"
+#include "session/masked_stock.hpp"
 #include "session/sculpt_loop.hpp"
 
 namespace riffler {
@@ -36,7 +36,7 @@ struct SessionFrame {
   std::vector<SculptTick> ticks;
   std::uint64_t strokes = 0;  ///< that were begun since the start
   bool in_stroke = false;
-  std::uint64_t untold = 0;  ///< ticks since the start that are missing in frames: they came too seldom
+  std::uint64_t dropped_ticks = 0;  ///< ticks since the start that are missing in frames: they came too seldom
 };
 
 /// Functions are for one thread, if nothing else is said.
@@ -109,13 +109,13 @@ class Session {
   std::atomic<bool> ending_{false};
   BlockReserve reserve_;
 
-  std::optional<Cuttable> cuttable_;  // where that is not the volume itself
-  std::optional<Volume> left_;        // of it, as it is shown
-  std::uint64_t shown_ = 0;           // revision of the volume that is shown
-  std::vector<Moment> moments_;       // between strokes; oldest first
-  std::size_t here_ = 0;              // of them, the one that is shown or being changed
-  std::uint64_t strokes_ = 0;         // that were seen
-  SessionFrame kept_;                 // for the next
+  std::optional<MaskedStock> masked_stock_;  // where that is not the volume itself
+  std::optional<Volume> left_;               // of it, as it is shown
+  std::uint64_t shown_ = 0;                  // revision of the volume that is shown
+  std::vector<Moment> moments_;              // between strokes; oldest first
+  std::size_t here_ = 0;                     // of them, the one that is shown or being changed
+  std::uint64_t strokes_ = 0;                // that were seen
+  SessionFrame kept_;                        // for the next
 };
 
 }  // namespace riffler

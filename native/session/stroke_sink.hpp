@@ -20,8 +20,8 @@ class StrokeSink {
   virtual void row(double time, const Pose& tool, const Wrench& wrench, double removed) noexcept = 0;
   virtual void end() noexcept = 0;
   /// Between strokes: the last `strokes` that count do so no longer (undo), or again (redo).
-  virtual void take_back(std::size_t strokes) noexcept = 0;
-  virtual void bring_back(std::size_t strokes) noexcept = 0;
+  virtual void undo(std::size_t strokes) noexcept = 0;
+  virtual void redo(std::size_t strokes) noexcept = 0;
 };
 
 }  // namespace riffler

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "dexel/file.hpp"
+#include "dexel/file/file.hpp"
 #include "stress/arguments.hpp"
 #include "stress/mesh_run.hpp"
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "marching/mesher.hpp"
-#include "pen/riffler_model.hpp"
-#include "pen/simulated_transport.hpp"
+#include "pen/models/riffler_model.hpp"
+#include "pen/simulated/simulated_transport.hpp"
 #include "session/journal_rules.hpp"
 #include "stress/checks.hpp"
 #include "tool/cutters.hpp"
@@ -93,8 +93,8 @@ class Again final : public StrokeSink {
     moves_.push_back({last_, tool}), last_ = tool;
   }
   void end() noexcept override {}
-  void take_back(std::size_t) noexcept override {}
-  void bring_back(std::size_t) noexcept override {}
+  void undo(std::size_t) noexcept override {}
+  void redo(std::size_t) noexcept override {}
   /// Not in the thread's step.
   void catch_up() {
     for (const auto& [from, to] : moves_)

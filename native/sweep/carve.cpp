@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 #include "sweep/cut_region.hpp"
 #include "sweep/grid_carver.hpp"
 

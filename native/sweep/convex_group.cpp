@@ -48,7 +48,7 @@ void overlap(ConvexGroup& below, ConvexGroup& above) {
       if (within({f->z1, f->r1, z, r}, high)) return void((f->z1 = z, f->r1 = r));
       // Or by a collar, which keeps a group convex that widens upwards.
       const Frustum collar{f->z1, f->r1, z, f->r1};
-      if (f->r1 > f->r0 && below.count < ConvexGroup::kMost && within(collar, high)) {
+      if (f->r1 > f->r0 && below.count < ConvexGroup::kMax && within(collar, high)) {
         below.pieces[below.count++] = collar;
         return;
       }
@@ -86,7 +86,7 @@ bool smooth_together(const Piece& below, const Piece& above) {
 std::vector<ConvexGroup> convex_groups(std::span<const Piece> pieces) {
   std::vector<ConvexGroup> out;
   for (const Piece& piece : pieces) {
-    const bool joins = !out.empty() && out.back().count < ConvexGroup::kMost &&
+    const bool joins = !out.empty() && out.back().count < ConvexGroup::kMax &&
                        convex_together(out.back().pieces[out.back().count - 1], piece);
     if (!joins) out.emplace_back();
     out.back().pieces[out.back().count++] = piece;

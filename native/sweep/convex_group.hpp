@@ -25,8 +25,8 @@ bool whole_ball(const Piece& piece);
 
 /// Pieces whose union is convex, from the tip upwards; perhaps without what cannot reach the material.
 struct ConvexGroup {
-  static constexpr std::size_t kMost = 4;
-  std::array<Piece, kMost> pieces;
+  static constexpr std::size_t kMax = 4;
+  std::array<Piece, kMax> pieces;
   std::size_t count = 0;
   double thinnest = 0;  ///< mm: the smaller of height and radius
   std::span<const Piece> all() const { return {pieces.data(), count}; }

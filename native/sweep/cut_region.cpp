@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "dexel/boolean.hpp"
-#include "geom/parallel.hpp"
 
 namespace riffler {
 

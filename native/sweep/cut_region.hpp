@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dexel/volume.hpp"
-#include "sweep/carve.hpp"
+#include "sweep/carve_options.hpp"
 
 namespace riffler {
 

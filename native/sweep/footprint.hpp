@@ -46,7 +46,7 @@ class Footprint {
   static void add_sides(Hull& hull);
 
   std::size_t count_ = 0;
-  Hull hulls_[ConvexGroup::kMost];
+  Hull hulls_[ConvexGroup::kMax];
   Interval rows_, columns_, height_;
 };
 

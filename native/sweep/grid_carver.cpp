@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

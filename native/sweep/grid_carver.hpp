@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/block_pool.hpp"
 #include "dexel/grid.hpp"
 #include "dexel/stats.hpp"
-#include "geom/block_pool.hpp"
-#include "sweep/carve.hpp"
+#include "sweep/carve_options.hpp"
 #include "sweep/cut_region.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cutter.hpp"

@@ -8,8 +8,8 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include "sweep/straight_lanes-inl.hpp"
-#include "sweep/turning_lanes-inl.hpp"
+#include "sweep/lanes/straight_lanes-inl.hpp"
+#include "sweep/lanes/turning_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::HWY_NAMESPACE {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 
 namespace riffler {
 

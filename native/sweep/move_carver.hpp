@@ -7,6 +7,7 @@
 
 #include "dexel/volume.hpp"
 #include "sweep/grid_carver.hpp"
+#include "tool/tool.hpp"
 
 namespace riffler {
 

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "base/lanes.hpp"
 #include "dexel/tile.hpp"
-#include "geom/lanes.hpp"
-#include "sweep/first_look.hpp"
+#include "sweep/quick_reject.hpp"
 
 namespace riffler {
 
@@ -47,7 +47,7 @@ struct RayWindow {
   int first_row, last_row;
   std::uint8_t first[kTileSide], end[kTileSide];
   double low, high;
-  FirstLook look;
+  QuickReject look;
   // What is wanted.
   bool in_place;    ///< cut single spans here; otherwise every cut goes to `cut`
   bool measured;    ///< add up the lengths taken

@@ -12,7 +12,7 @@ constexpr double kWidestPart = 0.25;
 /// Radii: and the tip moves no farther than this in a part, so that the tool does not pass a ray on both of its sides.
 constexpr double kLongestPart = 1.5;
 /// Parts that a move is cut into for the tip's way alone.
-constexpr double kMostParts = 32;
+constexpr double kMaxParts = 32;
 /// Radii: how far above the highest contact a piece is cut off.
 constexpr double kStepMargin = 0.01;
 
@@ -108,7 +108,7 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
   for (const Piece& p : whole.all()) radius = std::max(radius, max_radius(p));
   const double length = times.length(), turn = motion.angle() * length;
   const double radii = length * glm::length(motion.to().tip - motion.from().tip) / (kLongestPart * radius);
-  const int n = static_cast<int>(std::ceil(std::max({turn / kWidestPart, std::min(radii, kMostParts), 1.0})));
+  const int n = static_cast<int>(std::ceil(std::max({turn / kWidestPart, std::min(radii, kMaxParts), 1.0})));
   const double angle = turn / n;
   Pose from = times.near > 0 ? motion.at(times.near) : motion.from();
   for (int k = 0; k < n; ++k) {

@@ -43,7 +43,7 @@ struct StraightBody {
   StraightBody(const ConvexGroup& group, const Pose& from, const Vec3& motion, double t0, double t1);
 
   std::size_t count;
-  std::array<SweptShape, ConvexGroup::kMost> pieces;
+  std::array<SweptShape, ConvexGroup::kMax> pieces;
   double tip[3], axis[3], e1[3], e2[3];
   double tilt, oz;
   double way, m1, m2, mo;  ///< length of the motion and its unit vector in the frame

@@ -92,11 +92,11 @@ void TileCutter::cut(const Step& step) {
   RayWindow& w = window_;
   w.tested = w.changed = w.hits = 0;
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
-    w.look = FirstLook(part->group, *step.motion, part->t0, part->t1, step.footprint);
+    w.look = QuickReject(part->group, *step.motion, part->t0, part->t1, step.footprint);
     cut_turning(TurningBody(part->group, *step.motion, part->t0, part->t1, options_.tolerance), w);
   } else {
     const StraightBody& body = std::get<StraightPart>(step.body).body;
-    w.look = FirstLook(body);
+    w.look = QuickReject(body);
     cut_straight(body, w);
   }
   if (w.changed > 0 && w.measured) add_share();

@@ -8,7 +8,7 @@
 
 #include "dexel/grid.hpp"
 #include "dexel/stats.hpp"
-#include "sweep/carve.hpp"
+#include "sweep/carve_options.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cut.hpp"
 
@@ -53,7 +53,7 @@ class TileCutter {
   TileResult result_;
   std::uint32_t last_move_ = ~0U;
   const Step* step_ = nullptr;
-  std::array<PieceShape, ConvexGroup::kMost> shapes_;  // of the step, where normals are stored
+  std::array<PieceShape, ConvexGroup::kMax> shapes_;  // of the step, where normals are stored
   std::size_t shape_count_ = 0;
   const Motion* motion_ = nullptr;
 };

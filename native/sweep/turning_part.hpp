@@ -19,9 +19,9 @@ struct TurningBody {
   TurningBody(const ConvexGroup& group, const Motion& motion, double t0, double t1, double tolerance);
 
   std::size_t count;
-  std::array<PieceShape, ConvexGroup::kMost> pieces;
+  std::array<PieceShape, ConvexGroup::kMax> pieces;
   std::size_t rim_count;
-  std::array<Rim, 2 * ConvexGroup::kMost + 1> rims;
+  std::array<Rim, 2 * ConvexGroup::kMax + 1> rims;
   bool leans;     ///< whether some piece is a cone
   double widest;  ///< radius
   double t0, t1, origin;

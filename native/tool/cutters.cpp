@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/check.hpp"
 #include "geom/math.hpp"
 
 namespace riffler {
@@ -37,14 +38,9 @@ constexpr CutterSize kTipHalfAngle{
 constexpr CutterSize kFlatTip{"flat_tip", SizeUnit::Flag, "Flat tip", "A flat instead of a ball at the tip", 0, 1, 0};
 
 void check(const CutterSize& size, double x) {
-  const std::string name = size.name;
-  if (size.unit == SizeUnit::Angle) {
-    if (!(x > 0 && x < kPi / 2)) throw std::invalid_argument(name + " must lie between 0 and pi/2 rad");
-  } else if (size.unit == SizeUnit::Length) {
-    if (size.may_be_zero && (!std::isfinite(x) || x < 0)) throw std::invalid_argument(name + " must not be negative");
-    if (!size.may_be_zero && (!std::isfinite(x) || !(x > 0)))
-      throw std::invalid_argument(name + " must be a positive length in mm");
-  }
+  if (size.unit == SizeUnit::Angle) require(x > 0 && x < kPi / 2, size.name, "must lie between 0 and pi/2 rad");
+  if (size.unit == SizeUnit::Length && size.may_be_zero) require_not_negative(x, size.name);
+  if (size.unit == SizeUnit::Length && !size.may_be_zero) require_length(x, size.name);
 }
 
 // Profiles and CUTTER statements, one shape after the other.
@@ -262,7 +258,7 @@ Tool cone_end(double tip_half_angle, double tip_height, double half_angle, doubl
 }
 
 Tool profile(std::vector<ProfileSegment> segments, double length) {
-  if (!std::isfinite(length) || !(length > 0)) throw std::invalid_argument("length must be a positive length in mm");
+  require_length(length, "length");
   if (segments.empty()) throw std::invalid_argument("segments must not be empty");
   return {"profile", {{"length", length}}, up_to(std::move(segments), length)};
 }

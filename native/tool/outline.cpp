@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geom/each_once.hpp"
+#include "base/sort_unique.hpp"
 
 namespace riffler {
 
@@ -71,7 +71,7 @@ std::vector<double> levels(const std::vector<OutlineEdge>& curves) {
         if (low < z && z < high) out.push_back(z);
     }
   }
-  each_once(out);
+  sort_unique(out);
   return out;
 }
 

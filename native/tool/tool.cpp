@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/check.hpp"
+
 namespace riffler {
 
 namespace {
@@ -58,8 +60,7 @@ Tool Tool::with_holder(const std::vector<Frustum>& pieces) const {
 
 Tool Tool::with_margins(double shank, double holder) const {
   for (const auto& [name, margin] : {std::pair("shank", shank), std::pair("holder", holder)})
-    if (!(margin >= 0) || !std::isfinite(margin))
-      throw std::invalid_argument(std::string(name) + " must be finite and not negative");
+    require_not_negative(margin, name, kFiniteAndNotNegative);
   Tool tool = *this;
   for (Frustum& f : tool.shank_) f = grown(f, shank, 0);
   for (Frustum& f : tool.holder_) f = grown(f, holder, holder);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "dexel/from_mesh.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
 
 namespace riffler {
 
@@ -93,12 +93,12 @@ void PartSurface::look_deeper(const Vec3& near, const Vec3& far, Deepest& worst)
   constexpr double kRounding = 1 + 1e-9;  // rays that end on one plane are as deep as each other
   if (shallower((near + far) / 2.0, glm::length(far - near) / 2, kRounding * worst.depth)) return;
   look(near), look(far);
-  struct Stretch {
+  struct RayPiece {
     Vec3 a, b;
   };
-  std::vector<Stretch> pieces{{near, far}};
+  std::vector<RayPiece> pieces{{near, far}};
   while (!pieces.empty()) {
-    const Stretch p = pieces.back();
+    const RayPiece p = pieces.back();
     pieces.pop_back();
     const Vec3 middle = (p.a + p.b) / 2.0;
     if (shallower(middle, glm::length(p.b - p.a) / 2, std::max(1.01 * worst.depth, tolerance_))) continue;

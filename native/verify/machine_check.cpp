@@ -1,7 +1,7 @@
 #include "verify/machine_check.hpp"
 
 #include "nc/edit.hpp"
-#include "nc/writer.hpp"
+#include "nc/write/writer.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,8 @@
 #include <cstdio>
 #include <map>
 
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "nc/links.hpp"
 #include "verify/verification.hpp"
 
@@ -15,7 +16,7 @@ namespace riffler {
 namespace {
 
 constexpr std::size_t kGrain = 32;
-constexpr std::size_t kMostEvaluations = 200'000;
+constexpr std::size_t kMaxEvaluations = 200'000;
 
 const Tool& tool_of(const Program& program, std::size_t row) {
   const int number = program.tool()[row];
@@ -36,8 +37,7 @@ const char* kind_of(const MachineStep& step) {
 
 void refuse_collisions(const Program& program, const MachineMotion& motion, const Collider& collider, double tolerance,
                        std::size_t* swept, const Progress& progress) {
-  if (!(std::isfinite(tolerance) && tolerance > 0))
-    throw std::invalid_argument("contact_tolerance must be positive and finite");
+  require_positive(tolerance, "contact_tolerance", kPositiveAndFinite);
   struct Shape {
     Assembly assembly;
     ToolEnvelope reach;
@@ -58,7 +58,7 @@ void refuse_collisions(const Program& program, const MachineMotion& motion, cons
           const Shape& shape = shapes.at(program.tool()[step.row]);
           if (!shape.reach.swept_box(step.from, step.to).overlaps(around)) continue;
           ++looked;
-          const Swept found = collider.sweep(shape.assembly, Motion(step.from, step.to), -tolerance, kMostEvaluations);
+          const Swept found = collider.sweep(shape.assembly, Motion(step.from, step.to), -tolerance, kMaxEvaluations);
           if (found.answer == Swept::Answer::Clear) continue;
           for (std::size_t known = first; k < known && !first.compare_exchange_weak(known, k);) {
           }

@@ -1,9 +1,9 @@
 // Whether what a machine makes of a program meets part, fixtures or stock: asked before NC code is written.
 #pragma once
 
+#include "base/progress.hpp"
 #include "collide/collider.hpp"
-#include "geom/progress.hpp"
-#include "nc/machine_motion.hpp"
+#include "nc/machine/machine_motion.hpp"
 #include "nc/program.hpp"
 
 namespace riffler {

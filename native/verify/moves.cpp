@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

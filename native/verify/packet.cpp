@@ -33,7 +33,7 @@ PacketReader::PacketReader(std::span<const std::uint8_t> bytes, PacketKind kind)
 
 std::size_t PacketReader::count() {
   const auto n = get<std::uint64_t>();
-  if (n / kMostDeflated > bytes_.size()) fail("more than a packet of this length can hold");
+  if (n / kMaxDeflated > bytes_.size()) fail("more than a packet of this length can hold");
   return static_cast<std::size_t>(n);
 }
 

@@ -7,9 +7,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "dexel/planes.hpp"
-#include "geom/bytes.hpp"
-#include "geom/error.hpp"
+#include "base/bytes.hpp"
+#include "base/error.hpp"
+#include "base/planes.hpp"
 
 namespace riffler {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/progress.hpp"
+#include "base/progress.hpp"
 #include "nc/program.hpp"
 #include "verify/event.hpp"
 #include "verify/machine_check.hpp"

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 #include "verify/simulate.hpp"
 
 namespace riffler {
@@ -55,7 +55,7 @@ const Grid& SlabWorker::grid_of(const SlabTask& task) const {
 
 std::vector<std::uint8_t> SlabWorker::run(std::span<const std::uint8_t> task,
                                           std::span<const std::span<const std::uint8_t>> moves) const {
-  const OneThread alone;  // how many slabs run at once is the cluster's to say
+  const SerialScope alone;  // how many slabs run at once is the cluster's to say
   SlabTask at = task_of(task);
   const Grid& grid = grid_of(at);
   const bool judged = surface_ && at.fixture < 0;

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "dexel/volume.hpp"
-#include "geom/progress.hpp"
 #include "mesh/mesh.hpp"
 #include "nc/program.hpp"
 #include "verify/event.hpp"

@@ -9,7 +9,7 @@ namespace {
 
 /// Slabs along the longer side of a grid, and tiles along a slab's side. A slab of 4 × 4 tiles stays in a core's own
 /// cache; more moves touch two slabs the smaller they are.
-constexpr int kAcross = 8, kLeast = 2, kMost = 8;
+constexpr int kAcross = 8, kMin = 2, kMax = 8;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ std::vector<Slab> slabs_of(const Volume& volume) {
   for (std::size_t g = 0; g < volume.grids().size(); ++g) {
     const Grid& grid = volume.grids()[g];
     const int longer = std::max(grid.tiles_u(), grid.tiles_v());
-    const int side = std::clamp((longer + kAcross - 1) / kAcross, kLeast, kMost);
+    const int side = std::clamp((longer + kAcross - 1) / kAcross, kMin, kMax);
     for (int u = 0; u < grid.tiles_u(); u += side)
       for (int v = 0; v < grid.tiles_v(); v += side)
         out.push_back({g, u, std::min(u + side, grid.tiles_u()), v, std::min(v + side, grid.tiles_v())});

@@ -8,7 +8,7 @@ void SlabState::save(std::int64_t row, const SlabTiles& now) {
   if (++since < spacing) return;
   since = 0;
   snapshots.push_back({row, now});
-  if (snapshots.size() <= kMostSnapshots) return;
+  if (snapshots.size() <= kMaxSnapshots) return;
   std::vector<SlabSnapshot> fewer;
   for (std::size_t k = 0; k < snapshots.size(); k += 2) fewer.push_back(std::move(snapshots[k]));
   snapshots = std::move(fewer);

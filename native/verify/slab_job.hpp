@@ -31,7 +31,7 @@ struct SlabState {
   std::uint64_t spacing = 1, since = 0;  ///< batches between snapshots
   std::int64_t done = 0;                 ///< rows up to this one have been run
 
-  static constexpr std::size_t kMostSnapshots = 12;
+  static constexpr std::size_t kMaxSnapshots = 12;
 
   /// Called after each batch. Keeps every so many, and half of them when there are too many.
   void save(std::int64_t row, const SlabTiles& now);

@@ -4,12 +4,13 @@
 #include <string>
 
 #include "geom/directions.hpp"
+#include "geom/math.hpp"
 #include "nc/limits.hpp"
 
 namespace riffler {
 
 double seconds_of(const Pose& from, const Program& program, std::size_t row, double rapid_feed) {
-  constexpr double degrees = 57.29577951308232;
+  constexpr double degrees = kRadian;
   const Pose& to = program.poses()[row];
   const double way = glm::length(to.tip - from.tip);
   if (way == 0) {

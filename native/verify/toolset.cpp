@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/numbers.hpp"
+#include "base/check.hpp"
 
 namespace riffler {
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/numbers.hpp"
-#include "geom/parallel.hpp"
+#include "base/check.hpp"
+#include "base/parallel.hpp"
 #include "mesh/orient.hpp"
 #include "nc/limits.hpp"
 #include "verify/rest.hpp"

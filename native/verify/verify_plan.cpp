@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "geom/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace riffler {
 

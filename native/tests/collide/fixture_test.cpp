@@ -1,9 +1,8 @@
 // The force of fixtures beside volumes in closed form and integrated point by point.
 #include "collide/fixture.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 #include "collide/collider.hpp"
 #include "collide/tools.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using stress::Random;
 
-constexpr double kStiffness = 10, kPi = std::numbers::pi;
+constexpr double kStiffness = 10;
 const Box3 kBlock{{0, 0, 0}, {30, 20, 10}};
 
 Collider beside(const Box3& box, double pitch, double spacing, const char* directions = "z") {
@@ -47,8 +46,8 @@ Dense dense_force(const Assembly& assembly, const Pose& pose, const Box3& box, d
         const Vec3 p = box.lower + h * Vec3(i + 0.5, j + 0.5, k + 0.5), d = p - pose.tip;
         const double z = glm::dot(d, pose.axis);
         if (!assembly.outline().inside(glm::length(d - z * pose.axis), z)) continue;
-        const Assembly::Stretch* in = nullptr;
-        for (const Assembly::Stretch& s : assembly.stretches())
+        const Assembly::HeightBand* in = nullptr;
+        for (const Assembly::HeightBand& s : assembly.stretches())
           if (!in || z > s.low) in = &s;
         const Vec3 way = pose.tip + 0.5 * (in->low + in->high) * pose.axis - p;
         sum.force += kStiffness * h * h * h / glm::length(way) * way, sum.size += kStiffness * h * h * h;

@@ -106,7 +106,7 @@ TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
       ASSERT_LE(off_triangle(found.point, t), 1e-10) << n;
       most = std::max(most, search.cells()), all += search.cells();
     }
-    EXPECT_LE(most, TriangleSearch::kMostCells + 40);
+    EXPECT_LE(most, TriangleSearch::kMaxCells + 40);
     EXPECT_LE(all, 1500U * 40);
   }
 }

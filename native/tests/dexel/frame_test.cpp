@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "dexel/from_mesh.hpp"
+#include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/volume.hpp"
 #include "support/error_of.hpp"
 

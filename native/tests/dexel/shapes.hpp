@@ -11,12 +11,12 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "dexel/volume.hpp"
+#include "geom/math.hpp"
 #include "mesh/solids.hpp"
 
 namespace riffler::shapes {
@@ -34,7 +34,7 @@ inline Mesh sphere(const Vec3& centre, double radius, int rings) {
   m.vertices.push_back(centre + Vec3(0, 0, radius));
   for (int i = 1; i < rings; ++i)
     for (int j = 0; j < 2 * rings; ++j) {
-      const double a = std::numbers::pi * i / rings, b = std::numbers::pi * j / rings;
+      const double a = kPi * i / rings, b = kPi * j / rings;
       m.vertices.push_back(centre + radius * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
     }
   m.vertices.push_back(centre - Vec3(0, 0, radius));
@@ -92,7 +92,7 @@ inline double winding_number(const Mesh& m, const Vec3& p) {
     sum += std::atan2(glm::dot(a, glm::cross(b, c)),
                       la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
   }
-  return sum / (2 * std::numbers::pi);
+  return sum / (2 * kPi);
 }
 
 inline bool inside(const Grid& grid, int i, int j, double z) {

@@ -27,13 +27,13 @@ class Loop {
   }
 
   Wrench tick(Observation now) {
-    const auto [way, turn] = stretch(now.pose, last_);
+    const auto [way, turn] = pose_error(now.pose, last_);
     const Twist displacement{way, turn};
     last_ = now.pose;
     if (now.dt > 0) now.twist = 1 / now.dt * displacement;
     if (!lets_force_through(safety_.observe(now))) w_ = {};
     passivity_.observe(held_.wrench(), displacement, now.dt);
-    const auto [on_grip, on_tool, energy] = couple(coupling_, stretch(now.pose, tool_), now.twist, {});
+    const auto [on_grip, on_tool, energy] = couple(coupling_, pose_error(now.pose, tool_), now.twist, {});
     w_ = limited(limits_, capability_, actuators_, w_, on_grip, now.twist, now.dt);
     w_ = passivity_.control(w_, capability_);
     w_ = magnitude_gain(limits_, actuators_, w_) * w_;

@@ -16,7 +16,7 @@
 
 #include "allocations.hpp"
 #include "device/firmware/pen_firmware.h"
-#include "pen/hid_handle.hpp"
+#include "pen/hid/hid_handle.hpp"
 #include "pen/registry.hpp"
 #include "support/hid_devices.hpp"
 #include "virtual_hid.hpp"
@@ -412,7 +412,7 @@ TEST_F(StockHidapi, FindsEveryDeviceAndSaysWhatItIs) {
   EXPECT_NE(found[0].capability.find("pushes"), std::string::npos) << found[0].capability;
   EXPECT_EQ(found[1].problem, OpenProblem::None) << found[1].text;
   EXPECT_STREQ(found[2].family->kind, "polhem");
-  EXPECT_FALSE(found[2].tried);
+  EXPECT_FALSE(found[2].was_opened);
   EXPECT_EQ(found[3].problem, OpenProblem::NoAnswer) << found[3].text;
 }
 

@@ -1,9 +1,8 @@
 // The mesh against the true surface of solids whose rays were computed exactly.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "bench/mesh_distance.hpp"
+#include "geom/math.hpp"
 #include "marching/to_mesh.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/random.hpp"
@@ -35,7 +34,7 @@ TEST(ToMeshAccuracy, OfASphere) {
   RecordProperty("max", std::to_string(errors.worst));
   EXPECT_LT(errors.worst, 1.2e-3);
   EXPECT_LT(errors.mean(), 1e-4);
-  const double exact = 4.0 / 3 * std::numbers::pi * radius * radius * radius;
+  const double exact = 4.0 / 3 * kPi * radius * radius * radius;
   EXPECT_NEAR(enclosed(mesh), exact, 1e-3 * exact);  // chords of flat triangles: h²/R² ≈ 1e-3
 }
 

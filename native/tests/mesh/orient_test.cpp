@@ -1,9 +1,9 @@
 #include "mesh/orient.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 #include <random>
 
 #include "mesh/audit.hpp"
@@ -173,7 +173,7 @@ TEST(Orient, SaysWhatHasOneSide) {
   constexpr int kN = 24;
   for (int i = 0; i < kN; ++i)
     for (int j = 0; j < 2; ++j) {
-      const double a = 2 * std::numbers::pi * i / kN, s = 2 * j - 1, r = 10 + s * std::cos(a / 2);
+      const double a = 2 * kPi * i / kN, s = 2 * j - 1, r = 10 + s * std::cos(a / 2);
       strip.vertices.emplace_back(r * std::cos(a), r * std::sin(a), s * std::sin(a / 2));
     }
   const auto id = [&](int i, int j) { return i < kN ? 2 * i + j : 1 - j; };

@@ -1,9 +1,9 @@
 #include "mesh/smooth_normals.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace riffler::smooth_normals_test {
 namespace {
@@ -13,7 +13,7 @@ Mesh tube(int n, bool other_diagonal) {
   Mesh mesh;
   for (int k = 0; k < n; ++k)
     for (const double z : {0.0, 20.0}) {
-      const double t = 2 * std::numbers::pi * k / n;
+      const double t = 2 * kPi * k / n;
       mesh.vertices.push_back({10 * std::cos(t), 10 * std::sin(t), z});
     }
   for (int k = 0; k < n; ++k) {

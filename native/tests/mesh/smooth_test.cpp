@@ -6,8 +6,8 @@
 #include <random>
 
 #include "mesh/audit.hpp"
+#include "mesh/io/stl.hpp"
 #include "mesh/shapes.hpp"
-#include "mesh/stl.hpp"
 
 namespace riffler::smooth_test {
 namespace {

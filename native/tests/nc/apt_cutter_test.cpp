@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::apt_cutter_test {

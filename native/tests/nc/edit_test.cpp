@@ -53,15 +53,15 @@ TEST(Edit, TransformedTurnsTipsAndAxes) {
 }
 
 TEST(Edit, RetimedLeavesRapidsAlone) {
-  const Program p = two_cuts(), t = retimed(p, 0.5);
+  const Program p = two_cuts(), t = scale_feeds(p, 0.5);
   for (std::size_t row = 0; row < p.size(); ++row) EXPECT_EQ(t[row].feed, 0.5 * p[row].feed);
   EXPECT_TRUE(t[3].rapid);
-  EXPECT_EQ(error_of([&] { retimed(p, 0); }), "factor must be positive and finite");
-  EXPECT_EQ(error_of([&] { retimed(p, 1e9); }), "feed, row 0: must be positive and finite");
+  EXPECT_EQ(error_of([&] { scale_feeds(p, 0); }), "factor must be positive and finite");
+  EXPECT_EQ(error_of([&] { scale_feeds(p, 1e9); }), "feed, row 0: must be positive and finite");
 }
 
 TEST(Edit, JoinedHasTheRowsOfAllAndOneShapeForEveryNumber) {
-  const Program p = two_cuts(), q = retimed(trimmed(p, 0, 3), 2);
+  const Program p = two_cuts(), q = scale_feeds(trimmed(p, 0, 3), 2);
   const Program* both[] = {&p, &q};
   const Program all = joined(both);
   ASSERT_EQ(all.size(), 9U);
@@ -75,12 +75,12 @@ TEST(Edit, JoinedHasTheRowsOfAllAndOneShapeForEveryNumber) {
 }
 
 TEST(Edit, RetooledRenamesRowsAndTools) {
-  const Program p = two_cuts(), t = retooled(p, {{1, 2}, {2, 7}});
+  const Program p = two_cuts(), t = renumber_tools(p, {{1, 2}, {2, 7}});
   for (std::size_t row = 0; row < p.size(); ++row) EXPECT_EQ(t[row].tool, p[row].tool == 1 ? 2 : 7);
   EXPECT_EQ(t.tools.at(2).name(), "ball 6");
   EXPECT_EQ(t.tools.at(7).name(), "flat 4");
-  EXPECT_EQ(error_of([&] { retooled(p, {{1, 2}}); }), "tool 2 would be ball 6 and flat 4");
-  EXPECT_EQ(error_of([&] { retooled(p, {{1, 0}}); }), "tool 1: 0 is no tool number");
+  EXPECT_EQ(error_of([&] { renumber_tools(p, {{1, 2}}); }), "tool 2 would be ball 6 and flat 4");
+  EXPECT_EQ(error_of([&] { renumber_tools(p, {{1, 0}}); }), "tool 1: 0 is no tool number");
 }
 
 }  // namespace

@@ -2,21 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "geom/math.hpp"
 #include "nc/edit.hpp"
 #include "nc/follow.hpp"
 #include "nc/program_file.hpp"
-#include "nc/writer.hpp"
+#include "nc/write/writer.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::follow_test {
 namespace {
 
 using test::read_nc_text;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Of a head that tilts by B about y on a table that turns by C: the tool's axis, seen from the part.
 Vec3 axis_at(double b, double c) {
@@ -93,7 +91,7 @@ TEST(Follow, StaysWithTheProgramThroughEditsAndFiles) {
                       [](const Pose& a, const Pose& b) { return a.tip == b.tip && a.axis == b.axis; });
   };
   EXPECT_TRUE(same(parse_program(to_bytes(p), "p"), 1));
-  EXPECT_TRUE(same(retimed(p, 2), 1) && same(trimmed(p, 0, 2), 1));
+  EXPECT_TRUE(same(scale_feeds(p, 2), 1) && same(trimmed(p, 0, 2), 1));
   EXPECT_TRUE(trimmed(p, 1, 3).via().empty()) << "nothing leads to a first row";
   const Program* two[] = {&p, &p};
   EXPECT_TRUE(same(joined(two), 1) && same(joined(two), 4));

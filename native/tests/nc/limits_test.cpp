@@ -7,10 +7,10 @@
 #include <random>
 
 #include "nc/cutter_path.hpp"
-#include "nc/machines.hpp"
-#include "nc/reader.hpp"
-#include "nc/rotary.hpp"
-#include "nc/writer.hpp"
+#include "nc/machine/machines.hpp"
+#include "nc/read/reader.hpp"
+#include "nc/write/rotary.hpp"
+#include "nc/write/writer.hpp"
 #include "support/nc_blocks.hpp"
 #include "support/tilted.hpp"
 #include "tool/cutters.hpp"

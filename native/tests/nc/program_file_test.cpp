@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <functional>
 
-#include "geom/error.hpp"
-#include "geom/io.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
 #include "stress/random.hpp"
 #include "stress/thread_count.hpp"
 #include "tool/cutters.hpp"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 
 namespace riffler::source_test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pen/motors.hpp"
-#include "pen/wrench_split.hpp"
+#include "pen/arms/motors.hpp"
+#include "pen/arms/wrench_split.hpp"
 #include "support/pens.hpp"
 
 namespace riffler::capability_test {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pen/fake_link.hpp"
-#include "pen/riffler_model.hpp"
+#include "pen/models/riffler_model.hpp"
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 

@@ -1,14 +1,14 @@
 // Bounds that hold wherever the arms stand, judged by the kinematics of random postures.
 #include "pen/passivity_settings.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "pen/arm.hpp"
-#include "pen/motors.hpp"
+#include "pen/arms/arm.hpp"
+#include "pen/arms/motors.hpp"
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 
@@ -62,7 +62,7 @@ Margin least_margin(const PenGeometry& pen, const PassivitySettings& s, int roun
     Vec3 ends[2] = {Vec3(0), Vec3(0)};
     const Vec3 along = direction();
     for (const PenChannel& c : pen.channels) {
-      const Vec3 step = std::numbers::pi / c.steps * posture.arms[index(c.arm)].jacobian[c.joint];
+      const Vec3 step = kPi / c.steps * posture.arms[index(c.arm)].jacobian[c.joint];
       ends[index(c.arm)] += glm::dot(step, along) < 0 ? -step : step;
     }
     out.linear = std::max(out.linear, glm::dot(0.5 * (ends[0] + ends[1]), along));

@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "pen/hid_descriptor.hpp"
-#include "pen/hid_handle.hpp"
-#include "pen/hid_list.hpp"
+#include "geom/math.hpp"
+#include "pen/hid/hid_descriptor.hpp"
+#include "pen/hid/hid_handle.hpp"
+#include "pen/hid/hid_list.hpp"
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
 #include "stress/random.hpp"
@@ -33,7 +33,7 @@ TEST(Playback, GoesAtThePaceOfTheRecording) {
   EXPECT_LT(glm::length(sample.pose.tip - Vec3(5, 0, 0)), 1e-12);
   EXPECT_LT(glm::length(sample.pose.axis - std::sqrt(0.5) * Vec3(1, 0, 1)), 1e-12);
   EXPECT_LT(glm::length(sample.velocity - Vec3(10, 0, 0)), 1e-12);
-  EXPECT_NEAR(glm::length(sample.turning), std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(glm::length(sample.turning), kPi / 2, 1e-12);
   EXPECT_EQ(sample.buttons, 1U);
   EXPECT_EQ(pen.age(), 0);
   now = 52;  // between the strokes

@@ -1,17 +1,15 @@
 #include "plan/engrave.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "tool/cutters.hpp"
 
 namespace riffler::engrave_test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Mesh box(double half) {
   Mesh mesh;

@@ -15,7 +15,7 @@ namespace {
 
 const Vec3 kUp(0, 0, 1);
 
-TEST(GrownColumns, EndWhereTheDistanceIsTheOneAsked) {
+TEST(OffsetToolColumns, EndWhereTheDistanceIsTheOneAsked) {
   stress::Random random(1);
   for (const Tool& cutter : named_cutters()) {
     const Tool tool = cutter.with_shank({{cutter.length(), 3, cutter.length() + 10, 5}})
@@ -24,10 +24,10 @@ TEST(GrownColumns, EndWhereTheDistanceIsTheOneAsked) {
     const Outline outline(tool);
     for (int n = 0; n < 2000; ++n) {
       const double c = n % 3 ? random.uniform(-0.5, 2) : 0;
-      const GrownColumns columns(outline, c);
+      const OffsetToolColumns columns(outline, c);
       const double rho = n % 10 ? random.uniform(0, 14) : 0, z = random.uniform(-2, cutter.length() + 32);
       const double here = outline.nearest(rho, z).distance;
-      const GrownColumns::Column column = columns.at(rho, z);
+      const OffsetToolColumns::Column column = columns.at(rho, z);
       ASSERT_EQ(column.covered, here < c);
       if (!column.covered) continue;
       EXPECT_NEAR(outline.nearest(rho, column.low).distance, c, 1e-7);

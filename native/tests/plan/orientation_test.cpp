@@ -1,4 +1,5 @@
 #include "plan/orientation.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,6 @@
 
 namespace riffler::orientation_test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Points along x at the given places.
 PencilPath line_path(const std::vector<double>& places, bool closed = false) {

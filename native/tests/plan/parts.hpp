@@ -4,18 +4,17 @@
 #include <cmath>
 #include <vector>
 
+#include "geom/math.hpp"
 #include "mesh/shapes.hpp"
 
 namespace riffler {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// A rotation by `angle` (rad) about `axis`, and then a shift.
-struct Placement {
+struct PartPlacement {
   Mat3 turn{1};
   Vec3 shift{0};
 
-  static Placement about(const Vec3& axis, double angle, const Vec3& shift) {
+  static PartPlacement about(const Vec3& axis, double angle, const Vec3& shift) {
     const Vec3 a = glm::normalize(axis);
     const double c = std::cos(angle), s = std::sin(angle);
     Mat3 m(0);

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 #include "mesh/closest.hpp"
 #include "plan/parts.hpp"
 #include "tool/cutters.hpp"
@@ -12,8 +12,8 @@
 namespace riffler::pencil_test {
 namespace {
 
-const std::vector<Placement> kPlacements{
-    {}, Placement::about({1, 2, 3}, 1.1, {0, 0, 0}), Placement::about({-3, 1, 0.4}, 2.7, {1e5, -1e5, 7e4})};
+const std::vector<PartPlacement> kPlacements{
+    {}, PartPlacement::about({1, 2, 3}, 1.1, {0, 0, 0}), PartPlacement::about({-3, 1, 0.4}, 2.7, {1e5, -1e5, 7e4})};
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const double t = glm::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
@@ -59,7 +59,7 @@ TEST(Pencil, GroovesOfTwoPlanesGiveTheirLineHoweverTheyAreTurnedAndMeshed) {
   const double radius = 3;
   for (const double degrees : {60.0, 90.0, 120.0, 150.0, 170.0})
     for (const int times : {0, 2})
-      for (const Placement& place : kPlacements) {
+      for (const PartPlacement& place : kPlacements) {
         const double theta = degrees * kPi / 180, z = -8 + radius / std::sin(theta / 2);
         const Mesh part = place(subdivided(groove(theta), times));
         const PencilResult result = pencil(part, radius);
@@ -88,7 +88,7 @@ TEST(Pencil, GapsWithinTheToleranceAreFaceting) {
 }
 
 TEST(Pencil, CurvesOfABoxesInsideMeetInItsCorners) {
-  for (const Placement& place : kPlacements) {
+  for (const PartPlacement& place : kPlacements) {
     const Mesh part = place(subdivided(inside_out(box_mesh({0, 0, 0}, {50, 40, 30})), 2));
     const PencilResult result = pencil(part, 3);
     ASSERT_EQ(result.paths.size(), 12U);
@@ -308,7 +308,7 @@ Mesh dovetail() {
 
 TEST(Pencil, UndercutsCount) {
   const double radius = 3, y = 6 + 10 / std::sqrt(3.0) - radius * std::sqrt(3.0);
-  for (const Placement& place : kPlacements) {
+  for (const PartPlacement& place : kPlacements) {
     const Mesh part = place(dovetail());
     ASSERT_GT(volume(part), 0);
     const PencilResult result = pencil(part, radius);

@@ -1,18 +1,16 @@
 #include "plan/swarf.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "mesh/closest.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::swarf_test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// A sheet over [0, 1]² in (nu × nv) cells; its normals look along ∂u × ∂v.
 Mesh sheet(const std::function<Vec3(double, double)>& at, int nu, int nv) {

@@ -259,7 +259,7 @@ def test_what_it_writes_is_read_by_linuxcnc(folder):
 
 
 def test_a_machine_of_ones_own_is_a_file(folder):
-    shipped = Path(__file__).parents[2] / "nc" / "machines" / "linuxcnc-xyzac.toml"
+    shipped = Path(__file__).parents[2] / "nc" / "machine" / "shipped" / "linuxcnc-xyzac.toml"
     (folder / "mine.toml").write_text(shipped.read_text())
     result("post", "p.rprog", "--post", "mine.toml", *TABLE_WORDS, "--out", "a.ngc", cwd=folder)
     result("post", "p.rprog", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "b.ngc", cwd=folder)

@@ -43,7 +43,7 @@ LONGEST = 60  # of a label; what is longer is a sentence
 def addon():
     paths = [*(ROOT / "addon").rglob("*.py"), ROOT / "addon" / "core" / "presets.json"]
     return (
-        "\n".join(spoken(path.read_text()) for path in paths) + (ROOT / "native/pen/simulated_device.hpp").read_text()
+        "\n".join(spoken(path.read_text()) for path in paths) + (ROOT / "native/pen/simulated/simulated_device.hpp").read_text()
     )
 
 

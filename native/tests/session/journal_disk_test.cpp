@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "geom/io.hpp"
+#include "base/io.hpp"
 #include "session/journal_file.hpp"
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
@@ -35,7 +35,7 @@ TEST(JournalDisk, FullInAnyByteOfARecordLeavesAllRecordsBefore) {
       const FileLimit full(size + more);
       EXPECT_THROW(writer.add_stroke(stroke(20, 1)), std::runtime_error);
       EXPECT_THROW(writer.extend_stroke(stroke(20, 2).rows()), std::runtime_error);
-      EXPECT_THROW(writer.take_back(), std::runtime_error) << "28 bytes, the shortest";
+      EXPECT_THROW(writer.undo(), std::runtime_error) << "28 bytes, the shortest";
     }
     ASSERT_EQ(read_file(file.path), whole) << more;
   }

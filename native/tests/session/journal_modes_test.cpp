@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "dexel/file.hpp"
-#include "dexel/soften.hpp"
-#include "geom/error.hpp"
+#include "base/error.hpp"
+#include "dexel/file/file.hpp"
+#include "dexel/smooth/smooth_dabs.hpp"
 #include "session/journal_file.hpp"
 #include "session/journal_records.hpp"
 #include "session/replay.hpp"
@@ -55,14 +55,14 @@ struct Clay {
   Volume volume = Volume::block({kBox, 0.4, "xyz"});
   std::optional<Volume> mask;
 
-  void soften_piece(int tool, std::span<const Pose> poses, double strength) {
+  void smooth_piece(int tool, std::span<const Pose> poses, double strength) {
     std::vector<Vec3> centres;
     for (const Pose& pose : poses) centres.push_back(pose.tip);
-    SoftenOptions options;
+    SmoothOptions options;
     options.radius = tool == 1 ? 3 : 2.5;
     options.strength = strength;
     options.protect = mask ? &*mask : nullptr;
-    soften(volume, centres, options);
+    smooth_dabs(volume, centres, options);
   }
 
   void carve_piece(StrokeMode mode, int tool, std::span<const Pose> poses) {
@@ -121,7 +121,7 @@ TEST(JournalModes, OfDabsAreReplayedToTheByte) {
     std::vector<Pose> poses;  // along an edge of the block
     for (int k = 0; k < 12; ++k) poses.push_back({Vec3(3 + 3 * k, 0.3, 11.8), kUp});
     poses.push_back(poses.back());  // that stands, and is a dab all the same
-    clay.soften_piece(1, poses, strength);
+    clay.smooth_piece(1, poses, strength);
     JournalStroke dabs = stroke(StrokeMode::Soften, 1, poses);
     dabs.strength = strength;
     j.add_stroke(dabs);

@@ -270,11 +270,11 @@ TEST(JournalStream, LendsItsWriterBetweenStrokes) {
   put_stroke(0);
   s.stream.end();
   put_stroke(10);
-  EXPECT_THROW(s.stream.use([](JournalWriter& w) { w.take_back(); }), std::runtime_error);
+  EXPECT_THROW(s.stream.use([](JournalWriter& w) { w.undo(); }), std::runtime_error);
   s.stream.end();
-  s.stream.use([](JournalWriter& w) { w.take_back(); });
+  s.stream.use([](JournalWriter& w) { w.undo(); });
   EXPECT_EQ(s.read().strokes().size(), 1U);
-  EXPECT_THROW(s.stream.use([](JournalWriter& w) { w.take_back(2); }), std::invalid_argument);
+  EXPECT_THROW(s.stream.use([](JournalWriter& w) { w.undo(2); }), std::invalid_argument);
   put_stroke(20);
   s.stream.end();
   EXPECT_TRUE(s.stream.stop());

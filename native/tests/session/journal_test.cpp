@@ -11,9 +11,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "geom/bytes.hpp"
-#include "geom/error.hpp"
-#include "geom/io.hpp"
+#include "base/bytes.hpp"
+#include "base/error.hpp"
+#include "base/io.hpp"
 #include "session/journal_file.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
@@ -301,10 +301,10 @@ TEST(Journal, NamesWhatIsWrongAndStaysAsItWas) {
             "removed must be as many as poses");
   EXPECT_EQ(error_of([&] { j.add_stroke(with([&](auto& s) { s.removed = {1, 0, -1e-300}; })); }),
             "removed, row 2: must be finite and not negative");
-  EXPECT_EQ(error_of([&] { j.take_back(0); }), "strokes to take back must be from 1 to 4");
-  EXPECT_EQ(error_of([&] { j.take_back(5); }), "strokes to take back must be from 1 to 4");
-  EXPECT_EQ(error_of([&] { Journal().take_back(); }), "there is no stroke to take back");
-  EXPECT_EQ(error_of([&] { j.bring_back(); }), "there is no stroke to bring back");
+  EXPECT_EQ(error_of([&] { j.undo(0); }), "strokes to take back must be from 1 to 4");
+  EXPECT_EQ(error_of([&] { j.undo(5); }), "strokes to take back must be from 1 to 4");
+  EXPECT_EQ(error_of([&] { Journal().undo(); }), "there is no stroke to take back");
+  EXPECT_EQ(error_of([&] { j.redo(); }), "there is no stroke to bring back");
   EXPECT_NE(error_of([&] { j.extend_stroke({wavy(2).poses}); }), "") << "the last stroke has times";
   EXPECT_NE(error_of([&] { Journal().extend_stroke({wavy(2).poses}); }), "");
   Journal fresh;

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geom/error.hpp"
+#include "base/error.hpp"
 #include "session/journal_file.hpp"
 #include "session/journal_records.hpp"
 #include "support/error_of.hpp"
@@ -37,43 +37,43 @@ Journal five() {
 
 TEST(JournalUndo, TakesBackTheLastStrokesAndBringsThemBackInOrder) {
   Journal j = five();
-  j.take_back(2);
+  j.undo(2);
   EXPECT_EQ(numbers(j.strokes()), (std::vector{0, 1, 2}));
-  j.take_back();
+  j.undo();
   EXPECT_EQ(numbers(j.taken_back()), (std::vector{2, 3, 4}));
-  j.bring_back(2);
+  j.redo(2);
   EXPECT_EQ(numbers(j.strokes()), (std::vector{0, 1, 2, 3}));
-  EXPECT_EQ(error_of([&] { j.bring_back(2); }), "strokes to bring back must be from 1 to 1");
+  EXPECT_EQ(error_of([&] { j.redo(2); }), "strokes to bring back must be from 1 to 1");
   j.add_stroke(numbered(9));
   EXPECT_EQ(numbers(j.strokes()), (std::vector{0, 1, 2, 3, 9}));
-  EXPECT_EQ(error_of([&] { j.bring_back(); }), "there is no stroke to bring back") << "a new stroke ends redo";
-  j.take_back(5);
+  EXPECT_EQ(error_of([&] { j.redo(); }), "there is no stroke to bring back") << "a new stroke ends redo";
+  j.undo(5);
   EXPECT_TRUE(j.strokes().empty());
   EXPECT_TRUE(to_program(j, {}).empty());
 }
 
 TEST(JournalUndo, EndsTheStroke) {
   Journal j = five();
-  j.take_back();
+  j.undo();
   EXPECT_EQ(error_of([&] { j.extend_stroke({numbered(3).poses}); }), "the last stroke has ended: begin another");
-  j.bring_back();
+  j.redo();
   EXPECT_EQ(error_of([&] { j.extend_stroke({numbered(4).poses}); }), "the last stroke has ended: begin another");
   EXPECT_EQ(j.strokes()[4].poses.size(), 2U);
 }
 
 TEST(JournalUndo, IsInTheFileAndCanBeBroughtBackFromIt) {
   Journal j = five();
-  j.take_back(3);
+  j.undo(3);
   Journal k = parse_journal(to_bytes(j), "j");
   EXPECT_EQ(numbers(k.strokes()), (std::vector{0, 1}));
   EXPECT_EQ(to_bytes(k), to_bytes(j));
-  k.bring_back(2);
+  k.redo(2);
   EXPECT_EQ(numbers(k.strokes()), (std::vector{0, 1, 2, 3}));
 }
 
 TEST(JournalUndo, OfStrokesThatAreNotThereIsAFormatError) {
   const Bytes whole = to_bytes(five());
-  for (const auto& record : {journal_format::take_back_record, journal_format::bring_back_record})
+  for (const auto& record : {journal_format::undo_record, journal_format::redo_record})
     for (const std::size_t n : {std::size_t{0}, std::size_t{6}, ~std::size_t{0}}) {
       Bytes bytes = whole;
       const Bytes more = record(n);
@@ -101,18 +101,18 @@ TEST(JournalUndo, WriterDoesWhatTheJournalDoesWhateverItKeeps) {
         switch (random() % 4) {
           case 0:
             if (n > counts.size()) {
-              EXPECT_THROW(writer.take_back(n), std::invalid_argument);
+              EXPECT_THROW(writer.undo(n), std::invalid_argument);
               break;
             }
-            writer.take_back(n);
+            writer.undo(n);
             for (std::size_t i = 0; i < n; ++i) taken.push_back(counts.back()), counts.pop_back();
             break;
           case 1:
             if (n > taken.size()) {
-              EXPECT_THROW(writer.bring_back(n), std::invalid_argument);
+              EXPECT_THROW(writer.redo(n), std::invalid_argument);
               break;
             }
-            writer.bring_back(n);
+            writer.redo(n);
             for (std::size_t i = 0; i < n; ++i) counts.push_back(taken.back()), taken.pop_back();
             break;
           default:

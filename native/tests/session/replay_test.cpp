@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dexel/file.hpp"
+#include "base/error.hpp"
+#include "dexel/file/file.hpp"
 #include "dexel/volumes.hpp"
-#include "geom/error.hpp"
 #include "haptics/sculpt_step.hpp"
 #include "session/journal_stream.hpp"
 #include "support/error_of.hpp"
@@ -153,9 +153,9 @@ TEST(Replay, SeesOnlyWhatCounts) {
     if (k < 2) fewer.add_stroke(stroke);
   }
   const Volume whole = replay(all, kTools);
-  all.take_back(2);
+  all.undo(2);
   EXPECT_TRUE(test::same_rays(replay(all, kTools), replay(fewer, kTools)));
-  all.bring_back(2);
+  all.redo(2);
   EXPECT_TRUE(test::same_rays(replay(all, kTools), whole));
   EXPECT_FALSE(test::same_rays(replay(fewer, kTools), whole));
 }

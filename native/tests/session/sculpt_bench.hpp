@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "pen/simulated_bench.hpp"
+#include "pen/simulated/simulated_bench.hpp"
 #include "session/journal_rules.hpp"
 #include "session/sculpt_loop.hpp"
 
@@ -33,8 +33,8 @@ class RememberingSink final : public StrokeSink {
     strokes.back().removed.push_back(removed);
   }
   void end() noexcept override { ++ended; }
-  void take_back(std::size_t n) noexcept override { taken_back += n; }
-  void bring_back(std::size_t n) noexcept override { brought_back += n; }
+  void undo(std::size_t n) noexcept override { taken_back += n; }
+  void redo(std::size_t n) noexcept override { brought_back += n; }
 
   std::vector<Stroke> strokes;
   std::size_t ended = 0, taken_back = 0, brought_back = 0;

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "dexel/volumes.hpp"
-#include "pen/pens.hpp"
+#include "pen/arms/pens.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/allocations.hpp"
 #include "support/box_mesh.hpp"

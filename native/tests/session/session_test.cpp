@@ -1,18 +1,18 @@
 // Sessions with their threads, on the clock of the system.
 #include "session/session.hpp"
+#include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <thread>
 
 #include "dexel/volumes.hpp"
 #include "marching/mesher.hpp"
 #include "pen/playback.hpp"
 #include "pen/pointer.hpp"
-#include "pen/simulated_device.hpp"
+#include "pen/simulated/simulated_device.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
@@ -276,7 +276,7 @@ TEST(Session, ARecordingIsPlayedWhereItWas) {
   nap(0.05);
   session.stop(shown);
   // A groove of 40 mm by a ball of 6 mm that is 1 mm deep: its two ends are halves of a cap, rounded outward.
-  const double across = 3 * 3 * std::acos(2.0 / 3) - 2 * std::sqrt(5), caps = std::numbers::pi * (3 - 1.0 / 3);
+  const double across = 3 * 3 * std::acos(2.0 / 3) - 2 * std::sqrt(5), caps = kPi * (3 - 1.0 / 3);
   EXPECT_NEAR(stock.volume() - shown.volume(), 40 * across + caps, 0.03 * (40 * across + caps));
 }
 

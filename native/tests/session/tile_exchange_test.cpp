@@ -6,8 +6,8 @@
 #include <atomic>
 #include <thread>
 
+#include "base/ring.hpp"
 #include "dexel/volumes.hpp"
-#include "geom/ring.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::tile_exchange_test {

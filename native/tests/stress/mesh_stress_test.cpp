@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "dexel/file.hpp"
+#include "dexel/file/file.hpp"
 #include "marching/to_mesh.hpp"
 #include "mesh/shapes.hpp"
 #include "stress/float_audit.hpp"

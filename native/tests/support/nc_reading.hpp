@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "geom/error.hpp"
-#include "nc/reader.hpp"
+#include "base/error.hpp"
+#include "nc/read/reader.hpp"
 
 namespace riffler::test {
 

@@ -1,8 +1,8 @@
 // Pens and poses that tests of the pen share.
 #pragma once
 
-#include "pen/kinematics.hpp"
-#include "pen/pens.hpp"
+#include "pen/arms/kinematics.hpp"
+#include "pen/arms/pens.hpp"
 #include "stress/random.hpp"
 
 namespace riffler::test {

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
+#include "geom/math.hpp"
 #include "geom/vec.hpp"
 
 namespace riffler::test {
 
 /// Axis at `tilt` from z towards the azimuth `around`, degrees.
 inline Vec3 tilted(double tilt, double around) {
-  constexpr double kDegree = std::numbers::pi / 180;
   return {std::sin(tilt * kDegree) * std::cos(around * kDegree), std::sin(tilt * kDegree) * std::sin(around * kDegree),
           std::cos(tilt * kDegree)};
 }

@@ -13,6 +13,7 @@
 #include "dexel/boolean.hpp"
 #include "dexel/volumes.hpp"
 #include "reference/swept_distance.hpp"
+#include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::cut_region_test {

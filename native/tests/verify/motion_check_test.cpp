@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "nc/writer.hpp"
+#include "nc/write/writer.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"

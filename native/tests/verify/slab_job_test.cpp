@@ -17,7 +17,7 @@ TEST(SlabState, SnapshotsStayFewAndSpreadOverTheProgram) {
   SlabState state = started();
   for (std::int64_t row = 1; row <= 100'000; ++row) {
     state.save(row, {});
-    ASSERT_LE(state.snapshots.size(), SlabState::kMostSnapshots);
+    ASSERT_LE(state.snapshots.size(), SlabState::kMaxSnapshots);
   }
   EXPECT_EQ(state.snapshots.front().row, 0);
   std::int64_t widest = 0;

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "dexel/file.hpp"
+#include "dexel/file/file.hpp"
 #include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 

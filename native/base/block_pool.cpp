@@ -1,0 +1,160 @@
+#include "base/block_pool.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+
+namespace riffler {
+
+namespace {
+
+constexpr int kSmallest = 5, kLargest = 17;  // log2 of bytes: blocks above the largest are the system's
+constexpr std::size_t kKept = 2U << 20, kReserved = 32U << 20;  // bytes
+
+/// Classes of size, four to a doubling: what a block has too much is a fifth of it at the most.
+struct SizeClass {
+  std::size_t number, bytes;
+};
+
+SizeClass size_class(std::size_t bytes) {
+  const std::size_t last = std::max<std::size_t>(bytes, (1U << kSmallest) + 1) - 1;
+  const auto power = static_cast<std::size_t>(std::bit_width(last) - 1);
+  const std::size_t quarter = (last >> (power - 2)) & 3;
+  return {4 * (power - kSmallest) + quarter, (std::size_t{1} << power) + ((quarter + 1) << (power - 2))};
+}
+
+/// Blocks of one size that nobody uses. A place is emptied by an exchange, so a block has one taker, and no taker looks
+/// into a block that another has: unlike in a linked stack, none can be gone meanwhile.
+class Shelf {
+ public:
+  static constexpr std::size_t kPlaces = 256;
+
+  void* take() {
+    if (filled_.load(std::memory_order_relaxed) <= 0) return nullptr;
+    const std::size_t start = first();
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      std::atomic<void*>& place = places_[(start + k) % places_.size()];
+      if (!place.load(std::memory_order_relaxed)) continue;
+      void* block = place.exchange(nullptr, std::memory_order_acquire);
+      if (!block) continue;
+      filled_.fetch_sub(1, std::memory_order_relaxed);
+      return block;
+    }
+    return nullptr;
+  }
+
+  bool put(void* block) {
+    if (filled_.load(std::memory_order_relaxed) >= static_cast<int>(places_.size())) return false;
+    const std::size_t start = first();
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      std::atomic<void*>& place = places_[(start + k) % places_.size()];
+      void* none = nullptr;
+      if (place.load(std::memory_order_relaxed)) continue;
+      if (!place.compare_exchange_strong(none, block, std::memory_order_release, std::memory_order_relaxed)) continue;
+      filled_.fetch_add(1, std::memory_order_relaxed);
+      return true;
+    }
+    return false;
+  }
+
+  std::size_t filled() const { return static_cast<std::size_t>(std::max(0, filled_.load(std::memory_order_relaxed))); }
+
+ private:
+  /// Threads begin at different places, so that they seldom meet.
+  static std::size_t first() {
+    static std::atomic<std::size_t> threads{0};
+    thread_local const std::size_t mine = 61 * threads++;
+    return mine;
+  }
+
+  std::array<std::atomic<void*>, kPlaces> places_{};
+  std::atomic<int> filled_{0};
+};
+
+struct Pool {
+  std::array<Shelf, 4 * (kLargest - kSmallest)> shelves;
+  std::atomic<std::size_t> kept{0};  // bytes
+  std::atomic<int> reserves{0};
+
+  std::size_t most() const { return reserves.load(std::memory_order_relaxed) > 0 ? kReserved : kKept; }
+};
+
+/// Never destroyed: volumes of static storage may outlive everything else.
+Pool& pool() {
+  static Pool& only = *new Pool;
+  return only;
+}
+
+thread_local std::uint64_t asked = 0;
+
+bool keep(Pool& all, const SizeClass& size, void* memory) noexcept {
+  if (all.kept.fetch_add(size.bytes, std::memory_order_relaxed) + size.bytes <= all.most() &&
+      all.shelves[size.number].put(memory))
+    return true;
+  all.kept.fetch_sub(size.bytes, std::memory_order_relaxed);
+  return false;
+}
+
+/// To the system, until no more than `count` blocks of that size are left.
+void give_back(Pool& all, const SizeClass& size, std::size_t count) noexcept {
+  Shelf& shelf = all.shelves[size.number];
+  while (shelf.filled() > count) {
+    void* memory = shelf.take();
+    if (!memory) return;
+    all.kept.fetch_sub(size.bytes, std::memory_order_relaxed);
+    ::operator delete(memory);
+  }
+}
+
+}  // namespace
+
+void* allocate_block(std::size_t bytes) {
+  const SizeClass size = size_class(bytes);
+  Pool& all = pool();
+  if (size.number >= all.shelves.size()) return ++asked, ::operator new(bytes);
+  if (void* block = all.shelves[size.number].take()) {
+    all.kept.fetch_sub(size.bytes, std::memory_order_relaxed);
+    return block;
+  }
+  return ++asked, ::operator new(size.bytes);
+}
+
+void free_block(void* memory, std::size_t bytes) noexcept {
+  const SizeClass size = size_class(bytes);
+  Pool& all = pool();
+  if (size.number >= all.shelves.size() || !keep(all, size, memory)) ::operator delete(memory);
+}
+
+BlockReserve::BlockReserve() noexcept {
+  ++pool().reserves;
+}
+
+BlockReserve::~BlockReserve() {
+  Pool& all = pool();
+  if (--all.reserves == 0)
+    for (SizeClass size = size_class(0); size.number < all.shelves.size(); size = size_class(size.bytes + 1))
+      give_back(all, size, 0);
+}
+
+void BlockReserve::fill(std::size_t largest, std::size_t count) {
+  Pool& all = pool();
+  count = std::min(count, Shelf::kPlaces);
+  const std::size_t last = std::min(size_class(largest).number + 1, all.shelves.size());
+  // What lies there beyond that makes room.
+  for (SizeClass size = size_class(0); size.number < all.shelves.size(); size = size_class(size.bytes + 1))
+    give_back(all, size, size.number < last ? count : 0);
+  for (SizeClass size = size_class(0); size.number < last; size = size_class(size.bytes + 1))
+    while (all.shelves[size.number].filled() < count) {
+      void* memory = ::operator new(size.bytes);
+      if (keep(all, size, memory)) continue;
+      ::operator delete(memory);
+      return;
+    }
+}
+
+std::uint64_t blocks_from_system() {
+  return asked;
+}
+
+}  // namespace riffler

@@ -1,0 +1,94 @@
+// Checks of arguments, and the bounds of numbers that several topics share. A number beyond them makes no sense as a
+// size of tools and parts, and would ask for work without end. (Bounds of programs and NC code: nc/limits.hpp.)
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace riffler {
+
+inline constexpr double kMinTolerance = 1e-8;         // mm: of cutting and planning
+inline constexpr double kMinToleranceOfSize = 1e-10;  // and as a share of the tool's size: doubles have no more to give
+inline constexpr double kMaxSize = 1e30;              // mm: of tolerances and distances
+inline constexpr double kMaxBox = 1e7;                // mm: a side of a volume's box, 10 km
+inline constexpr double kMinTime = 1e-12;             // s: of a move
+inline constexpr double kMaxTime = 1e12;              // s
+inline constexpr double kMaxTurn = 1e6;               // rad: beyond, sines are noise
+inline constexpr double kMaxConstant = 1e12;          // of materials: N·s/mm³ and the like
+
+/// A number as messages have it.
+inline std::string in_figures(double value) {
+  char out[32];
+  std::snprintf(out, sizeof out, "%g", value);
+  return out;
+}
+
+/// std::invalid_argument "NAME MUST" unless `good`. `must`: "must be finite".
+inline void require(bool good, std::string_view name, const char* must) {
+  if (!good) throw std::invalid_argument(std::string(name) + " " + must);
+}
+
+inline constexpr const char* kPositiveAndFinite = "must be positive and finite";
+inline constexpr const char* kFiniteAndNotNegative = "must be finite and not negative";
+
+/// std::invalid_argument "NAME MUST" unless x is positive and finite.
+inline void require_positive(double x, std::string_view name, const char* must = "must be positive") {
+  require(std::isfinite(x) && x > 0, name, must);
+}
+
+/// std::invalid_argument "NAME MUST" unless x is finite and not negative.
+inline void require_not_negative(double x, std::string_view name, const char* must = "must not be negative") {
+  require(std::isfinite(x) && x >= 0, name, must);
+}
+
+/// std::invalid_argument unless x is a positive, finite length in mm.
+inline void require_length(double x, std::string_view name) {
+  require_positive(x, name, "must be a positive length in mm");
+}
+
+/// std::invalid_argument naming the number unless it is finite.
+inline void require_finite(double x, std::string_view name) {
+  if (!std::isfinite(x)) throw std::invalid_argument(std::string(name) + " must be finite, not " + in_figures(x));
+}
+
+/// std::invalid_argument unless low ≤ x ≤ high. `what` and `unit`: "a positive length" and "mm".
+inline void require_between(double x, double low, double high, std::string_view name, const char* what,
+                            const char* unit) {
+  if (x >= low && x <= high) return;
+  throw std::invalid_argument(std::string(name) + " must be " + what + " in " + unit + ", from " + in_figures(low) +
+                              " to " + in_figures(high) + ", not " + in_figures(x));
+}
+
+/// std::invalid_argument unless x is finite and in [low, high]; `high` may be infinite.
+inline void require_between(double x, double low, double high, std::string_view name) {
+  if (std::isfinite(x) && x >= low && x <= high) return;
+  std::string range = "of at least " + std::to_string(low);
+  if (std::isfinite(high)) range = "between " + std::to_string(low) + " and " + std::to_string(high);
+  throw std::invalid_argument(std::string(name) + " must be a number " + range);
+}
+
+/// A tolerance of cutting: mm.
+inline void require_tolerance(double x, std::string_view name = "tolerance") {
+  require_between(x, kMinTolerance, kMaxSize, name, "a positive length", "mm");
+}
+
+/// Of a call with a tool (or a part) of that size, mm.
+inline void require_tolerance_for(double tolerance, double size) {
+  if (!(tolerance >= kMinToleranceOfSize * size))
+    throw std::invalid_argument("tolerance must be a positive length in mm, at least 1e-10 of the tool's size");
+}
+
+/// A time in s, of a move.
+inline void require_time(double x, std::string_view name) {
+  require_between(x, kMinTime, kMaxTime, name, "a positive time", "s");
+}
+
+/// An angle in rad, of either sign.
+inline void require_angle(double x, std::string_view name) {
+  require_between(x, -kMaxTurn, kMaxTurn, name, "an angle", "rad");
+}
+
+}  // namespace riffler

@@ -1,0 +1,115 @@
+#include "base/descriptions.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+#include <system_error>
+
+#include "base/io.hpp"
+
+namespace riffler {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path settings_folder() {
+  const auto variable = [](const char* name) { return std::getenv(name); };
+#ifdef _WIN32
+  if (const char* folder = variable("APPDATA"); folder && *folder) return folder;
+#else
+  if (const char* folder = variable("XDG_CONFIG_HOME"); folder && *folder) return folder;
+  if (const char* home = variable("HOME"); home && *home) return fs::path(home) / ".config";
+#endif
+  return {};
+}
+
+const ShippedText* shipped(const DescriptionCatalog& shelf, std::string_view name) {
+  const auto at =
+      std::find_if(shelf.shipped.begin(), shelf.shipped.end(), [&](const ShippedText& s) { return s.name == name; });
+  return at == shelf.shipped.end() ? nullptr : &*at;
+}
+
+std::string text_of(const fs::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// The user's files, in the order of their folders and names; of two with one name the first.
+std::vector<fs::path> own_files(const DescriptionCatalog& shelf) {
+  std::vector<fs::path> out;
+  for (const fs::path& folder : own_folders(shelf)) {
+    std::error_code error;
+    std::vector<fs::path> here;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+      if (at->path().extension() == ".toml") here.push_back(at->path());
+    std::sort(here.begin(), here.end());
+    for (const fs::path& path : here)
+      if (std::none_of(out.begin(), out.end(), [&](const fs::path& o) { return o.stem() == path.stem(); }))
+        out.push_back(path);
+  }
+  return out;
+}
+
+DescriptionText read(const fs::path& path) {
+  return {path.stem().string(), path.filename().string(), text_of(path)};
+}
+
+std::string own_summary(const DescriptionCatalog& shelf, const fs::path& path) {
+  if (shipped(shelf, path.stem().string()))
+    return std::string("not used: a ") + shelf.kind + " of this name comes with Riffler; rename " + path.string();
+  try {
+    return shelf.summary(text_of(path), path.filename().string());
+  } catch (const std::exception& e) {
+    return std::string("cannot be read: ") + e.what();
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> own_folders(const DescriptionCatalog& shelf) {
+  std::vector<fs::path> out;
+#ifdef _WIN32
+  constexpr char kApart = ';';
+#else
+  constexpr char kApart = ':';
+#endif
+  if (const char* folders = std::getenv(shelf.variable)) {
+    std::string_view rest(folders);
+    while (!rest.empty()) {
+      const std::size_t end = std::min(rest.find(kApart), rest.size());
+      if (end > 0) out.emplace_back(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  }
+  if (const fs::path settings = settings_folder(); !settings.empty())
+    out.push_back(settings / "riffler" / shelf.folder);
+  return out;
+}
+
+std::vector<DescriptionEntry> list_descriptions(const DescriptionCatalog& shelf) {
+  std::vector<DescriptionEntry> out;
+  for (const ShippedText& s : shelf.shipped)
+    out.push_back({std::string(s.name), shelf.summary(s.toml, std::string(s.name) + ".toml")});
+  for (const fs::path& path : own_files(shelf)) {
+    const bool hidden = shipped(shelf, path.stem().string());
+    out.push_back({(hidden ? path.filename() : path.stem()).string(), own_summary(shelf, path)});
+  }
+  return out;
+}
+
+DescriptionText find_description(const DescriptionCatalog& shelf, std::string_view name, const std::string& what) {
+  if (const ShippedText* found = shipped(shelf, name))
+    return {std::string(name), std::string(name) + ".toml", std::string(found->toml)};
+  if (name.ends_with(".toml")) return read(fs::path(name));
+  std::string known;
+  for (const ShippedText& s : shelf.shipped) known += (known.empty() ? "" : ", ") + std::string(s.name);
+  for (const fs::path& path : own_files(shelf)) {
+    if (path.stem() == name) return read(path);
+    known += ", " + path.stem().string();
+  }
+  throw std::invalid_argument("unknown " + what + "; known: " + known +
+                              ", or the path of a .toml file that describes your " + shelf.kind);
+}
+
+}  // namespace riffler

@@ -1,0 +1,16 @@
+// Lists that name everything once.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace riffler {
+
+/// Sorts a list and drops what stands in it again.
+template <class T>
+void sort_unique(std::vector<T>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace riffler

@@ -1,0 +1,127 @@
+// Where the columns of a grid cross the triangles of a mesh: exact decisions on a lattice, so that a closed mesh is
+// entered as often as it is left on every column, at any alignment.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/bulk.hpp"
+#include "dexel/grid.hpp"
+#include "mesh/mesh.hpp"
+
+namespace riffler {
+
+/// One signed crossing of a column, by rising coordinate: +1 enters (the triangle faces down the ray), −1 leaves.
+struct Crossing {
+  double z;              ///< mm along the ray
+  std::uint32_t source;  ///< index of the triangle, or kOpening | index of the opening
+  std::int32_t sign;
+};
+inline constexpr std::uint32_t kOpening = 0x80000000U;
+
+/// Crossings of a band of rows and the columns that they belong to, (row − first row) · nv + column.
+class BandCrossings {
+ public:
+  /// Where a crossing's sign and its column stand, above its source.
+  static constexpr std::int64_t kLeaves = std::int64_t{1} << 32;
+  static constexpr int kColumnShift = 33;
+
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
+  void add(const Crossing& c, std::uint32_t column) {
+    const auto [z, name] = room(1);
+    *z = c.z, *name = (static_cast<std::int64_t>(column) << kColumnShift) | (c.sign < 0 ? kLeaves : 0) | c.source;
+    added(1);
+  }
+  Crossing operator[](std::size_t k) const {
+    return {z_[k], static_cast<std::uint32_t>(names_[k]), (names_[k] & kLeaves) != 0 ? -1 : 1};
+  }
+  std::uint32_t column(std::size_t k) const { return static_cast<std::uint32_t>(names_[k] >> kColumnShift); }
+
+  /// Where the next crossings are to be written, with room for so many: z and the rest.
+  std::pair<double*, std::int64_t*> room(std::size_t more) {
+    if (z_.size() < size_ + more) grow(more);
+    return {z_.data() + size_, names_.data() + size_};
+  }
+  void added(std::size_t n) { size_ += n; }
+
+ private:
+  void grow(std::size_t more);
+
+  BulkVector<double> z_;
+  BulkVector<std::int64_t> names_;
+  std::size_t size_ = 0;
+};
+
+/// A mesh in the cyclic frame of a grid, in cells: ray (i, j) stands at the integers u = i, v = j. u and v are rounded
+/// to multiples of 2^−30 (fewer bits only where the mesh is more than 2^20 cells wide), once for each vertex; a mesh
+/// whose vertices are so rounded is as watertight as it was. z stays in mm, unrounded.
+class Projection {
+ public:
+  struct Vertex {
+    double u, v, z;
+    std::int32_t row, column;  ///< ⌈u⌉ and ⌈v⌉, clamped to [0, nu] and [0, nv]
+  };
+
+  /// Throws std::invalid_argument where the mesh reaches more than 2^50 cells from the grid.
+  Projection(const Mesh& mesh, const Grid& grid);
+
+  int nu() const { return nu_; }
+  int nv() const { return nv_; }
+  double slack() const { return slack_; }
+  const Vertex& vertex(int index) const { return vertices_[index]; }
+  const BulkVector<Vertex>& vertices() const { return vertices_; }
+  void prefetch(const Vec3i& corners) const {
+    for (int k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[corners[k]]);
+  }
+
+  /// ⌈v*⌉ clamped to [0, nv], where v* is the point at which the edge from `low` to `high` meets u = row, for
+  /// low.row ≤ row < high.row. Exact: it depends on the edge and the row alone, not on the triangle. `v` is near v*.
+  int column(const Vertex& low, const Vertex& high, int row, double v) const {
+    if (!(v > -0.5)) return 0;
+    if (v > nv_ + 0.5) return nv_;
+    int ceiling = static_cast<int>(v + 1);  // unless v is an integer
+    const double past = v + 1 - ceiling;
+    if (past < slack_)
+      ceiling -= !beyond(low, high, row, ceiling - 1);
+    else if (past > 1 - slack_)
+      ceiling += beyond(low, high, row, ceiling);
+    return std::clamp(ceiling, 0, nv_);
+  }
+
+ private:
+  /// v* > column, in integers.
+  bool beyond(const Vertex& low, const Vertex& high, int row, int column) const;
+
+  int nu_, nv_;
+  double lattice_;  // lattice points per cell, a power of two
+  double slack_;    // more than the rounding error of an edge's v at a row, cells
+  BulkVector<Vertex> vertices_;
+};
+
+/// Triangles by bands of rows: those that may cross a column with a row in band k, in the order of the mesh.
+class Bands {
+ public:
+  Bands(const Mesh& mesh, const Projection& projection, int rows_per_band);
+
+  int rows() const { return rows_; }
+  std::span<const std::uint32_t> band(int k) const {
+    return {triangles_.data() + begin_[k], triangles_.data() + begin_[k + 1]};
+  }
+  std::size_t size() const { return triangles_.size(); }
+
+ private:
+  int rows_;
+  std::vector<std::size_t> begin_;
+  BulkVector<std::uint32_t> triangles_;
+};
+
+/// Crossings of a band sorted by column, within one by z, and then by source. `begin` has one entry more than there are
+/// columns.
+void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::vector<Crossing>& sorted,
+                    std::vector<std::uint32_t>& begin);
+
+}  // namespace riffler

@@ -1,0 +1,54 @@
+// A mesh that is to become a volume, repaired as far as that needs.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "dexel/from_mesh/boundary.hpp"
+#include "mesh/orient.hpp"
+
+namespace riffler {
+
+/// A mesh on its way to a volume: as it was given, or repaired.
+class SolidMesh {
+ public:
+  explicit SolidMesh(const Mesh& given) : used_(&given), boundary_(find_boundary(given)) {
+    // With all edges paired the winding numbers are whole, and they tell whether a shell faces inwards.
+    if (!boundary_.empty()) orient();
+  }
+
+  const Mesh& mesh() const { return *used_; }
+  const std::vector<std::vector<int>>& loops() const { return boundary_.loops; }
+  const Orientation& orientation() const { return orientation_; }
+
+  /// Returns whether triangles were turned.
+  bool orient() {
+    if (asked_) return false;
+    asked_ = true;
+    std::optional<Mesh> better = oriented(*used_, orientation_);
+    if (!better) return false;
+    take(*std::move(better));
+    return true;
+  }
+
+  void join_cracks(double tolerance) {
+    if (boundary_.empty()) return;
+    if (std::optional<Mesh> better = riffler::join_cracks(*used_, boundary_, tolerance)) take(*std::move(better));
+  }
+
+ private:
+  void take(Mesh&& mesh) {
+    storage_ = std::move(mesh);
+    used_ = &storage_;
+    boundary_ = find_boundary(*used_);
+  }
+
+  Mesh storage_;
+  const Mesh* used_;
+  Boundary boundary_;
+  Orientation orientation_;
+  bool asked_ = false;
+};
+
+}  // namespace riffler

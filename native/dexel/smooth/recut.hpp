@@ -1,0 +1,48 @@
+// Rays of a tile, cut anew where points of the surface have moved.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dexel/grid.hpp"
+#include "dexel/smooth/moved_field.hpp"
+#include "dexel/stats.hpp"
+
+namespace riffler {
+
+class Recutter {
+ public:
+  Recutter(const Grid& grid, MovedField& field);
+
+  /// The tile after the move, or the tile itself where nothing changes; rays farther than `radius` from `centre` (world
+  /// frame) are left out.
+  std::shared_ptr<const Tile> run(std::size_t tile, const Vec3& centre, double radius, Stats& stats);
+
+ private:
+  struct End {
+    double w;
+    PackedNormal normal;
+    bool operator==(const End&) const = default;
+  };
+  struct Sample {
+    double w, value;
+  };
+
+  bool recut(std::span<const Span> ray, std::span<const SpanNormals> normals, std::span<const Interval> changes);
+  void follow(const Interval& change, std::size_t first, std::size_t last);
+  void place_stops(const Interval& change, std::size_t first, std::size_t last);
+  double value(double w);
+  void cross(Sample a, Sample b);
+  void push(double w, const Vec3& normal);
+
+  const Grid& grid_;
+  MovedField& field_;
+  double pitch_;
+  std::vector<End> old_, ends_;  // of one ray, opening and closing in turn
+  std::vector<double> stops_;
+  Vec3 normal_{0};  // of the value asked for last
+  std::uint64_t values_ = 0;
+};
+
+}  // namespace riffler

@@ -1,0 +1,178 @@
+// Three stages for each dab: the ends of all spans in the brush are points of the surface (end_points.hpp), these move
+// (relax.hpp), and the rays are cut anew by the surface that the moved points say (moved_field.hpp). One field cuts the
+// three grids, so they agree.
+#include "dexel/smooth/smooth_dabs.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "base/check.hpp"
+#include "base/parallel.hpp"
+#include "dexel/boolean.hpp"
+#include "dexel/smooth/moved_field.hpp"
+#include "dexel/smooth/recut.hpp"
+#include "dexel/smooth/relax.hpp"
+
+namespace riffler {
+
+namespace {
+
+using TilePtr = std::shared_ptr<const Tile>;
+
+void check(const Volume& volume, std::span<const Vec3> centres, const SmoothOptions& options) {
+  if (volume.frame().directions != "xyz")
+    throw std::invalid_argument(
+        "soften needs a volume of directions \"xyz\", whose ends have normals; this one has \"" +
+        volume.frame().directions + "\"");
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    if (!finite(centres[i])) throw std::invalid_argument("centres, row " + std::to_string(i) + ": not finite");
+  require_length(options.radius, "radius");
+  if (!(options.strength >= 0 && options.strength <= 1)) throw std::invalid_argument("strength must be from 0 to 1");
+  if (options.protect) check_same_grid(volume.frame(), options.protect->frame(), "protect");
+}
+
+/// A tile in which rays may change.
+struct Touched {
+  std::size_t grid, tile;
+  TilePtr after;
+  double removed = 0, added = 0;  // mm of rays
+  Stats stats;
+};
+
+/// Tiles of rays within `radius` of the centre, of all grids.
+std::vector<Touched> touched_tiles(const Volume& volume, const Vec3& centre, double radius) {
+  std::vector<Touched> out;
+  for (std::size_t g = 0; g < volume.grids().size(); ++g) {
+    const Grid& grid = volume.grids()[g];
+    const Vec3 c = to_local(grid.axis(), centre);
+    const auto [i0, i1] = ray_indices({c.x - radius, c.x + radius}, grid.box().lower.x, grid.pitch(), grid.nu());
+    const auto [j0, j1] = ray_indices({c.y - radius, c.y + radius}, grid.box().lower.y, grid.pitch(), grid.nv());
+    if (i0 > i1 || j0 > j1) continue;
+    for (int a = i0 / kTileSide; a <= i1 / kTileSide; ++a)
+      for (int b = j0 / kTileSide; b <= j1 / kTileSide; ++b) out.push_back({g, grid.tile_index(a, b), {}, 0, 0, {}});
+  }
+  return out;
+}
+
+/// Lengths along one ray: what only `a` has.
+double length_without(std::span<const Span> a, std::span<const Span> b) {
+  double sum = 0;
+  auto other = b.begin();
+  for (const Span& s : a) {
+    double from = s.near;
+    while (other != b.end() && other->far <= from) ++other;
+    for (auto k = other; k != b.end() && k->near < s.far; ++k) {
+      sum += std::max(0.0, k->near - from);
+      from = std::max(from, k->far);
+    }
+    sum += std::max(0.0, s.far - from);
+  }
+  return sum;
+}
+
+class Dab {
+ public:
+  Dab(const Volume& volume, const Vec3& centre, const SmoothOptions& options, const Progress& progress)
+      : volume_(volume), options_(options), pitch_(volume.frame().pitch), centre_(centre) {
+    // Rays change no farther out than a gap between points and a move; the field there looks as far again.
+    const double margin = 5 * pitch_;
+    points_ = relax(end_points(volume, centre, options.radius + margin, options.protect), pitch_,
+                    {centre, options.radius, options.strength}, progress);
+    for (const MovedPoint& p : points_) moves_ = moves_ || p.moved();
+    if (!moves_) return;
+    std::vector<Vec3> places;
+    places.reserve(points_.size());
+    for (const MovedPoint& p : points_) places.push_back(p.after);
+    for (const Grid& grid : volume.grids()) columns_.emplace_back(grid.axis(), places, pitch_);
+  }
+
+  bool moves() const { return moves_; }
+
+  void run(Touched& t) const {
+    const Grid& grid = volume_.grids()[t.grid];
+    const TilePtr& before = grid.shared_tile(t.tile);
+    MovedField field(points_, columns_[t.grid], pitch_);
+    Recutter recutter(grid, field);
+    t.after = recutter.run(t.tile, centre_, options_.radius + 3 * pitch_, t.stats);
+    if (t.after == before) return;
+    if (options_.protect) t.after = without_protected(t, before);
+    if (t.after == before) return;
+    for (int r = 0; r < kTileRays && &grid == &volume_.reference(); ++r) {
+      t.removed += length_without(before->ray(r), t.after->ray(r));
+      t.added += length_without(t.after->ray(r), before->ray(r));
+    }
+  }
+
+ private:
+  /// The old tile with what changed beside what is protected.
+  TilePtr without_protected(const Touched& t, const TilePtr& before) const {
+    const Grid& grid = volume_.grids()[t.grid];
+    TileBuilder builder(true);
+    const auto op = [&](Boolean o, const TilePtr& a, const TilePtr& b) {
+      return apply(o, grid, t.tile, a, b, builder);
+    };
+    const TilePtr& kept = options_.protect->grids()[t.grid].shared_tile(t.tile);
+    const TilePtr lost = op(Boolean::Subtract, op(Boolean::Subtract, before, t.after), kept);
+    const TilePtr won = op(Boolean::Subtract, op(Boolean::Subtract, t.after, before), kept);
+    return op(Boolean::Add, op(Boolean::Subtract, before, lost), won);
+  }
+
+  const Volume& volume_;
+  const SmoothOptions& options_;
+  double pitch_;
+  Vec3 centre_;
+  bool moves_ = false;
+  std::vector<MovedPoint> points_;
+  std::vector<Columns> columns_;
+};
+
+/// What one dab takes and puts on, mm³; true where it changed anything.
+bool apply_dab(Volume& volume, const Vec3& centre, const SmoothOptions& options, const Progress& progress,
+               double& removed, double& added) {
+  Stats stats;
+  stats.moves = 1;
+  const Dab dab(volume, centre, options, part(progress, 0, 0.3));
+  std::vector<Touched> tiles;
+  if (dab.moves()) tiles = touched_tiles(volume, centre, options.radius + 3 * volume.frame().pitch);
+  constexpr std::size_t grain = 1;
+  parallel_for(
+      tiles.size(), grain,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) dab.run(tiles[k]);
+      },
+      part(progress, 0.3, 1));
+  const double area = volume.frame().pitch * volume.frame().pitch;
+  for (const Touched& t : tiles) {
+    stats += t.stats;
+    Grid& grid = volume.grids()[t.grid];
+    if (t.after == grid.shared_tile(t.tile)) continue;
+    grid.set_tile(t.tile, t.after);
+    removed += t.removed * area, added += t.added * area;
+    ++stats.tiles_changed, stats.bytes_copied += t.after->nbytes();
+  }
+  stats.tiles_visited = tiles.size();
+  volume.count(stats);
+  return stats.tiles_changed > 0;
+}
+
+}  // namespace
+
+SmoothResult smooth_dabs(Volume& volume, std::span<const Vec3> centres, const SmoothOptions& options) {
+  check(volume, centres, options);
+  SmoothResult out{std::vector<double>(centres.size()), std::vector<double>(centres.size())};
+  if (options.strength == 0) return out;
+  Volume work = volume;
+  bool changed = false;
+  for (std::size_t k = 0; k < centres.size(); ++k) {
+    const double n = static_cast<double>(centres.size()), done = static_cast<double>(k);
+    const Progress share = part(options.progress, done / n, (done + 1) / n);
+    changed |= apply_dab(work, centres[k], options, share, out.removed[k], out.added[k]);
+    report(options.progress, (done + 1) / n);
+  }
+  if (changed) work.touch();
+  volume = std::move(work);
+  return out;
+}
+
+}  // namespace riffler

@@ -1,0 +1,55 @@
+#include "nc/machine/machines.hpp"
+
+#include <stdexcept>
+
+#include "nc/machine/description.hpp"
+#include "nc/machine/shipped_machines.hpp"
+
+namespace riffler {
+
+namespace {
+
+DescriptionCatalog shelf() {
+  return {"machine", "RIFFLER_MACHINES", "machines", shipped_machines(), machine_summary};
+}
+
+}  // namespace
+
+std::vector<DescriptionEntry> machines() {
+  return list_descriptions(shelf());
+}
+
+std::string machines_with(char axis, std::string_view language) {
+  std::string out;
+  for (const DescriptionEntry& entry : machines()) {
+    OptionReader options({{"tcp", true}}, entry.name);  // with which no pivot is asked for
+    try {
+      const std::unique_ptr<Machine> machine = make_machine(entry.name, options);
+      if (machine->control().language != language || machine->axes().find(axis) == std::string_view::npos) continue;
+      out += (out.empty() ? "" : ", ") + entry.name;
+    } catch (const std::invalid_argument&) {
+      continue;  // a file of the user's own that cannot be read: whoever asks for it is told
+    }
+  }
+  return out;
+}
+
+std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options) {
+  const DescriptionText found = find_description(shelf(), name, options.owner());
+  return std::make_unique<Machine>(describe_machine(found.toml, found.file, found.name, options));
+}
+
+std::string machines_of_language(std::string_view language) {
+  std::string out;
+  for (const DescriptionEntry& entry : machines()) {
+    try {
+      OptionReader none({{"tcp", true}}, entry.name);
+      if (make_machine(entry.name, none)->control().language == language) out += (out.empty() ? "" : ", ") + entry.name;
+    } catch (const std::exception&) {
+      // A description that cannot be read, or needs options, is not among those that are named.
+    }
+  }
+  return out;
+}
+
+}  // namespace riffler

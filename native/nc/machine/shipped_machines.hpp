@@ -1,0 +1,13 @@
+// The texts of native/nc/machine/shipped/*.toml, which the build puts into the library.
+#pragma once
+
+#include <span>
+
+#include "base/descriptions.hpp"
+
+namespace riffler {
+
+/// In the order in which a list shows them.
+std::span<const ShippedText> shipped_machines();
+
+}  // namespace riffler

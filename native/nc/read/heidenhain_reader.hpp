@@ -1,0 +1,17 @@
+// Heidenhain's conversational programs (TNC 640, User's Manual for Klartext Programming), as CAM systems write them,
+// → Program.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "nc/program.hpp"
+#include "nc/read/read_options.hpp"
+
+namespace riffler {
+
+/// docs/reading-nc.md says what is read; FormatError naming the line for everything else. Poses are in the coordinates
+/// of the preset, without datum shifts and tilted planes.
+Program parse_heidenhain(std::string_view text, const std::string& file, const ReadOptions& options = {});
+
+}  // namespace riffler

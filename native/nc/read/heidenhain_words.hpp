@@ -1,0 +1,78 @@
+// The words of a positioning block of a Heidenhain conversational program: coordinates, feed, M functions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "nc/read/heidenhain_cursor.hpp"
+#include "nc/read/heidenhain_values.hpp"
+
+namespace riffler {
+
+/// A coordinate as it stands: in the program's unit, or degrees.
+struct HeidenhainCoordinate {
+  double value = 0;
+  bool given = false, incremental = false;
+
+  /// Where it is, from `at` where it is incremental or not given.
+  double from(double at, double unit) const { return !given ? at : incremental ? at + value * unit : value * unit; }
+};
+
+enum class HeidenhainFeed : std::uint8_t {
+  Unchanged,
+  Number,   ///< mm/min, or tenths of inches a minute
+  Auto,     ///< as TOOL CALL has it
+  Rapid,    ///< FMAX, of its block
+  PerTurn,  ///< FU
+};
+
+/// M140 MB: a retraction along the tool.
+struct HeidenhainRetraction {
+  bool given = false, to_limit = false;
+  double distance = 0;
+};
+
+class HeidenhainWords {
+ public:
+  /// What a statement may have; coordinates of axes, feed and M functions all may.
+  enum Kind : std::uint8_t { Normal = 1, ToolAxis = 2, Polar = 4, Radius = 8, Turning = 16, Length = 32 };
+
+  /// Takes the words to the end of the block. FormatError for unknown ones, and for those that are not in `kinds`.
+  void read(HeidenhainCursor& cursor, HeidenhainValues& values, std::uint8_t kinds);
+
+  /// Takes F with what belongs to it; the F comes next.
+  void read_feed(HeidenhainCursor& cursor, HeidenhainValues& values);
+
+  std::array<HeidenhainCoordinate, 6> axes;          ///< X Y Z A B C
+  std::array<HeidenhainCoordinate, 3> normal, tool;  ///< NX NY NZ, TX TY TZ
+  HeidenhainCoordinate radius, angle;                ///< PR, PA
+  std::optional<double> arc_radius;                  ///< R of CR, RND
+  std::optional<bool> clockwise;                     ///< DR− is, DR+ is not
+  std::optional<double> length;                      ///< of CHF, and of RND without R
+  char compensation = 0;                             ///< '0', 'L', 'R', 'P' for R+ and R−; 0: none
+  HeidenhainFeed feed = HeidenhainFeed::Unchanged;
+  double feed_number = 0;
+  HeidenhainRetraction retraction;
+  std::optional<double> speed;  ///< S, which stands in TOOL CALL mostly
+  std::vector<int> codes;       ///< M functions in their order
+  std::vector<char> reduced;    ///< axes after M94
+
+  bool has_linear() const { return axes[0].given || axes[1].given || axes[2].given; }
+  bool has_rotary() const { return axes[3].given || axes[4].given || axes[5].given; }
+  bool has_code(int code) const;
+
+ private:
+  void take_word(HeidenhainCursor& cursor, HeidenhainValues& values);
+  void take_coordinate(HeidenhainCoordinate& to, HeidenhainCursor& cursor, HeidenhainValues& values,
+                       std::string_view name, bool incremental);
+  void take_radius(HeidenhainCursor& cursor, HeidenhainValues& values);
+  void take_code(HeidenhainCursor& cursor, HeidenhainValues& values);
+
+  std::uint8_t kinds_ = 0;
+};
+
+}  // namespace riffler

@@ -1,0 +1,223 @@
+// RS-274 as LinuxCNC 2.9 reads it: block by block, from text to rows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "nc/read/arc.hpp"
+#include "nc/read/control_flow.hpp"
+#include "nc/read/cutter_compensation.hpp"
+#include "nc/read/frame.hpp"
+#include "nc/read/notes.hpp"
+#include "nc/read/parameters.hpp"
+#include "nc/read/read_options.hpp"
+#include "nc/read/rows.hpp"
+#include "nc/read/tool_diameters.hpp"
+#include "nc/read/words.hpp"
+#include "nc/source.hpp"
+
+namespace riffler {
+
+class NcInterpreter final : private NcPredefined {
+ public:
+  /// `folder`: where files of subroutines are sought, beside those of the options. std::invalid_argument for options.
+  NcInterpreter(std::unique_ptr<NcSource> source, const std::filesystem::path& folder, const ReadOptions& options);
+
+  /// Executes one line. False at the end of the program. Rows are left in pending(). FormatError.
+  bool step();
+  std::vector<Move>& pending() { return rows_->pending(); }
+  /// More rows than can be held: FormatError naming the line.
+  [[noreturn]] void fail_rows() const { place_.fail("more rows than can be held"); }
+
+  /// "source", and "skipped" and "notes" where there are any.
+  Provenance provenance() const { return notes_.provenance(source_); }
+  const std::vector<Note>& notes() const { return notes_.notes(); }
+
+ private:
+  /// What M70 saves and M72 restores.
+  struct Modes {
+    std::array<std::size_t, 3> plane{0, 1, 2};  // joints of the plane's two axes and of its normal
+    double unit = 1;                            // mm
+    bool absolute = true, absolute_centre = false;
+    int feed_mode = 940, return_level = 990, system = 1;
+    double feed = 0;  // mm/min, 1/min, or mm/rev; 0: none
+    double speed = 0;
+    int turning = 0;  // 1 clockwise
+    bool surface_speed = false;
+    int path_control = 640;
+  };
+  struct Given {
+    bool block_delete = true, check_header = true;
+    double max_turns = 0;
+    std::vector<std::filesystem::path> folders;
+    std::string parameters;
+    bool skip_unknown = false;
+    CompensationRule compensation = CompensationRule::Error;
+    double arc_miss = kArcMiss;
+    bool units = false;                                          // given by an option
+    std::vector<std::pair<int, std::vector<double>>> positions;  // by the first of their parameters
+  };
+  /// What is known of where an axis stands.
+  enum class Stand : std::uint8_t {
+    Given,    // the program named its coordinate
+    Start,    // as before the program, which is taken for 0
+    Machine,  // at a position of the machine, of which nobody knows where in the part it is
+  };
+  /// What is known of an axis's zero in a work offset.
+  enum class Zero : std::uint8_t {
+    Unknown,   // taken for 0
+    Relative,  // where it lies from the first system that the program moves in
+    Machine,   // where on the machine
+  };
+  struct Saved {
+    Modes modes;
+    std::size_t depth;  // of calls
+    bool restores;      // at the end of the subroutine (M73)
+  };
+  /// The words of a canned cycle that stay, mm.
+  struct Cycle {
+    int code = -1;
+    double retract = 0, bottom = 0, peck = 0;
+    double level = 0;  // of the drilling axis before the first of the cycles in a row
+  };
+
+  // interpreter.cpp: options, lines, the order of what a block does.
+  void take_options(const ReadOptions& options);
+  bool execute_line();
+  bool executes(NcCursor& cursor);
+  bool ended(std::string_view line);
+  void percent();
+  void block(NcCursor& cursor);
+  void execute();
+  void note(const char* kind, const std::string& message);
+
+  // interpreter_modes.cpp: what moves nothing.
+  void units_and_feed_mode();
+  void feed_and_speed();
+  void spindle();
+  void signals();
+  void tool();
+  void states();
+  void leave_saved_states();
+  void restore(const Modes& modes);
+  void kinematics();
+  void dwell();
+  void modes();
+  void tool_length();
+  void paths();
+  void subprograms();
+  void stop();
+
+  // interpreter_machine.cpp: positions of the machine, and what is known of work offsets.
+  void take_positions(OptionReader& options);
+  void go_home(int code);
+  Joints machine_target();
+  void use_positions();
+  bool is_zero_known(std::size_t joint) const;
+  void to_machine_position(std::size_t joint, Joints& machine, double position, bool known);
+  void leave_part(const char* code);
+  std::string axes_away() const;
+  void check_stands_in_part(const char* what) const;
+  bool moves_in_part(bool rapid);
+  void begin_or_wait(bool rapid);
+  void note_start();
+  void note_rapid(const Joints& to);
+  void check_work_offset();
+  void learn_zero(int number, std::size_t joint, bool by_position);
+
+  // interpreter_compensation.cpp: cutter radius compensation.
+  void make_compensation();
+  void compensate(int code);
+  void choose_offset();
+  double compensation_diameter();
+  CutterSide compensation_side(double diameter) const;
+  bool compensates();
+  void contour_to(const Joints& to, int code);
+  void refuse_in_compensation(const std::string& what) const;
+  void leave_contour(const Joints& to, bool in_part);
+  void check_not_leaving() const;
+
+  // interpreter_offsets.cpp: where program coordinates are; parameters that say so.
+  NcFrame frame_of_parameters() const;
+  void use_frame(const NcFrame& frame);
+  void select_system(int code);
+  void non_modal();
+  void set_data();
+  void set_system(int number, bool by_position);
+  void shift_by_words(bool local);
+  void store_shift();
+  double length_or_angle(std::size_t joint);
+  std::optional<double> predefined(int number) const override;
+  std::optional<double> predefined(std::string_view name) const override;
+
+  // interpreter_motion.cpp
+  void motion();
+  void choose_motion(int code);
+  bool goes_home() const;
+  void move(int code);
+  void refuse(int code);
+  bool axes_are_taken() const;
+  void check_feed() const;
+  Joints target();
+  void line_to(const Joints& to, bool rapid);
+  void straight_to(const Joints& to, const NcRowWords& words);
+  void arc_to(const Joints& to, bool clockwise);
+  Arc arc_of_words(const Joints& to, bool clockwise);
+  Arc the_arc(const Vec2& from, const Vec2& end, bool clockwise);
+  void spline_to(const Joints& to, int code);
+  void drill_at(int code);
+  void take_cycle_words(int code);
+  NcRowWords row_words(bool rapid);
+
+  NcPlace place_;
+  NcParameters parameters_;
+  Given given_;
+  Options machine_options_;
+  std::string machine_;
+  bool tcp_given_ = false;
+  std::vector<std::string> skipped_here_;
+  std::unique_ptr<NcControlFlow> flow_;
+  std::unique_ptr<NcRows> rows_;
+  std::unique_ptr<NcWords> words_;
+  std::unique_ptr<CutterCompensation> compensation_;
+  std::string source_;
+  NoteList notes_;
+
+  Joints at_{};  // program coordinates, mm and degrees
+  std::array<Stand, 6> stand_{Stand::Start, Stand::Start, Stand::Start, Stand::Given, Stand::Given, Stand::Given};
+  std::array<std::array<Zero, 3>, 10> zero_{};  // of X Y Z, by system
+  std::size_t first_system_ = 0;                // that rows were made in
+  std::array<bool, 10> offset_noted_{};
+  /// Of G28 and G30, by axis: the machine's position is known, or a position in the part (G28.1).
+  std::array<std::array<bool, 6>, 2> home_known_{}, home_in_part_{};
+  Modes modes_;
+  int motion_ = -1, before_cycle_ = -1;  // the code times ten; −1: none
+  bool cancelled_ = false;               // by G80
+  NcFrame frame_;
+  Cycle cycle_;
+  std::optional<Vec2> spline_end_;  // of a G5: from its end to its second control point
+  int tool_ = 0, next_tool_ = 0, length_number_ = 0;
+  std::optional<Vec3> length_;  // of the tool at hand, as the first dynamic offset gave it
+  bool length_used_ = false, length_off_ = false, compensation_noted_ = false;
+  int compensation_code_ = 400;                  // of G40 to G42.1, times ten
+  std::optional<double> compensation_diameter_;  // mm, of G41.1 and G42.1
+  std::optional<int> diameter_number_;           // D
+  ToolDiameters diameters_;
+  std::map<int, double> tool_radii_;  // mm, of G10 L1, L10 and L11
+  std::set<int> offsets_noted_;
+  bool begun_ = false;  // whether every linear axis has been named, or taken for 0
+  bool position_noted_ = false, rotary_noted_ = false, start_noted_ = false, away_noted_ = false, units_said_ = false;
+  bool rapid_noted_ = false;
+  std::vector<Saved> saved_;
+  bool started_ = false, percent_ = false, ended_ = false;
+};
+
+}  // namespace riffler

@@ -1,0 +1,20 @@
+// Programs for Sinumerik 840D and 828D (Siemens, Programming Manual Fundamentals; Cycles), as CAM systems write them,
+// → Program.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "nc/program.hpp"
+#include "nc/read/read_options.hpp"
+
+namespace riffler {
+
+/// docs/reading-nc.md says what is read; FormatError naming the line for everything else. Poses are in the coordinates
+/// of the first work offset that the program moves in, without TRANS, ROT and tilted planes. `folder`: where files of
+/// subprograms are sought; none where it is empty.
+Program parse_sinumerik(std::string_view text, const std::string& file, const ReadOptions& options = {},
+                        const std::filesystem::path& folder = {});
+
+}  // namespace riffler

@@ -1,0 +1,33 @@
+// The posts of all languages.
+#include <algorithm>
+#include <stdexcept>
+
+#include "nc/write/post.hpp"
+
+namespace riffler {
+
+namespace {
+
+struct PostLanguage {
+  std::string_view name;
+  std::unique_ptr<Post> (*make)(const Machine& machine, PostOptions options);
+};
+
+constexpr PostLanguage kPosts[] = {
+    {"rs274", make_rs274},
+    {"heidenhain", make_heidenhain},
+    {"sinumerik", make_sinumerik},
+    {"apt", make_apt},
+};
+static_assert(std::ranges::equal(kPosts, kLanguages, {}, &PostLanguage::name), "one post for each language");
+
+}  // namespace
+
+std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options) {
+  const auto at = std::find_if(std::begin(kPosts), std::end(kPosts),
+                               [&](const PostLanguage& l) { return l.name == machine.control().language; });
+  if (at == std::end(kPosts)) throw std::invalid_argument("unknown language " + machine.control().language);
+  return at->make(machine, std::move(options));
+}
+
+}  // namespace riffler

@@ -1,0 +1,25 @@
+#include "pen/arms/pens.hpp"
+
+#include "pen/arms/description.hpp"
+#include "pen/arms/shipped_pens.hpp"
+
+namespace riffler {
+
+namespace {
+
+DescriptionCatalog shelf() {
+  return {"pen", "RIFFLER_PENS", "pens", shipped_pens(), pen_summary};
+}
+
+}  // namespace
+
+std::vector<DescriptionEntry> pens() {
+  return list_descriptions(shelf());
+}
+
+PenGeometry load_pen(std::string_view name) {
+  const DescriptionText found = find_description(shelf(), name, "pen '" + std::string(name) + "'");
+  return describe_pen(found.toml, found.file, found.name);
+}
+
+}  // namespace riffler

@@ -1,0 +1,200 @@
+#include "pen/hid/hid_handle.hpp"
+
+#include <fcntl.h>
+#include <hidapi/hidapi.h>
+#include <linux/hidraw.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "pen/hid/hid_list.hpp"
+
+namespace riffler {
+namespace {
+
+constexpr char kPlain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._-";
+
+/// Closes unless it is taken.
+class File {
+ public:
+  explicit File(int fd) : fd_(fd) {}
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  int take() {
+    const int fd = fd_;
+    fd_ = -1;
+    return fd;
+  }
+
+ private:
+  int fd_;
+};
+
+OpenProblem problem_of(int error) {
+  switch (error) {
+    case ENOENT:
+    case ENOTDIR:
+      return OpenProblem::NoFile;
+    case EACCES:
+      return OpenProblem::Permission;
+    case EPERM:
+      return OpenProblem::Forbidden;
+    case EBUSY:
+    case EAGAIN:
+      return OpenProblem::Busy;
+    case ENODEV:
+    case ENXIO:
+    case EIO:
+      return OpenProblem::Unplugged;
+    case ENOTTY:
+    case EINVAL:
+      return OpenProblem::NotHid;
+    default:
+      return OpenProblem::Other;
+  }
+}
+
+/// What is wrong, and what to do about it.
+std::string explain(const HidInfo& info, OpenProblem problem, int error) {
+  const std::string at = info.path + ": ";
+  const std::string id = info.id();
+  switch (problem) {
+    case OpenProblem::Permission:
+      // 73-seat-late.rules acts on the tag, so the file's number must be lower.
+      return at + "permission denied; as root, put this line into /etc/udev/rules.d/60-riffler-" + id.substr(0, 4) +
+             "-" + id.substr(5) + ".rules, then unplug the device and plug it in again: " + udev_rule(info);
+    case OpenProblem::Forbidden:
+      return at + "the system forbids it (a container or a sandbox that was not given the device?)";
+    case OpenProblem::Busy:
+      return at + "busy, another program drives it; end that one first";
+    case OpenProblem::Unplugged:
+      return at + "it was unplugged";
+    case OpenProblem::NoFile:
+      return at + "no such device; is it plugged in?";
+    case OpenProblem::NotHid:
+      return at + "not a HID device";
+    default:
+      return at + std::strerror(error);
+  }
+}
+
+[[noreturn]] void fail(const HidInfo& info, int error) {
+  const OpenProblem problem = problem_of(error);
+  throw OpenError(problem, explain(info, problem, error));
+}
+
+int open_file(const HidInfo& info) {
+  const int fd = ::open(info.path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) fail(info, errno);
+  return fd;
+}
+
+std::vector<std::uint8_t> read_descriptor(const HidInfo& info, int fd) {
+  int size = 0;
+  if (::ioctl(fd, HIDIOCGRDESCSIZE, &size) < 0) fail(info, errno);
+  hidraw_report_descriptor descriptor{};
+  if (size < 0 || size > HID_MAX_DESCRIPTOR_SIZE) fail(info, EINVAL);
+  descriptor.size = static_cast<std::uint32_t>(size);
+  if (::ioctl(fd, HIDIOCGRDESC, &descriptor) < 0) fail(info, errno);
+  return {descriptor.value, descriptor.value + size};
+}
+
+}  // namespace
+
+HidHandle::HidHandle(const HidInfo& info, Sharing sharing) {
+  // Ours first: it gives the system's reason, which hidapi turns into a text of the locale's; and hid_open_path 0.13
+  // touches freed memory where the file is not a hidraw device.
+  File file(open_file(info));
+  if (sharing == Sharing::Exclusive && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail(info, errno);
+  descriptor_ = read_descriptor(info, file.get());
+  {
+    const std::lock_guard lock(hidapi_mutex());
+    device_.reset(hid_open_path(info.path.c_str()));
+  }
+  if (!device_) fail(info, ENODEV);  // it was there a moment ago
+  lock_ = file.take();
+}
+
+HidHandle::~HidHandle() {
+  device_.reset();
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void HidHandle::Closing::operator()(hid_device_* device) const noexcept {
+  hid_close(device);
+}
+
+int HidHandle::read(std::span<std::uint8_t> bytes, double seconds) noexcept {
+  return hid_read_timeout(device_.get(), bytes.data(), bytes.size(), static_cast<int>(std::ceil(1e3 * seconds)));
+}
+
+bool HidHandle::write(std::span<const std::uint8_t> bytes) noexcept {
+  return hid_write(device_.get(), bytes.data(), bytes.size()) >= 0;
+}
+
+int HidHandle::get_feature(std::span<std::uint8_t> bytes) noexcept {
+  return hid_get_feature_report(device_.get(), bytes.data(), bytes.size());
+}
+
+std::string udev_rule(const HidInfo& info) {
+  const std::string id = info.id();
+  std::string rule = R"(ACTION!="remove", SUBSYSTEM=="hidraw", ATTRS{idVendor}==")" + id.substr(0, 4) +
+                     R"(", ATTRS{idProduct}==")" + id.substr(5) + '"';
+  // Numbers that several makers use are not enough; udev gives characters like * a meaning.
+  if (!info.name.empty() && info.name.find_first_not_of(kPlain) == std::string::npos)
+    rule += R"(, ATTRS{product}==")" + info.name + '"';
+  return rule + R"(, TAG+="uaccess")";
+}
+
+OpenProblem why_not_open(const HidInfo& info, std::string& text) {
+  text.clear();
+  try {
+    const File file(open_file(info));
+    return OpenProblem::None;
+  } catch (const OpenError& error) {
+    text = error.what();
+    return error.problem();
+  }
+}
+
+const char* problem_text(OpenProblem problem) noexcept {
+  switch (problem) {
+    case OpenProblem::None:
+      return "none";
+    case OpenProblem::NoFile:
+      return "not there";
+    case OpenProblem::Permission:
+      return "permission denied";
+    case OpenProblem::Forbidden:
+      return "forbidden by the system";
+    case OpenProblem::Busy:
+      return "busy";
+    case OpenProblem::Unplugged:
+      return "unplugged";
+    case OpenProblem::NotHid:
+      return "not a HID device";
+    case OpenProblem::UnknownDevice:
+      return "unknown device";
+    case OpenProblem::WrongDescriptor:
+      return "wrong report descriptor";
+    case OpenProblem::OtherVersion:
+      return "other version of the protocol";
+    case OpenProblem::NoAnswer:
+      return "no answer";
+    case OpenProblem::BadContent:
+      return "contradicts itself";
+    case OpenProblem::Other:
+      break;
+  }
+  return "error of the system";
+}
+
+}  // namespace riffler

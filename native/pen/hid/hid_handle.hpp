@@ -1,0 +1,52 @@
+// An open HID device, through stock hidapi on hidraw.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pen/hid/hid_list.hpp"
+#include "pen/hid/open_error.hpp"
+#include "pen/hid/transport.hpp"
+
+struct hid_device_;
+
+namespace riffler {
+
+/// Whether others may drive the device at the same time.
+enum class Sharing : unsigned char { Exclusive, Shared };
+
+class HidHandle final : public Transport {
+ public:
+  /// Opens what is at `info.path`. Throws OpenError with the exact reason; texts name the rule to install where that
+  /// would help. hidraw lets any number of programs open one device, and two that push with it fight: an exclusive
+  /// handle holds a lock (flock) on the device file, and a second one, in whatever program, is told that it is busy.
+  explicit HidHandle(const HidInfo& info, Sharing sharing = Sharing::Exclusive);
+  HidHandle(const HidHandle&) = delete;
+  HidHandle& operator=(const HidHandle&) = delete;
+  ~HidHandle() override;
+
+  int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;
+  bool write(std::span<const std::uint8_t> bytes) noexcept override;
+  int get_feature(std::span<std::uint8_t> bytes) noexcept override;
+  std::span<const std::uint8_t> descriptor() const noexcept override { return descriptor_; }
+
+ private:
+  struct Closing {
+    void operator()(hid_device_* device) const noexcept;
+  };
+
+  int lock_ = -1;  // our own file descriptor of the device
+  std::vector<std::uint8_t> descriptor_;
+  std::unique_ptr<hid_device_, Closing> device_;
+};
+
+/// The line that lets whoever sits at the computer open the device, and nobody else.
+std::string udev_rule(const HidInfo& info);
+
+/// Why `info.path` would not open; OpenProblem::None if it would. Asks the system only: nothing is read from the
+/// device.
+OpenProblem why_not_open(const HidInfo& info, std::string& text);
+
+}  // namespace riffler

@@ -1,0 +1,55 @@
+// Which HID devices are plugged in. Takes milliseconds, and allocates: never in the thread that drives a device.
+#pragma once
+
+#include <pthread.h>
+
+#include <cstdint>
+#include <mutex>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace riffler {
+
+/// Held while one of hid_init, hid_enumerate and hid_open_path is called: they write hidapi's last error, one global
+/// variable, without a lock, and two threads that call them free it twice.
+inline std::mutex& hidapi_mutex() {
+  static std::mutex mutex;
+  // In a forked process the thread that held it is not there to let it go.
+  [[maybe_unused]] static const int free_in_forks = pthread_atfork(nullptr, nullptr, [] { new (&mutex) std::mutex; });
+  return mutex;
+}
+
+/// The texts are UTF-8, whatever the process's locale.
+struct HidInfo {
+  std::string path;  // what opens it: /dev/hidraw3
+  std::uint16_t vendor = 0, product = 0;
+  std::string maker, name, serial;
+  int interface = -1;
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> usages;  // page and usage of every top collection
+
+  bool has_usage(std::uint16_t page, std::uint16_t usage) const;
+  /// "256f:c635"
+  std::string id() const;
+};
+
+/// All of them, in the order of their paths' numbers. Throws std::runtime_error where the system's device list cannot
+/// be read.
+std::vector<HidInfo> list_hid();
+
+/// What stays the same when a device is plugged in again, at another path perhaps.
+struct HidAddress {
+  std::string path;
+  std::uint16_t vendor = 0, product = 0;
+  std::string serial;
+  int interface = -1;
+
+  static HidAddress of(const HidInfo& info);
+};
+
+/// The device of that address among `found`: by maker, product and serial; of several the one at the same path, or the
+/// first. Null if there is none.
+const HidInfo* find_again(const std::vector<HidInfo>& found, const HidAddress& address);
+
+}  // namespace riffler

@@ -1,0 +1,73 @@
+// Riffler's own pen: device/protocol on the wire, and the kinematics of the geometry that the pen names.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "device/protocol/pen_protocol.h"
+#include "pen/arms/compensation.hpp"
+#include "pen/arms/count_speed.hpp"
+#include "pen/arms/kinematics.hpp"
+#include "pen/hid_model.hpp"
+
+namespace riffler {
+
+class RifflerModel final : public HidModel {
+ public:
+  /// Asks the pen who it is. Throws OpenError: not a Riffler pen, another version of the protocol, a descriptor that
+  /// differs, limits that cannot be, a geometry that is not known here. Validates the shares.
+  explicit RifflerModel(Transport& transport, const Compensation& share = {});
+
+  const DeviceCapability& capability() const noexcept override { return capability_; }
+  double period() const noexcept override { return 1e-6 * limits_.period_us; }
+  PassivitySettings passivity() const override { return passivity_settings(geometry_, share_); }
+  std::string about() const override;
+  const PenGeometry* geometry() const noexcept override { return &geometry_; }
+  void check(Transport& transport) override;
+  /// Counters count from where they were when power came on: somebody has to hold the pen in its home posture and say
+  /// so.
+  bool home() noexcept override;
+
+  void begin(double now) noexcept override;
+  Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
+  PenSample sample(double) noexcept override { return sample_; }
+  /// The pen pushes once it is told so after it was told not to: reports enable as long as the gate is open, so that a
+  /// tool that leaves the material does not go through the firmware's ramp at the next touch, and not in any state in
+  /// which the pen would not take it. Weight and friction are made up for by the gate's gain, so neither without a
+  /// check nor without the ramp. PenSample::applied is without them: they are no part of the wrench.
+  std::size_t push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
+  std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
+
+ private:
+  void take_report(const riffler_pen_input& report, double now, Taken& taken) noexcept;
+  void place(const riffler_pen_input& report, double now) noexcept;
+  bool may_enable() const noexcept;
+  MotorTorques applied_wrench(const riffler_pen_input& report) const noexcept;
+  std::size_t send(riffler_pen_output report, double now, std::span<std::uint8_t> bytes) noexcept;
+
+  Compensation share_;
+  riffler_pen_identity identity_{};
+  riffler_pen_limits limits_{};
+  PenGeometry geometry_;
+  DeviceCapability capability_;
+  PenKinematics kinematics_;
+  CountSpeed speed_;
+  PenPosture posture_{};
+  PenSample sample_{};
+  riffler_pen_input last_{};
+  bool heard_ = false;  // since the device was opened
+  bool ever_heard_ = false;
+  double last_time_ = 0;    // of the driver's clock, when last_ came
+  double device_time_ = 0;  // s of the pen's clock since the first report; does not wrap
+  std::uint16_t sent_ = 0;
+  /// What the last commands were, and what of them was no wrench: the pen says which one it has.
+  struct Command {
+    std::array<std::int16_t, kPenChannels> all{};  // mA
+    MotorTorques own{};
+    std::uint16_t sequence = 0;
+  };
+  std::array<Command, 64> commands_{};
+  std::atomic<bool> home_asked_{false};
+};
+
+}  // namespace riffler

@@ -1,0 +1,98 @@
+#include "pen/simulated/simulated_device.hpp"
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "base/check.hpp"
+#include "pen/models/riffler_model.hpp"
+#include "pen/simulated/simulated_transport.hpp"
+
+namespace riffler {
+
+/// What the hand was told, and what it does by itself.
+struct SimulatedDevice::Hand {
+  struct Told {
+    HandWish wish{};
+    bool wanders = true;
+  };
+  Published<Told> told;
+  HandPath curve;
+
+  HandWish wish(double seconds) const {
+    const Told now = told.get();
+    return now.wanders ? curve(seconds) : now.wish;
+  }
+};
+
+/// What the encoders are told to lose, and what they have lost.
+struct SimulatedDevice::Losses {
+  std::array<std::atomic<std::int32_t>, kPenChannels> told{};
+  std::array<std::int32_t, kPenChannels> gone{};  // of the thread that moves the pen
+
+  /// One count of each in a turn of the firmware: all at once would be seen as a speed.
+  void take(riffler_pen_sensors& sensors) {
+    for (std::size_t k = 0; k < kPenChannels; ++k) {
+      const std::int32_t wanted = told[k].load(std::memory_order_relaxed);
+      gone[k] += (wanted > gone[k]) - (wanted < gone[k]);
+      sensors.counters[k] -= gone[k];
+    }
+  }
+};
+
+std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
+                                                       const DriverSettings& driver, const Compensation& compensation) {
+  auto hand = std::make_shared<Hand>();
+  auto pen = std::make_shared<SimulatedPen>(settings);
+  hand->curve = hand_on_a_curve(pen->arms().posture().pose);
+  pen->hand().follow([hand](double seconds) { return hand->wish(seconds); });
+  auto losses = std::make_shared<Losses>();
+  pen->on_sense = [losses](riffler_pen_sensors& sensors) { losses->take(sensors); };
+  const auto clock = std::make_shared<StallTolerantClock>();
+  const double start = clock->now();
+  auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
+  auto model = std::make_shared<RifflerModel>(*transport, compensation);
+  // It begins in its home posture, and the hand rests there for longer than the first report takes.
+  model->home();
+  auto again = [pen, clock, start, model]() -> std::unique_ptr<Transport> {
+    auto next = std::make_unique<SimulatedTransport>(pen, clock, start);
+    model->check(*next);
+    return next;
+  };
+  return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(std::move(hand), std::move(losses), std::move(model),
+                                                              std::move(transport), std::move(again), driver, clock));
+}
+
+SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
+                                 std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
+                                 Driver::Open open, const DriverSettings& driver,
+                                 std::shared_ptr<StallTolerantClock> clock)
+    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver, clock),
+      hand_(std::move(hand)),
+      losses_(std::move(losses)),
+      clock_(std::move(clock)) {}
+
+void SimulatedDevice::aim(const HandWish& wish) {
+  HandWish checked = wish;
+  const double length = glm::length(wish.pose.axis);
+  if (!finite(wish.pose.tip)) throw std::invalid_argument("pose: the point must be finite");
+  if (!std::isfinite(length) || length == 0) throw std::invalid_argument("pose: the axis must be finite, not zero");
+  require(std::isfinite(wish.spin), "spin", "must be finite");
+  require_between(wish.grip, 0, 1, "grip");
+  checked.pose.axis /= length;
+  hand_->told.set({checked, false});
+}
+
+void SimulatedDevice::wander() noexcept {
+  hand_->told.set({{}, true});
+}
+
+void SimulatedDevice::lose(std::size_t channel, std::int32_t counts) {
+  if (channel >= kPenChannels) throw std::invalid_argument("channel must be 0 to 5, not " + std::to_string(channel));
+  losses_->told[channel].store(counts, std::memory_order_relaxed);
+}
+
+}  // namespace riffler

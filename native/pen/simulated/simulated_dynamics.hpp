@@ -1,0 +1,91 @@
+// How the pen's two arms and its grip move under their motors, their weight, their friction and a hand.
+//
+// Coordinates are the six joint angles, with one constraint: the arms' ends stay the grip's length apart. Kinetic
+// energy is that of each joint's inertia, taken as constant (rotors through the square of their gears, and links, whose
+// part that changes with the posture is the smaller), and of the grip, a rigid body of a mass and an inertia square to
+// its length. It turns about itself without mass: no motor and no energy is in that turn.
+//
+// A step is kick, drift, kick. The drift is RATTLE (Andersen, J. Comput. Phys. 52, 1983; Hairer, Lubich and Wanner,
+// "Geometric Numerical Integration", 2nd ed., VII.1.4) of angles and grip together: free motion, symplectic, of second
+// order, the grip's length exact. All forces act in the kicks: viscous ones by the implicit midpoint, dry friction as
+// the impulse that brings a joint to rest or has its full size, so that a pen at rest stays where it is.
+#pragma once
+
+#include <array>
+
+#include "pen/arms/kinematics.hpp"
+#include "pen/arms/motors.hpp"
+
+namespace riffler {
+
+/// The rotation vector that brings one unit vector to the other by the shortest way; none for opposite ones.
+Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept;
+
+using JointVector = std::array<double, 6>;  // θ1 θ2 θ3 of R, then of L
+
+/// What acts on the pen during a step. Wrench and damping are about the grip's pivot, in the frame of poses.
+struct PenLoad {
+  MotorTorques motors{};  ///< N·mm at the motors
+  bool brake = false;     ///< windings shorted
+  Wrench wrench{};
+  /// A spring that draws the grip to `aim`, and gives way beyond its strength: N/mm, N·mm/rad; N, N·mm.
+  Bounds stiffness{0, 0}, strength{0, 0};
+  Pose aim{};
+  Bounds damping{0, 0};  ///< N·s/mm, N·mm·s/rad: against motion other than `drift`
+  Twist drift{};
+  double mass = 0, inertia = 0;  ///< kg, kg·mm² square to the grip: of what holds it
+  double borne = 0;              ///< share of the pen's weight that somebody bears, 0 to 1
+};
+
+/// N·mm since the pen was placed. Kinetic + potential = motors + hand + borne − lost, but for the error of the method.
+struct PenEnergy {
+  double kinetic = 0, potential = 0;
+  double motors = 0;  ///< done by the motors
+  double hand = 0;    ///< done by wrench, spring and damping of the load
+  double borne = 0;   ///< by the load's bearing of weight
+  double lost = 0;    ///< to friction, brake and stops
+};
+
+class PenDynamics {
+ public:
+  /// At home, at rest. `geometry` is the pen as it is, its home the grip's length apart.
+  explicit PenDynamics(const PenGeometry& geometry);
+
+  /// At the pose, at rest; the accounts begin anew. False, and nothing changed, where the pen does not reach it.
+  bool place(const Pose& pose);
+  /// `seconds` further, at most 1 ms.
+  void step(const PenLoad& load, double seconds);
+
+  const PenKinematics& kinematics() const { return pen_; }
+  const PenPosture& posture() const { return posture_; }
+  const JointAngles& rates() const { return rates_; }  ///< rad/s
+  PenSpeed speed() const { return pen_.speed(posture_, rates_); }
+  PenEnergy energy() const;
+
+ private:
+  struct Reach;
+  struct Mobility;
+  Mobility mobility(const Reach& reach, const PenLoad* load, double time) const;
+  JointVector drag(const PenLoad& load) const;
+  JointVector stop_torques() const;
+  JointVector weight_torques() const;
+  Wrench hand(const PenLoad& load) const;
+  JointVector pushed(const Reach& reach, const Wrench& wrench) const;
+  double kinetic() const;
+  double potential() const;
+  void hold(const PenLoad& load);
+  void kick(const PenLoad& load, double time);
+  void drift(double time);
+
+  PenKinematics pen_;
+  JointVector inertia_{}, viscous_{}, coulomb_{}, brake_{};  // at the joints: N·mm·s², N·mm·s/rad, N·mm
+  JointVector low_{}, high_{};                               // rad
+  double grip_mass_, grip_inertia_;                          // N·s²/mm, N·mm·s²
+  PenPosture posture_{};
+  JointAngles rates_{};
+  double held_mass_ = 0, held_inertia_ = 0;  // as the grip's
+  JointVector rubbing_{};                    // dry friction of the last kick, N·mm: where the next search begins
+  PenEnergy account_{};
+};
+
+}  // namespace riffler

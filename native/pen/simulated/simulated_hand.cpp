@@ -1,0 +1,109 @@
+#include "pen/simulated/simulated_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/check.hpp"
+#include "geom/math.hpp"
+
+namespace riffler {
+
+namespace {
+
+/// A unit vector turned by a rotation vector square to it.
+Vec3 turned(const Vec3& axis, const Vec3& by) {
+  const double angle = glm::length(by);
+  if (angle == 0) return axis;
+  return glm::normalize(std::cos(angle) * axis + std::sin(angle) / angle * glm::cross(by, axis));
+}
+
+/// Two directions square to `axis`.
+std::pair<Vec3, Vec3> square_to(const Vec3& axis) {
+  const Vec3 other = std::abs(axis.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 first = glm::normalize(glm::cross(axis, glm::cross(other, axis)));
+  return {first, glm::cross(axis, first)};
+}
+
+}  // namespace
+
+void HandSettings::validate() const {
+  require_between(mass, 0, 100, "mass");
+  require_between(inertia, 0, 1e6, "inertia");
+  require_between(stiffness.linear, 0, 10, "stiffness.linear");
+  require_between(stiffness.angular, 0, 1e5, "stiffness.angular");
+  require_between(damping.linear, 0, 1, "damping.linear");
+  require_between(damping.angular, 0, 1e4, "damping.angular");
+  require_not_negative(strength, "strength");
+  require_positive(haste, "haste");
+  require_not_negative(tremor, "tremor");
+  require_not_negative(tremor_frequency, "tremor_frequency");
+  require_between(carries, 0, 1, "carries");
+}
+
+HandPath hand_on_a_curve(const Pose& home) {
+  return [home, sides = square_to(home.axis)](double seconds) {
+    constexpr double kRest = 1, kRound = 4, kWay = 20, kLean = 0.2;
+    HandWish wish{.pose = home};
+    if (seconds <= kRest) return wish;
+    const double turn = kTwoPi * (seconds - kRest) / kRound;
+    // From home, smoothly: each term begins at zero.
+    wish.pose.tip += kWay * (std::sin(turn) * sides.first + 0.5 * (1 - std::cos(turn)) * sides.second +
+                             0.3 * std::sin(2 * turn) * home.axis);
+    wish.pose.axis =
+        glm::normalize(home.axis + kLean * (std::sin(turn) * sides.second - 0.5 * (1 - std::cos(turn)) * sides.first));
+    wish.spin = 0.5 * std::sin(turn);
+    wish.buttons = std::fmod(seconds - kRest, 2 * kRound) < kRound ? 1U : 0U;
+    return wish;
+  };
+}
+
+HandPath hand_at(const Pose& pose, double grip) {
+  return [wish = HandWish{.pose = pose, .grip = grip}](double) { return wish; };
+}
+
+SimulatedHand::SimulatedHand(const HandSettings& settings, HandPath path, const Pose& start)
+    : settings_(settings), path_(std::move(path)), aim_(start) {
+  settings_.validate();
+  wish_.pose = start;
+}
+
+/// Three frequencies that have no common period, other phases along each axis.
+Vec3 SimulatedHand::tremor(double seconds) const {
+  Vec3 out(0);
+  for (int k = 0; k < 3; ++k) {
+    const double turns = settings_.tremor_frequency * seconds;
+    out[k] = std::sin(kTwoPi * (0.83 * turns + 0.31 * k)) + std::sin(kTwoPi * (turns + 0.17 * k)) +
+             std::sin(kTwoPi * (1.19 * turns + 0.53 * k));
+  }
+  return settings_.tremor / 3 * out;
+}
+
+/// The aim goes towards the wish at the hand's haste; its twist on the way.
+Twist SimulatedHand::aim(double dt) {
+  const Vec3 way = clamp_length(wish_.pose.tip - aim_.tip, settings_.haste.linear * dt);
+  const Vec3 turn = clamp_length(turn_between(aim_.axis, wish_.pose.axis), settings_.haste.angular * dt);
+  aim_.tip += way;
+  aim_.axis = turned(aim_.axis, turn);
+  return dt > 0 ? Twist{way / dt, turn / dt} : Twist{};
+}
+
+void SimulatedHand::hold(const PenDynamics& pen, double seconds, double dt, PenLoad& load) {
+  if (path_) wish_ = path_(seconds);
+  const double grip = std::clamp(wish_.grip, 0.0, 1.0);
+  if (!(grip > 0)) {
+    aim_ = pen.posture().pose;  // it takes hold where the grip is then
+    return;
+  }
+  const Twist drift = aim(dt);
+  load.aim = {aim_.tip + tremor(seconds), aim_.axis};
+  load.stiffness = {grip * settings_.stiffness.linear, grip * settings_.stiffness.angular};
+  load.strength = settings_.strength;
+  load.damping = {grip * settings_.damping.linear, grip * settings_.damping.angular};
+  load.drift = drift;
+  load.mass = grip * settings_.mass, load.inertia = grip * settings_.inertia;
+  load.borne = grip * settings_.carries;
+}
+
+}  // namespace riffler

@@ -1,0 +1,86 @@
+// A whole pen without hardware: the reference firmware on a board whose motors and encoders are those of simulated
+// arms, a hand that holds the grip, and a cable. Time passes only when it is told to; the same calls give the same
+// bytes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "device/firmware/pen_board.h"
+#include "pen/simulated/simulated_cable.hpp"
+#include "pen/simulated/simulated_hand.hpp"
+
+namespace riffler {
+
+struct SimulatedPenSettings {
+  PenGeometry geometry;         ///< the pen as it is; the firmware only knows its name
+  riffler_pen_config config{};  ///< of the firmware
+  HandSettings hand{};
+  CableSettings cable{};
+  std::int64_t turn_us = 250;  ///< between two turns of the firmware's loop, a divisor of a millisecond
+  int parts = 2;               ///< steps of the arms' motion in a turn
+
+  /// Of the shipped pen, with the reference firmware.
+  SimulatedPenSettings();
+  /// std::invalid_argument naming the field.
+  void validate() const;
+};
+
+class SimulatedPen {
+ public:
+  /// On power, plugged in, in its home posture. An empty path is a hand that holds it there.
+  explicit SimulatedPen(const SimulatedPenSettings& settings, HandPath path = nullptr);
+  SimulatedPen(const SimulatedPen&) = delete;
+  SimulatedPen& operator=(const SimulatedPen&) = delete;
+
+  std::int64_t time_us() const { return time_us_; }
+  /// All turns up to then; nothing where that is past.
+  void advance(std::int64_t until_us);
+  std::int64_t next_frame_us() const { return (time_us_ / kFrame + 1) * kFrame; }
+  static constexpr std::int64_t kFrame = 1000;
+
+  PenDynamics& arms() { return arms_; }
+  const PenDynamics& arms() const { return arms_; }
+  SimulatedHand& hand() { return hand_; }
+  SimulatedCable& cable() { return cable_; }
+  const riffler_pen_firmware& firmware() const { return loop_.pen; }
+  const riffler_pen_config& config() const { return settings_.config; }
+  /// What the motors have, which is not what they were told where the board switched them off.
+  const riffler_pen_drive& drive() const { return drive_; }
+  bool pushes() const;
+
+  // What goes wrong.
+  bool plugged() const { return plugged_; }
+  void unplug();
+  void plug();
+  /// Off and on again: firmware and counters begin anew, where the pen is.
+  void restart();
+  /// The processor stands still for so long. The board's own watchdog switches the motors off after 10 ms.
+  void halt(std::int64_t time_us) { halted_until_us_ = time_us_ + time_us; }
+  /// Called with what the sensors read in each turn, to falsify it.
+  std::function<void(riffler_pen_sensors&)> on_sense;
+  /// Called after each turn of the firmware.
+  std::function<void()> on_turn;
+  /// Pushes the grip besides hand and motors.
+  Wrench extra{};
+
+ private:
+  void power_on();
+  riffler_pen_board board();
+  void sense(riffler_pen_sensors& sensors) const;
+  void move();
+  void turn();
+
+  SimulatedPenSettings settings_;
+  PenDynamics arms_;
+  SimulatedHand hand_;
+  SimulatedCable cable_;
+  riffler_pen_loop loop_{};
+  riffler_pen_drive drive_{};
+  EncoderCounts at_start_{};  // counts where power came on
+  std::int32_t probe_at_start_ = 0;
+  std::int64_t time_us_ = 0, halted_until_us_ = 0, fed_us_ = 0;
+  bool plugged_ = true;
+};
+
+}  // namespace riffler

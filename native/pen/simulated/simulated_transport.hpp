@@ -1,0 +1,42 @@
+// The simulated pen as the driver sees it: a transport, and a clock whose time passes only by waiting.
+#pragma once
+
+#include <memory>
+
+#include "pen/hid/transport.hpp"
+#include "pen/simulated/simulated_pen.hpp"
+
+namespace riffler {
+
+/// Virtual time, in whole µs: as fast as the machine computes, and the same from run to run.
+class SimulatedClock final : public Clock {
+ public:
+  double now() noexcept override { return 1e-6 * static_cast<double>(time_us_); }
+  /// At least a microsecond.
+  void wait(double seconds) noexcept override;
+
+ private:
+  std::int64_t time_us_ = 0;
+};
+
+/// The pen is as old as the clock, from when the transport was made: it moves when somebody reads or writes. Pen and
+/// clock are shared by all transports of a pen, one after the other.
+class SimulatedTransport final : public Transport {
+ public:
+  /// `start`: when the pen's time was 0, of the clock.
+  SimulatedTransport(std::shared_ptr<SimulatedPen> pen, std::shared_ptr<Clock> clock, double start = 0);
+
+  int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;
+  bool write(std::span<const std::uint8_t> bytes) noexcept override;
+  int get_feature(std::span<std::uint8_t> bytes) noexcept override;
+  std::span<const std::uint8_t> descriptor() const noexcept override;
+
+ private:
+  void catch_up() noexcept;
+
+  std::shared_ptr<SimulatedPen> pen_;
+  std::shared_ptr<Clock> clock_;
+  double start_;
+};
+
+}  // namespace riffler

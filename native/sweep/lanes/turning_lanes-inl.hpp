@@ -1,0 +1,313 @@
+// What a turning part takes from the rays of a tile, many at a time. docs/methods.md, "Carving", has the proof.
+//
+// A convex body lies behind each of its supporting planes at every pose, for the plane moves with it. Hits at exact
+// poses say what the body surely takes; planes at the same poses say what it surely does not reach between them. Where
+// both agree up to the tolerance, a ray is done; where they do not, the time between two poses is halved for that ray.
+// For most rays one plane or one pose is enough. Those that need more are gathered, so that no lane waits for another.
+#if defined(RIFFLER_SWEEP_TURNING_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RIFFLER_SWEEP_TURNING_LANES_INL_HPP
+#undef RIFFLER_SWEEP_TURNING_LANES_INL_HPP
+#else
+#define RIFFLER_SWEEP_TURNING_LANES_INL_HPP
+#endif
+
+#include <algorithm>
+
+#include "base/block_pool.hpp"
+#include "sweep/lanes/certificate_lanes-inl.hpp"
+#include "sweep/lanes/cut_lanes-inl.hpp"
+#include "sweep/lanes/hit_lanes-inl.hpp"
+#include "sweep/lanes/lane_queue-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace riffler::HWY_NAMESPACE {
+
+/// A ray in each lane.
+struct Ray {
+  V place;  // index in the tile
+  V u, v;
+  V low, high;  // its material, from the origin
+  V direction;  // of time: 1, or −1 where it is looked at from the end
+};
+
+/// What was found to be taken, and when.
+struct Found {
+  RayIntervals at;
+  V t_near, t_far;
+};
+
+/// A ray that one pose has not settled.
+struct Open {
+  Ray ray;
+  Found found;
+  Sample first;  // at that pose
+};
+
+template <class F>
+HWY_INLINE void each(RayIntervals& s, const F& f) {
+  f(s.near), f(s.far);
+}
+template <class F>
+HWY_INLINE void each(Plane& p, const F& f) {
+  f(p.h0), f(p.h1), f(p.g0), f(p.g1), f(p.k0), f(p.k1);
+}
+template <class F>
+HWY_INLINE void each(Sample& s, const F& f) {
+  f(s.t), each(s.hit, f), each(s.below, f), each(s.above, f), f(s.depth);
+}
+template <class F>
+HWY_INLINE void each(Ray& r, const F& f) {
+  f(r.place), f(r.u), f(r.v), f(r.low), f(r.high), f(r.direction);
+}
+template <class F>
+HWY_INLINE void each(Open& o, const F& f) {
+  each(o.ray, f), each(o.found.at, f), f(o.found.t_near), f(o.found.t_far), each(o.first, f);
+}
+
+class TurningLanes {
+ public:
+  TurningLanes(const TurningBody& body, RayWindow& window) : b_(body), w_(window), certificate_(body, window) {}
+
+  void cut() {
+    const V index = hn::Iota(kD, 0);
+    for_groups(w_, [&](double u, const Group& g) {
+      const V origin = set(b_.origin);
+      Ray ray{hn::Add(set(g.ray), index),
+              set(u),
+              g.v,
+              hn::Sub(max(g.near, set(w_.low)), origin),
+              hn::Sub(min(g.far, set(w_.high)), origin),
+              set(1)};
+      look(ray, g.active);
+    });
+    while (reached_.count() > 0) settle();
+    refine();
+    take();
+  }
+
+ private:
+  /// Most rays are not reached at all, which needs no hit to tell: those behind the tool, where what the last move left
+  /// is where this one begins, and those beside it or below.
+  void look(Ray& ray, M active) {
+    const V3 axis{set(b_.start.axis[0]), set(b_.start.axis[1]), set(b_.start.axis[2])};
+    const V3 from_tip{hn::Sub(ray.u, set(b_.start.tip[0])), hn::Sub(ray.v, set(b_.start.tip[1])),
+                      set(-b_.start.tip[2])};
+    const Pose pose{axis, from_tip};
+    const Kept all{ray.high, ray.low, ray.direction};
+    const Plane p = certificate_.towards(pose, all);
+    const M open = without(active, certificate_.stays_away(p, all));
+    if (none(open)) return;
+    // A tool that comes is best looked at where it arrives.
+    ray.direction = pick(hn::Lt(hn::Add(p.g0, hn::Mul(p.g1, ray.high)), zero()), set(-1), set(1));
+    // What was added just now is still on its way to memory.
+    if (reached_.count() >= lanes()) settle();
+    reached_.add(open, ray);
+  }
+
+  /// Looks at the pose at one end of the part. Where the tool moves away from there, or comes to where it stays, that
+  /// tells all.
+  void settle() {
+    Ray ray{};
+    const M active = reached_.take(hn::FirstN(kD, lanes()), ray);
+    const V t = pick(hn::Lt(ray.direction, zero()), set(b_.t1), set(b_.t0));
+    const Pose pose = pose_at(b_, ray.u, ray.v, t);
+    Open open{ray, {nothing(), zero(), zero()}, {}};
+    Sample& s = open.first;
+    s.t = t, s.hit = hits(ray, pose, active), s.depth = zero();
+    merge(open.found, t, s.hit, active);
+    set_planes(s, pose, open, active);
+    const M rest = without(active, certain(open));
+    finish(open.ray, open.found, without(active, rest));
+    open_.add(rest, open);
+    if (open_.full()) refine();
+  }
+
+  /// Halves the time for the rays that are open, every one at its own pace.
+  void refine() {
+    Open now{};
+    Sample last{}, next{};  // others, for later, are on the stack
+    M busy = no_lane();
+    V split = zero();
+    for (;;) {
+      const M fresh = open_.take(hn::Not(busy), now);
+      busy = either(busy, fresh);
+      if (none(busy)) return;
+      const V end = pick(hn::Lt(now.ray.direction, zero()), set(b_.t0), set(b_.t1));
+      const V t = pick(fresh, end, hn::Add(last.t, hn::Mul(now.ray.direction, split)));
+      next.depth = hn::Add(next.depth, set(1));  // both halves are one deeper
+      pending_.push(without(busy, fresh), next);
+      const Pose pose = pose_at(b_, now.ray.u, now.ray.v, t);
+      next.t = t, next.hit = hits(now.ray, pose, busy), next.depth = pick(fresh, zero(), next.depth);
+      merge(now.found, t, next.hit, busy);
+      set_planes(next, pose, now, busy);
+      last = choose(fresh, now.first, last);
+      // On to the pose up to which there is nothing more to ask.
+      for (M good = advance(now, last, next, busy, split); !none(good); good = advance(now, last, next, good, split)) {
+        last = choose(good, next, last);
+        const M done = both(good, pending_.empty());
+        finish(now.ray, now.found, done), busy = without(busy, done), good = without(good, done);
+        if (none(good)) break;
+        pending_.pop(good, next);
+      }
+    }
+  }
+
+  /// Lanes for which nothing is open from the last sample to the next; `split`: for the others, the time after the last
+  /// at which to look.
+  M advance(Open& now, const Sample& last, const Sample& next, M mask, V& split) {
+    M apart = merge(now.found, next.t, next.hit, mask);
+    const V span = abs(hn::Sub(next.t, last.t)), half = hn::Mul(set(0.5), span);
+    const M deepest = both(mask, hn::Ge(next.depth, set(b_.deepest + kGuided)));
+    if (!none(apart)) {
+      // A new stretch: what was found before is complete if the body was off the ray in between.
+      const M done = both(apart, either(deepest, hn::Ge(last.hit.near, last.hit.far)));
+      if (!none(done)) restart(now, next, done), apart = without(apart, done);
+    }
+    V guess = half;
+    const M good = both(mask, either(deepest, without(certain(now, last, next, span, guess), apart)));
+    // First where the planes say that the end is; later in the middle, which surely comes to an end.
+    split = pick(without(mask, good), pick(hn::Ge(next.depth, set(kGuided)), half, guess), split);
+    return good;
+  }
+
+  RayIntervals hits(const Ray& ray, const Pose& pose, M active) {
+    w_.hits += hn::CountTrue(kD, active);
+    return HitLanes(b_, pose).find(active, ray.high);
+  }
+
+  void set_planes(Sample& s, const Pose& pose, const Open& o, M mask) const {
+    const M missed = both(mask, hn::Ge(s.hit.near, s.hit.far));
+    s.below = s.above = certificate_.between(pose, below(o), missed);
+    const M high = both(mask, has_above(o));
+    if (!none(high)) s.above = choose(high, certificate_.between(pose, above(o), missed), s.below);
+  }
+
+  /// Joins a hit to what was found, but for lanes in which they lie further apart than an end may miss; returns those.
+  /// (Where a tool that moves along the ray only grazes it, hits may be shorter than the steps between them.)
+  M merge(Found& found, V t, RayIntervals s, M mask) const {
+    const M hit = both(mask, hn::Lt(s.near, s.far)), fresh = hn::Gt(found.at.near, found.at.far);
+    const V gap = max(hn::Sub(s.near, found.at.far), hn::Sub(found.at.near, s.far));
+    const M overlap = hn::Le(gap, set(b_.along));
+    const M join = both(hit, either(fresh, overlap));
+    const M lower = both(join, hn::Lt(s.near, found.at.near)), higher = both(join, hn::Gt(s.far, found.at.far));
+    found.at.near = pick(lower, s.near, found.at.near), found.t_near = pick(lower, t, found.t_near);
+    found.at.far = pick(higher, s.far, found.at.far), found.t_far = pick(higher, t, found.t_far);
+    return without(hit, join);
+  }
+
+  /// The material below and above what was found, but for what an end may miss.
+  Kept below(const Open& o) const {
+    const V at = hn::Sub(o.found.at.near, set(b_.along));
+    return {max(min(at, o.ray.high), o.ray.low), o.ray.low, o.ray.direction};
+  }
+  Kept above(const Open& o) const {
+    const V at = hn::Add(o.found.at.far, set(b_.along));
+    return {min(max(at, o.ray.low), o.ray.high), o.ray.high, o.ray.direction};
+  }
+  static M has_below(const Open& o) { return hn::Gt(o.found.at.near, o.ray.low); }
+  static M has_above(const Open& o) {
+    return both(hn::Lt(o.found.at.near, o.found.at.far), hn::Lt(o.found.at.far, o.ray.high));
+  }
+
+  /// Lanes in which planes at the first pose alone keep the body from all material outside of what was found.
+  M certain(const Open& o) const {
+    const M good = either(hn::Not(has_below(o)), certificate_.stays_away(o.first.below, below(o))), more = has_above(o);
+    if (none(more)) return good;
+    return both(good, either(hn::Not(more), certificate_.stays_away(o.first.above, above(o))));
+  }
+
+  /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, for the `span`
+  /// of time from a to b. `split`: for the others, the time after a to look at next.
+  M certain(const Open& o, const Sample& a, const Sample& b, V span, V& split) const {
+    V until;
+    const M low_good = either(hn::Not(has_below(o)), certificate_.stays_away(a.below, b.below, below(o), span, until));
+    split = pick(low_good, split, until);
+    const M high = has_above(o);
+    if (none(high)) return low_good;
+    const M high_good = either(hn::Not(high), certificate_.stays_away(a.above, b.above, above(o), span, until));
+    split = pick(both(low_good, hn::Not(high_good)), until, split);
+    return both(low_good, high_good);
+  }
+
+  /// The rays of `mask` are done.
+  void finish(const Ray& ray, const Found& found, M mask) {
+    each_cut(ray, found, mask, [&](int place, const RayCut& cut) {
+      near_[place] = cut.near, far_[place] = cut.far, t_near_[place] = cut.near_t, t_far_[place] = cut.far_t;
+      taken_[place / kTileSide] |= 1U << (place % kTileSide);
+    });
+  }
+
+  /// What was found so far in the lanes of `mask` is complete; from here on, another stretch is.
+  void restart(Open& o, const Sample& s, M mask) {
+    each_cut(o.ray, o.found, mask,
+             [&](int place, const RayCut& cut) { earlier_.push_back({place, earlier_.size(), cut}); });
+    o.found.at = {pick(mask, s.hit.near, o.found.at.near), pick(mask, s.hit.far, o.found.at.far)};
+    o.found.t_near = pick(mask, s.t, o.found.t_near), o.found.t_far = pick(mask, s.t, o.found.t_far);
+  }
+
+  template <class F>
+  void each_cut(const Ray& ray, const Found& found, M mask, const F& f) const {
+    unsigned m = bits(both(mask, hn::Lt(found.at.near, found.at.far)));
+    if (!m) return;
+    double place[kLanes], near[kLanes], far[kLanes], t_near[kLanes], t_far[kLanes];
+    hn::StoreU(ray.place, kD, place);
+    hn::StoreU(hn::Add(found.at.near, set(b_.origin)), kD, near), hn::StoreU(found.t_near, kD, t_near);
+    hn::StoreU(hn::Add(found.at.far, set(b_.origin)), kD, far), hn::StoreU(found.t_far, kD, t_far);
+    for (; m; m &= m - 1) {
+      const int k = std::countr_zero(m);
+      f(static_cast<int>(place[k]), RayCut{near[k], far[k], t_near[k], t_far[k]});
+    }
+  }
+
+  /// Takes from the rays what was found, in their order, so that sums do not depend on who was done first.
+  void take() {
+    // Not std::stable_sort, which asks the system for memory.
+    std::sort(earlier_.begin(), earlier_.end(),
+              [](const Cut& a, const Cut& b) { return a.ray != b.ray ? a.ray < b.ray : a.number < b.number; });
+    for (const Cut& c : earlier_) {
+      const bool thick = c.cut.far - c.cut.near > w_.thinnest;
+      if (!thick || c.cut.near >= w_.rays[c.ray].far || c.cut.far <= w_.rays[c.ray].near) continue;
+      ++w_.changed, w_.cut(w_.self, c.ray, c.cut);
+    }
+    for (int a = w_.first_row; a <= w_.last_row; ++a)
+      for (int b = w_.first[a]; b < w_.end[a]; b += lanes()) {
+        const unsigned taken = (taken_[a] >> b) & ((1U << lanes()) - 1);
+        if (!taken) continue;
+        const int ray = a * kTileSide + b;
+        const M mask = from_bits(taken);
+        Group g{ray, (b - w_.first[a]) % kLanes, hn::LoadU(kD, w_.v + b), zero(), zero(), mask};
+        load_material(w_, g);
+        // The other lanes' places were never written, and no number times zero need be zero.
+        const auto load = [&](const double* from) { return hn::IfThenElseZero(mask, hn::LoadU(kD, from + ray)); };
+        subtract(w_, w_.u[a], g, mask, {load(near_), load(far_)}, load(t_near_), load(t_far_));
+      }
+  }
+
+  static constexpr int kGuided = 8;
+  static constexpr int kMaxPending = 50;  // kGuided and the most halvings (turning_part.cpp), and one
+  const TurningBody& b_;
+  RayWindow& w_;
+  Certificate certificate_;
+  LaneQueue<Ray, 2 * kLanes> reached_;
+  LaneQueue<Open, 16 * kLanes> open_;
+  LaneStack<Sample, kMaxPending> pending_;
+  // Of the tile's rays: which lose something, and what.
+  std::uint32_t taken_[kTileSide] = {};
+  double near_[kTileRays + kLanes], far_[kTileRays + kLanes], t_near_[kTileRays + kLanes], t_far_[kTileRays + kLanes];
+  struct Cut {
+    int ray;
+    std::size_t number;
+    RayCut cut;
+  };
+  BlockVector<Cut> earlier_;  // of rays that are met more than once
+};
+
+inline void cut_turning_lanes(const TurningBody& body, RayWindow& window) {
+  TurningLanes lanes(body, window);
+  lanes.cut();
+}
+
+}  // namespace riffler::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

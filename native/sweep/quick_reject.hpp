@@ -1,0 +1,37 @@
+// What surely is out of a step's reach, told by a few multiplications a ray.
+//
+// A tool mostly moves away from what its last step left, and half of the rays under it lose nothing. If the highest
+// point of a ray's material lies outside of a body with a supporting plane that faces downwards between them, then so
+// does all of the ray's material.
+#pragma once
+
+#include "geom/pose.hpp"
+#include "sweep/footprint.hpp"
+#include "sweep/straight_part.hpp"
+#include "sweep/turning_part.hpp"
+
+namespace riffler {
+
+struct QuickReject {
+  enum class Kind : unsigned char { None, Ball, BallAndFlank, Planes } kind = Kind::None;
+  /// A ball on a straight way.
+  double from[3], way[3];  ///< of its centre
+  double per_square;       ///< 1 / |way|², or 0
+  double square;           ///< of the radius, with a margin for rounding
+  /// What is above it on the tool: nothing of that is further out than the ball in directions whose sine against the
+  /// axis is at most −lean.
+  double axis[3], lean;
+  /// The tool's lower end at both poses, with normals into the tool. A point is below it all the time if its heights
+  /// over both planes are less than −slack − per_depth × its distance from their feet along the rays.
+  double foot[2][3], normal[2][3];
+  double slack, per_depth;
+
+  QuickReject() = default;
+  explicit QuickReject(const StraightBody& body);
+  QuickReject(const ConvexGroup& group, const Motion& motion, double t0, double t1, const Footprint& footprint);
+
+ private:
+  void set_plane(int k, const Vec3& at, const Vec3& up);
+};
+
+}  // namespace riffler

@@ -1,0 +1,105 @@
+// The whole stack on a virtual clock: firmware, cable, codec, model, driver's loop, gate, step.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "haptics/safety.hpp"
+#include "pen/driver_loop.hpp"
+#include "pen/models/riffler_model.hpp"
+#include "pen/simulated/simulated_transport.hpp"
+
+namespace riffler::test {
+
+/// A law of force behind the gate of all forces, as a session has it.
+class GatedStep final : public PenStep {
+ public:
+  using Law = std::function<Wrench(const PenSample&, double now, double dt)>;
+
+  explicit GatedStep(const SafetySettings& settings = {}) : safety(settings) { safety.switch_on(); }
+  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override {
+    ++steps, last = sample;
+    safety.observe({.dt = dt,
+                    .age = now - sample.time,
+                    .pose = sample.pose,
+                    .twist = {sample.velocity, sample.turning},
+                    .redundancy = sample.stretch,
+                    .homed = sample.homed,
+                    .dead_man = holds,
+                    .device_fault = sample.fault,
+                    .device_late = sample.late});
+    const SafeWrench safe = safety.release(law(sample, now, dt));
+    // A tick that finds a fault pushes with nothing.
+    if (safety.state() == ForceState::Tripped && !(safe.wrench() == Wrench{})) ++pushed_while_tripped;
+    after(safe.wrench());
+    return safe;
+  }
+
+  Law law = [](const PenSample&, double, double) { return Wrench{}; };
+  std::function<void(const Wrench&)> after = [](const Wrench&) {};
+  Safety safety;
+  bool holds = true;  // the dead-man switch
+  PenSample last{};
+  int steps = 0, pushed_while_tripped = 0;
+};
+
+class SimulatedConnector final : public Connector {
+ public:
+  SimulatedConnector(std::shared_ptr<SimulatedPen> pen, std::shared_ptr<SimulatedClock> clock, HidModel& model)
+      : pen_(std::move(pen)), clock_(std::move(clock)), model_(model) {}
+  void begin() noexcept override {}
+  Answer poll(std::unique_ptr<Transport>& transport, OpenProblem& problem) noexcept override {
+    auto found = std::make_unique<SimulatedTransport>(pen_, clock_);
+    try {
+      model_.check(*found);
+    } catch (const OpenError& error) {
+      problem = error.problem();
+      return Answer::Failed;
+    }
+    transport = std::move(found);
+    return Answer::Opened;
+  }
+
+ private:
+  std::shared_ptr<SimulatedPen> pen_;
+  std::shared_ptr<SimulatedClock> clock_;
+  HidModel& model_;
+};
+
+/// Homed, the gate open, nothing pushed with yet.
+struct SimulatedBench {
+  explicit SimulatedBench(const SimulatedPenSettings& settings = {}, HandPath path = nullptr,
+                          const SafetySettings& safety = {}, const Compensation& compensation = {})
+      : pen(std::make_shared<SimulatedPen>(settings, std::move(path))), step(safety), model(*transport, compensation) {
+    home = pen->arms().posture().pose;
+    model.home();
+  }
+
+  void tick() {
+    loop.tick();
+    catch_up();
+  }
+  void run(double seconds) {
+    const double end = clock->now() + seconds;
+    while (clock->now() < end) tick();
+  }
+  /// The host is dead.
+  void run_alone(double seconds) {
+    clock->wait(seconds);
+    catch_up();
+  }
+  void catch_up() { pen->advance(std::llround(1e6 * clock->now())); }
+  double now() const { return clock->now(); }
+
+  std::shared_ptr<SimulatedPen> pen;
+  std::shared_ptr<SimulatedClock> clock = std::make_shared<SimulatedClock>();
+  GatedStep step;
+  std::unique_ptr<Transport> transport = std::make_unique<SimulatedTransport>(pen, clock);
+  RifflerModel model;
+  SimulatedConnector connector{pen, clock, model};
+  DriverLoop loop{model, step, connector, *clock, std::move(transport)};
+  Pose home{};
+};
+
+}  // namespace riffler::test

@@ -1,0 +1,63 @@
+"""Which types the C++ sources define at the scope of a namespace, and where. Reads text, not a compiler's tree: the
+sources are formatted by clang-format, and no macro of theirs opens a scope, but for Highway's HWY_NAMESPACE."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+# What is no code: literals, comments, lines of the preprocessor.
+NO_CODE = re.compile(
+    r'R"(?P<tag>[^()\s\\]{0,16})\(.*?\)(?P=tag)"'
+    r'|"(?:[^"\\\n]|\\.)*"'
+    r"|(?<![0-9a-fA-F])'(?:[^'\\\n]|\\.)+'"
+    r"|//[^\n]*|/\*.*?\*/"
+    r"|^[ \t]*#(?:[^\n\\]|\\.)*",
+    re.S | re.M,
+)
+TEMPLATE = re.compile(r"\s*template\s*<(?:[^<>]|<[^<>]*>)*>")
+NAMESPACE = re.compile(r"\s*(?:inline\s+)?namespace(?:\s+([\w:]+))?\s*$")
+TYPE = re.compile(
+    r"\s*(?:class|struct|union|enum(?:\s+class|\s+struct)?)\s+(?:alignas\([^)]*\)\s+)?"
+    r"([\w:]+)\s*(?:final\b\s*)?(?::.*)?$",
+    re.S,
+)
+ALIAS = re.compile(r"\s*using\s+(\w+)\s*=")
+
+
+def defined(text: str) -> Iterator[tuple[str, str]]:
+    """Namespace and name of each type and alias that `text` defines outside of unnamed namespaces, classes and
+    functions. Specialisations of templates are no new types."""
+    code = NO_CODE.sub(" ", text)
+    scopes: list[str | None] = []  # of each open brace the namespace; None where it is no namespace
+    start = 0
+    for at, char in enumerate(code):
+        if char not in "{};":
+            continue
+        head = code[start:at]
+        start = at + 1
+        space = None if None in scopes or "" in scopes else "::".join(s for s in scopes if s)
+        head_of_type = TEMPLATE.sub("", head)
+        if char == "}":
+            if scopes:
+                scopes.pop()
+        elif char == ";":
+            if space is not None and (match := ALIAS.match(head_of_type)):
+                yield space, match[1]
+        elif match := NAMESPACE.match(head):
+            scopes.append(match[1] or "")
+        else:
+            match = TYPE.match(head_of_type)
+            scopes.append(None)
+            if space is not None and match and "::" not in match[1]:
+                yield space, match[1]
+
+
+def definitions(folder: Path) -> dict[str, list[str]]:
+    """Files of `folder`, relative to it, by the qualified name of each type that they define."""
+    found: dict[str, list[str]] = {}
+    for path in sorted(folder.rglob("*.?pp")):
+        for space, name in defined(path.read_text()):
+            found.setdefault(f"{space}::{name}", []).append(str(path.relative_to(folder)))
+    return found

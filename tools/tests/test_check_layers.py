@@ -1,0 +1,101 @@
+"""What tools/check_layers.py refuses, each in a small tree of its own."""
+
+import pytest
+
+import check_layers
+import cpp_types
+from shell import ROOT
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """write(path, text) puts a file under native/ of a tree with the topics base and nc."""
+    (tmp_path / "CMakeLists.txt").write_text("set(RIFFLER_TOPICS base nc)\n")
+
+    def write(path: str, text: str) -> None:
+        file = tmp_path / "native" / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+
+    write.root = tmp_path
+    return write
+
+
+def test_a_topic_below_is_refused(tree):
+    tree("base/io.hpp", '#include "nc/program.hpp"\n')
+    tree("nc/program.hpp", '#include "base/io.hpp"\n')
+    assert check_layers.core_problems(tree.root) == [
+        "native/base/io.hpp:1: base includes nc/program.hpp, which is not above it"
+    ]
+
+
+def test_reading_and_writing_meet_in_machine_only(tree):
+    tree("nc/read/reader.cpp", '#include "nc/machine/machine.hpp"\n#include "nc/write/post.hpp"\n')
+    tree("nc/program.hpp", '#include "nc/read/reader.hpp"\n')
+    assert check_layers.folder_problems(tree.root) == [
+        "native/nc/program.hpp:1: nc includes nc/read/reader.hpp; of its topic's other folders it may use none",
+        "native/nc/read/reader.cpp:2: nc/read includes nc/write/post.hpp; of its topic's other folders it may use nc, "
+        "nc/machine",
+    ]
+
+
+def test_circles_of_files_are_refused_through_sources_too(tree):
+    tree("nc/a.hpp", '#include "nc/b.hpp"\n')
+    tree("nc/b.hpp", "")
+    tree("nc/b.cpp", '#include "nc/b.hpp"\n#include "nc/c.hpp"\n')
+    tree("nc/c.hpp", '#include "base/io.hpp"\n')
+    tree("base/io.hpp", "")
+    assert check_layers.circle_problems(tree.root) == []
+    tree("nc/c.hpp", '#include "nc/a.hpp"\n')
+    assert check_layers.circle_problems(tree.root) == ["a circle of files: nc/a → nc/b → nc/c → nc/a"]
+
+
+def test_a_source_in_a_folder_includes_its_own_header_first(tree):
+    tree("nc/read/reader.hpp", "")
+    tree("nc/read/reader.cpp", '#include <string>\n#include "nc/read/reader.hpp"\n')
+    assert check_layers.header_problems(tree.root) == [
+        "native/nc/read/reader.cpp: includes string before nc/read/reader.hpp"
+    ]
+
+
+def test_a_type_of_two_files_is_refused_and_hidden_ones_are_not(tree):
+    hidden = "namespace riffler {\nnamespace {\nstruct Box { int a; };\n}\nclass Reader { struct Box {}; };\n}\n"
+    tree("base/a.hpp", "namespace riffler {\nstruct Box { int a; };\nclass Later;\n}\n")
+    tree("base/b.cpp", hidden)
+    assert check_layers.type_problems(tree.root) == []
+    tree("nc/c.hpp", "namespace riffler {\nenum class Box : unsigned char { Open };\n}\n")
+    assert check_layers.type_problems(tree.root) == ["riffler::Box is defined twice: base/a.hpp, nc/c.hpp"]
+    tree("nc/c.hpp", "namespace riffler::nc {\nenum class Box : unsigned char { Open };\n}\n")
+    assert check_layers.type_problems(tree.root) == []
+
+
+def test_types_are_found_behind_templates_literals_and_comments():
+    text = """
+    // struct Comment {};
+    namespace riffler {
+    const char* text = "struct Literal {";
+    constexpr auto raw = R"({ struct Raw {)";
+    constexpr char brace = '{';
+    constexpr int digits = 1'000'000;
+    template <class T, class U = std::vector<T>>
+    class Ring final : public Base<T> { enum Inner { A }; };
+    template <>
+    struct Ring<int, int> {};
+    template <class T>
+    using Pair = std::pair<T, T>;
+    struct Outer { struct Nested; };
+    struct Outer::Nested { int a; };
+    struct Made make(struct Argument* a) { struct Local {}; return {}; }
+    }  // namespace riffler
+    namespace riffler::nc { union Value { int a; float b; }; }
+    """
+    names = ["riffler::Ring", "riffler::Pair", "riffler::Outer", "riffler::nc::Value"]
+    assert ["::".join(found) for found in cpp_types.defined(text)] == names
+
+
+def test_the_core_has_types_and_each_once():
+    found = cpp_types.definitions(ROOT / "native")
+    assert len(found) > 500
+    assert found["riffler::Program"] == ["nc/program.hpp"]
+    assert check_layers.type_problems(ROOT) == []
+    assert check_layers.circle_problems(ROOT) == []
