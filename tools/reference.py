@@ -13,7 +13,7 @@ from shell import StepError
 # Page: title, and what is on it. Every public name of riffler stands on exactly one, which `write` checks.
 PAGES = {
     "volumes": ("Volumes", ["Volume", "Cut", "Softened", "Snapshot"]),
-    "tools": ("Tools", ["Tool"]),
+    "tools": ("Tools", ["Tool", "ToolShape", "ToolSize"]),
     "meshes": ("Meshes", ["Mesh", "Mesher", "FrozenSurface", "riffler.shape"]),
     "contact": ("Contact", ["Collider", "Contact"]),
     "planning": ("Planning", ["plan"]),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from . import units
+from . import presets, units
 
 FEW_RAYS = 50  # along the longest side: fewer show no detail
 BEGIN_RAYS = 200  # along the longest side of a new sculpt: fine enough to carve, and quick to show
@@ -13,7 +13,7 @@ WANTED = 100.0  # mm: about what the longest side of any other object becomes
 CUTTERS = 10  # diameters of the cutter along the longest side: a chip that is seen
 SUITS = (1 / 12, 1 / 4)  # of the longest side: a cutter whose diameter lies between is left as it is
 DEPTH = 1 / 6  # of the diameter
-LENGTHS = ("diameter", "length", "corner_radius", "tip_radius", "tip_height")
+LENGTHS = tuple(name for name, size in presets.ALL.items() if size.unit == "mm")
 
 
 def rounded(value: float, steps=(1, 2, 2.5, 5, 10)) -> float:

@@ -1,4 +1,4 @@
-"""Tools as dictionaries (the form of riffler.Tool.to_dict): the presets, and which sizes a kind has."""
+"""Tools as dictionaries (the form of riffler.Tool.to_dict): the presets, and the sizes of each shape."""
 
 from __future__ import annotations
 
@@ -6,21 +6,18 @@ import json
 from functools import cache
 from pathlib import Path
 
-# The sizes of each kind, in the order in which a panel shows them. Lengths in mm, angles in rad.
+import riffler
+
+SHAPES = {shape.name: shape for shape in riffler.Tool.shapes()}
+# Every size by its name. It means the same in all shapes that have it. Lengths in mm, angles in rad.
+ALL = {size.name: size for shape in SHAPES.values() for size in shape.sizes}
+FLAGS = tuple(name for name, size in ALL.items() if size.unit == "bool")
+# The sizes of each shape, in the order in which a panel shows them.
 SIZES = {
-    "ball": ("diameter", "length"),
-    "flat": ("diameter", "length"),
-    "fillet": ("diameter", "corner_radius", "length"),
-    "taper": ("diameter", "tip_radius", "half_angle", "length", "flat_tip"),
-    "cone_end": ("diameter", "tip_half_angle", "tip_height", "half_angle", "length"),
+    name: ("diameter", *(size.name for size in shape.sizes if size.name != "diameter"))
+    for name, shape in SHAPES.items()
 }
-LABELS = {
-    "ball": ("Ball", "Ball end mill"),
-    "flat": ("Flat", "Flat end mill"),
-    "fillet": ("Fillet", "Bull nose: a flat end mill whose edge is rounded"),
-    "taper": ("Taper", "Cone above a ball tip or a flat one, then a cylinder"),
-    "cone_end": ("Cone", "Sharp tip, a first cone, a second cone, then a cylinder"),
-}
+LABELS = {name: (shape.label, shape.description) for name, shape in SHAPES.items()}
 
 
 @cache

@@ -10,8 +10,6 @@ import riffler
 
 from . import presets, units
 
-FIRST = {"half_angle": math.radians(5), "tip_half_angle": math.radians(30), "flat_tip": False}
-
 
 @lru_cache(maxsize=8)
 def parsed(text: str) -> dict:
@@ -23,11 +21,13 @@ def changed(tool: dict, key: str, value) -> dict:
     """The dictionary with another `kind` or size. Shank and holder go with the cutter's length, and a rounded edge is
     no wider than the cutter. ValueError, from riffler, where there is no such tool."""
     kind = value if key == "kind" else tool["kind"]
-    sizes = {**_first(tool), **{k: v for k, v in tool.items() if k in _all()}}
+    sizes = {**_first(tool), **{k: v for k, v in tool.items() if k in presets.ALL}}
     if key != "kind":
         sizes[key] = value
     half = sizes["diameter"] / 2
-    sizes["corner_radius"] = min(sizes["corner_radius"], half)
+    for name, size in presets.ALL.items():
+        if size.largest is not None:
+            sizes[name] = min(sizes[name], size.largest * sizes["diameter"])
     if kind != tool["kind"] or key in ("diameter", "length"):
         sizes["tip_radius"] = min(sizes["tip_radius"], 0.9 * half)
         widest = 0.9 * half / math.tan(sizes["tip_half_angle"])  # where the first cone would be as wide as that
@@ -53,15 +53,15 @@ def _least_angle(kind: str, sizes: dict) -> float:
     return 0.0
 
 
-def _all() -> set:
-    return {key for keys in presets.SIZES.values() for key in keys}
-
-
 def _first(tool: dict) -> dict:
+    """First values of all sizes for a cutter of this diameter."""
     diameter = tool.get("diameter", 6.0)
-    lengths = {"corner_radius": diameter / 6, "tip_radius": diameter / 12, "tip_height": diameter / 6}
-    lengths = {key: units.clean(value) for key, value in lengths.items()}
-    return {"diameter": diameter, "length": 5 * diameter, **FIRST, **lengths}
+    share = diameter / presets.ALL["diameter"].default
+    first = {
+        name: units.clean(share * size.default) if size.unit == "mm" else size.default
+        for name, size in presets.ALL.items()
+    }
+    return {**first, "diameter": diameter}
 
 
 def _name(kind: str, diameter: float) -> str:

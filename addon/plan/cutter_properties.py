@@ -3,8 +3,8 @@
 import bpy
 from bpy.props import EnumProperty
 
-from ..common import tool_sizes, units
-from ..sculpt.tool_properties import KINDS, RifflerTool
+from ..common import presets, tool_sizes, units
+from ..sculpt.tool_properties import FIELDS, KINDS
 
 
 def _cutter(group):
@@ -32,7 +32,7 @@ def _kind(group):
 
 def _size(key, field):
     """The field of RifflerTool, but of the plan's tool."""
-    first, is_flag = field.keywords["default"], isinstance(field.keywords["default"], bool)
+    first, is_flag = field.keywords["default"], key in presets.FLAGS
 
     def get(group):
         return (_cutter(group) or {}).get(key, first)
@@ -54,5 +54,5 @@ class RifflerCutter(bpy.types.PropertyGroup):
             set=lambda group, number: _change(group, "kind", KINDS[number][0]),
             description="Of the end of the cutter",
         ),
-        **{k: _size(k, field) for k, field in RifflerTool.__annotations__.items() if k not in ("preset", "kind")},
+        **{k: _size(k, field) for k, field in FIELDS.items()},
     }

@@ -131,6 +131,14 @@ def of_machines():
             yield from ((where, text) for text in (machine_fields.label(fact), machine_fields.about(fact)))
 
 
+def of_shapes():
+    """(where, text) of the cutters' names and of the fields that are made from the core's table of shapes."""
+    for shape in riffler.Tool.shapes():
+        for of in (shape, *shape.sizes):
+            where = f"riffler.Tool.shapes(), {shape.name}, {of.name}"
+            yield from ((where, text) for text in (of.label, of.description))
+
+
 def shown(tree):
     """(line, text) of all that a source shows."""
     names = variables(tree)
@@ -152,7 +160,7 @@ def shown(tree):
 def found():
     """{text: where it is}"""
     said = {text: f"riffler.machines()[{name!r}]" for name, text in riffler.machines().items()}
-    for where, text in of_machines():
+    for where, text in (*of_machines(), *of_shapes()):
         said.setdefault(text, where)
     for path, tree in sources():
         for line, text in shown(tree):

@@ -1,4 +1,9 @@
-// riffler.Tool
+// riffler.Tool, and riffler.ToolShape and ToolSize: the table of cutters.
+#include <array>
+#include <cctype>
+#include <utility>
+#include <variant>
+
 #include "bindings/bindings.hpp"
 #include "tool/cutters.hpp"
 #include "tool/outline.hpp"
@@ -62,11 +67,18 @@ py::dict to_dict(const Tool& tool) {
   d["name"] = tool.name();
   d["kind"] = tool.kind();
   for (const auto& [key, value] : tool.parameters())
-    d[py::str(key)] = key == "flat_tip" ? py::object(py::bool_(value != 0)) : py::object(py::float_(value));
+    d[py::str(key)] = is_flag(tool, key) ? py::object(py::bool_(value != 0)) : py::object(py::float_(value));
   if (tool.kind() == "profile") d["segments"] = from_segments(tool.profile());
   if (!tool.shank().empty()) d["shank"] = from_frusta(tool.shank());
   if (!tool.holder().empty()) d["holder"] = from_frusta(tool.holder());
   return d;
+}
+
+/// "ball, flat, … or profile"
+std::string kinds() {
+  std::string out;
+  for (const CutterShape& shape : cutter_shapes()) out += (out.empty() ? "" : ", ") + std::string(shape.name);
+  return out + " or profile";
 }
 
 Tool from_dict(const py::dict& d) {
@@ -76,17 +88,15 @@ Tool from_dict(const py::dict& d) {
   };
   const auto get = [&](const char* key) { return number(object(key), std::string("tool: ") + key); };
   const auto cutter = [&](const std::string& kind) -> Tool {
-    if (kind == "ball") return cutters::ball(get("diameter"), get("length"));
-    if (kind == "flat") return cutters::flat(get("diameter"), get("length"));
-    if (kind == "fillet") return cutters::fillet(get("diameter"), get("corner_radius"), get("length"));
-    if (kind == "taper")
-      return cutters::taper(get("tip_radius"), get("half_angle"), get("diameter"), get("length"),
-                            d.contains("flat_tip") && py::cast<bool>(d["flat_tip"]));
-    if (kind == "cone_end")
-      return cutters::cone_end(get("tip_half_angle"), get("tip_height"), get("half_angle"), get("diameter"),
-                               get("length"));
     if (kind == "profile") return cutters::profile(to_segments(object("segments")), get("length"));
-    throw py::value_error("tool: kind must be ball, flat, fillet, taper, cone_end or profile, not \"" + kind + "\"");
+    const CutterShape* shape = find_cutter_shape(kind);
+    if (!shape) throw py::value_error("tool: kind must be " + kinds() + ", not \"" + kind + "\"");
+    std::vector<double> sizes;
+    for (const CutterSize& size : shape->sizes)
+      sizes.push_back(size.unit != SizeUnit::Flag ? get(size.name)
+                      : d.contains(size.name)     ? py::cast<bool>(d[size.name])
+                                                  : 0.0);
+    return make_cutter(*shape, sizes);
   };
   const py::object kind = object("kind");
   if (!py::isinstance<py::str>(kind)) throw py::value_error("tool: kind must be a string");
@@ -119,23 +129,92 @@ py::list outline(const Tool& tool, double tolerance) {
   return out;
 }
 
+const char* unit_of(const CutterSize& size) {
+  constexpr const char* kUnits[] = {"mm", "rad", "bool"};
+  return kUnits[static_cast<int>(size.unit)];
+}
+
+std::variant<bool, double> initial(const CutterSize& size) {
+  if (size.unit == SizeUnit::Flag) return size.initial != 0;
+  return size.initial;
+}
+
+std::string docstring(const CutterShape& shape) {
+  std::string out = std::string(shape.description) + ".\n";
+  for (const CutterSize& size : shape.sizes) {
+    std::string text = size.description;
+    text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+    out += std::string("\n- ``") + size.name + "``: " + text + (size.unit == SizeUnit::Angle ? ", in rad" : "");
+  }
+  return out;
+}
+
+template <class T, std::size_t>
+using Each = T;
+
+/// Tool.<shape>(sizes): numbers, then flags, which are false by default.
+template <std::size_t... number, std::size_t... flag>
+void bind_shape(py::class_<Tool>& tool, const CutterShape& shape, std::index_sequence<number...>,
+                std::index_sequence<flag...>) {
+  tool.def_static(
+      shape.name,
+      [&shape](Each<double, number>... numbers, Each<bool, flag>... flags) {
+        return make_cutter(shape, std::array{numbers..., static_cast<double>(flags)...});
+      },
+      py::arg(shape.sizes[number].name)..., (py::arg(shape.sizes[sizeof...(number) + flag].name) = false)...,
+      docstring(shape).c_str());
+}
+
+/// Tool.<shape>, which has `count` numbers or more.
+template <std::size_t count = 2>
+void bind_any_shape(py::class_<Tool>& tool, const CutterShape& shape) {
+  constexpr std::size_t kMaxNumbers = 8;
+  std::size_t numbers = 0;
+  while (numbers < shape.sizes.size() && shape.sizes[numbers].unit != SizeUnit::Flag) ++numbers;
+  const std::size_t flags = shape.sizes.size() - numbers;
+  if constexpr (count <= kMaxNumbers) {
+    if (numbers != count) return bind_any_shape<count + 1>(tool, shape);
+    if (flags == 0) return bind_shape(tool, shape, std::make_index_sequence<count>(), std::index_sequence<>());
+    if (flags == 1) return bind_shape(tool, shape, std::make_index_sequence<count>(), std::index_sequence<0>());
+  }
+  throw std::logic_error(std::string(shape.name) + ": a shape has 2 to 8 numbers, then one flag at most");
+}
+
+void bind_shapes(py::module_& m) {
+  py::class_<CutterSize>(m, "ToolSize", "One size of a cutter shape. It means the same in every shape that has it.")
+      .def_readonly("name", &CutterSize::name, "The argument's name, and the key in a tool's dict.")
+      .def_property_readonly("unit", &unit_of, "\"mm\", \"rad\" or \"bool\".")
+      .def_readonly("label", &CutterSize::label, "Short name for a form.")
+      .def_readonly("description", &CutterSize::description, "One phrase for a form's tooltip.")
+      .def_readonly("low", &CutterSize::low, "Smallest value that a form should offer.")
+      .def_readonly("high", &CutterSize::high, "Largest value that a form should offer.")
+      .def_property_readonly("default", &initial, "First value of a form; suits a cutter of 6 mm.")
+      .def_property_readonly(
+          "largest", [](const CutterSize& s) { return s.largest > 0 ? std::optional(s.largest) : std::nullopt; },
+          "Largest multiple of the diameter that a form should offer, or None.")
+      .def("__repr__", [](const CutterSize& s) { return "<riffler.ToolSize " + std::string(s.name) + ">"; });
+  py::class_<CutterShape>(m, "ToolShape", "A named cutter shape, one row of Tool.shapes().")
+      .def_readonly("name", &CutterShape::name, "The kind of its tools, and the function of Tool that makes them.")
+      .def_readonly("label", &CutterShape::label, "Short name for a form.")
+      .def_readonly("description", &CutterShape::description, "One phrase for a form's tooltip.")
+      .def_property_readonly(
+          "sizes", [](const CutterShape& s) { return std::vector<CutterSize>(s.sizes.begin(), s.sizes.end()); },
+          "In the order of the function's arguments; one is \"diameter\", one \"length\".")
+      .def("__repr__", [](const CutterShape& s) { return "<riffler.ToolShape " + std::string(s.name) + ">"; });
+}
+
 }  // namespace
 
 void bind_tool(py::module_& m) {
-  py::class_<Tool>(m, "Tool", R"(A cutter with the shank and holder above it; immutable.
+  bind_shapes(m);
+  py::class_<Tool> tool(m, "Tool", R"(A cutter with the shank and holder above it; immutable.
 
 Heights are measured from the tip towards the spindle, lengths in mm, angles in rad. ``length`` includes the
-rounded or conical end. Sizes that are not positive or do not fit raise ValueError naming the size.)")
-      .def_static("ball", &cutters::ball, py::arg("diameter"), py::arg("length"), "Ball end mill.")
-      .def_static("flat", &cutters::flat, py::arg("diameter"), py::arg("length"), "Flat end mill.")
-      .def_static("fillet", &cutters::fillet, py::arg("diameter"), py::arg("corner_radius"), py::arg("length"),
-                  "Bull nose: a flat end mill whose edge is rounded.")
-      .def_static("taper", &cutters::taper, py::arg("tip_radius"), py::arg("half_angle"), py::arg("diameter"),
-                  py::arg("length"), py::arg("flat_tip") = false,
-                  "Cone above a tangent ball tip (or a flat one) up to the diameter, then a cylinder.")
-      .def_static("cone_end", &cutters::cone_end, py::arg("tip_half_angle"), py::arg("tip_height"),
-                  py::arg("half_angle"), py::arg("diameter"), py::arg("length"),
-                  "Sharp tip, a cone up to tip_height, a second cone up to the diameter, then a cylinder.")
+rounded or conical end. Sizes that are not positive or do not fit raise ValueError naming the size.)");
+  for (const CutterShape& shape : cutter_shapes()) bind_any_shape(tool, shape);
+  tool.def_static(
+          "shapes", [] { return std::vector<CutterShape>(cutter_shapes().begin(), cutter_shapes().end()); },
+          R"(The named cutter shapes with their sizes, for forms: those that have a function here but ``profile``.)")
       .def_static(
           "profile",
           [](const py::object& segments, double length) { return cutters::profile(to_segments(segments), length); },

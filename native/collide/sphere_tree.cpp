@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/parallel.hpp"
+#include "geom/median_tree.hpp"
 
 namespace riffler {
 
@@ -75,23 +76,7 @@ void SphereTree::sort(const Items& items) {
       centres[i] = 0.5 * (box.lower + box.upper);
     }
   });
-  // Each node is halved three times, at the median along its longest side. Ties are decided by the index: the tree is
-  // the same whatever nth_element does.
-  const auto at = [&](std::size_t half, std::size_t place) {
-    return order_.begin() + static_cast<std::ptrdiff_t>((place * n) >> half);
-  };
-  for (std::size_t half = 0; half < 3 * levels_; ++half)
-    parallel_for(std::size_t{1} << half, 1, [&](std::size_t place, std::size_t) {
-      Box3 box;
-      for (auto i = at(half, place); i != at(half, place + 1); ++i) box.add(centres[*i]);
-      const Vec3 size = box.size();
-      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-      std::nth_element(at(half, place), at(half + 1, 2 * place + 1), at(half, place + 1),
-                       [&](std::uint32_t i, std::uint32_t j) {
-                         const double x = centres[i][axis], y = centres[j][axis];
-                         return x != y ? x < y : i < j;
-                       });
-    });
+  sort_by_medians(order_, 3 * levels_, centres);  // eight children are three halvings
 }
 
 void SphereTree::bound(const Items& items) {

@@ -40,6 +40,23 @@ Grid::Grid(Axis axis, const Box3& box, double pitch, bool with_normals)
   tiles_.assign(static_cast<std::size_t>(tiles_u_) * tiles_v_, empty);
 }
 
+void Grid::fill() {
+  const Span span{box_.lower.z, box_.upper.z};
+  const Vec3 along = to_world(axis_, Vec3(0, 0, 1));
+  const SpanNormals normals{PackedNormal::pack(-along), PackedNormal::pack(along)};
+  std::shared_ptr<const Tile> shared[2][2];  // inner, last row, last column, corner
+  for (int a = 0; a < tiles_u_; ++a)
+    for (int b = 0; b < tiles_v_; ++b) {
+      const std::size_t t = tile_index(a, b);
+      auto& tile = shared[a == tiles_u_ - 1][b == tiles_v_ - 1];
+      if (!tile) {
+        fill_tile(t, [&](int, int, TileBuilder& builder) { builder.add(span, normals); });
+        tile = tiles_[t];
+      }
+      tiles_[t] = tile;
+    }
+}
+
 Tile& Grid::writable(std::size_t index) {
   std::shared_ptr<const Tile>& held = tiles_[index];
   if (held.use_count() == 1) {

@@ -64,6 +64,8 @@ class Grid {
       }
     set_tile(index, builder.finish());
   }
+  /// Makes every ray one span through the whole box. Tiles of equal shape are one tile until they are cut.
+  void fill();
   /// The tile for writing: copied first where a snapshot, another volume or another place of this grid holds it too.
   /// The caller gives it a fresh revision. Different tiles may be written by different threads.
   Tile& writable(std::size_t index);

@@ -108,32 +108,9 @@ Volume::Volume(const Frame& frame) : frame_(frame), revision_(next_revision()) {
   for (const Axis axis : axes) grids_.emplace_back(axis, frame.box, frame.pitch, axes.size() == 3);
 }
 
-namespace {
-
-void fill(Grid& grid) {
-  const Span span{grid.box().lower.z, grid.box().upper.z};
-  const Vec3 along = to_world(grid.axis(), Vec3(0, 0, 1));
-  const SpanNormals normals{PackedNormal::pack(-along), PackedNormal::pack(along)};
-  // Tiles of equal shape are one tile until they are cut: inner, last row, last column, corner.
-  std::shared_ptr<const Tile> shared[2][2];
-  for (int a = 0; a < grid.tiles_u(); ++a)
-    for (int b = 0; b < grid.tiles_v(); ++b) {
-      const std::size_t t = grid.tile_index(a, b);
-      auto& tile = shared[a == grid.tiles_u() - 1][b == grid.tiles_v() - 1];
-      if (tile) {
-        grid.set_tile(t, tile);
-        continue;
-      }
-      grid.fill_tile(t, [&](int, int, TileBuilder& builder) { builder.add(span, normals); });
-      tile = grid.shared_tile(t);
-    }
-}
-
-}  // namespace
-
 Volume Volume::block(const Frame& frame) {
   Volume volume(frame);
-  for (Grid& grid : volume.grids_) fill(grid);
+  for (Grid& grid : volume.grids_) grid.fill();
   return volume;
 }
 

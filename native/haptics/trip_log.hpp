@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/sequence_lock.hpp"
 #include "haptics/states.hpp"
 
 namespace riffler {
@@ -30,13 +31,7 @@ class TripLog {
   std::size_t read(std::uint64_t& from, std::span<Trip> out) const;
 
  private:
-  // A sequence lock without fences (Boehm, "Can seqlocks get along with programming language memory models?", 2012):
-  // the words themselves are atomic, so a reader that is overtaken reads nonsense, notices and skips it.
-  struct Slot {
-    std::atomic<std::uint64_t> ticket{0};  // 2 n + 2 when trip n is whole, odd while it is written
-    std::array<std::atomic<std::uint64_t>, 3> words{};
-  };
-  std::array<Slot, kCapacity> slots_{};
+  std::array<SequenceLock<Trip>, kCapacity> slots_{};  // trip n has the ticket 2 n + 2
   std::atomic<std::uint64_t> count_{0};
 };
 

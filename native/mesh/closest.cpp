@@ -8,6 +8,7 @@
 
 #include "base/parallel.hpp"
 #include "geom/directions.hpp"
+#include "geom/median_tree.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/orient.hpp"
 
@@ -76,45 +77,24 @@ void Closest::build(const std::vector<Corners>& corners) {
   id_.resize(n);
   std::iota(id_.begin(), id_.end(), 0);
   while ((n >> levels_) > kLeaf) ++levels_;
-  boxes_.resize((std::size_t{2} << levels_) - 1);
   std::vector<Vec3> centres(n);
   parallel_for(n, 1 << 15, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) centres[t] = (corners[t].a + corners[t].b + corners[t].c) / 3.0;
   });
-  // Level by level, every node's triangles are split at the median of their centres along the widest axis. Ties are
-  // decided by the index: the tree is the same whatever nth_element does.
-  for (std::size_t level = 0; level < levels_; ++level)
-    parallel_for(std::size_t{1} << level, 1, [&](std::size_t place, std::size_t) {
-      const auto begin = id_.begin() + static_cast<std::ptrdiff_t>(first(level, place));
-      const auto middle = id_.begin() + static_cast<std::ptrdiff_t>(first(level + 1, 2 * place + 1));
-      const auto end = id_.begin() + static_cast<std::ptrdiff_t>(first(level, place + 1));
-      Box3 box;
-      for (auto i = begin; i != end; ++i) box.add(centres[*i]);
-      const Vec3 size = box.size();
-      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-      std::nth_element(begin, middle, end, [&](int i, int j) {
-        const double x = centres[i][axis], y = centres[j][axis];
-        return x != y ? x < y : i < j;
-      });
-    });
+  sort_by_medians(id_, levels_, centres);
   corners_.resize(n), slot_.resize(n);
-  parallel_for(std::size_t{1} << levels_, 1 << 12, [&](std::size_t from, std::size_t to) {
-    for (std::size_t place = from; place < to; ++place) {
-      // nth_element leaves the order within a leaf open; ties between equally near triangles go by it.
-      std::sort(id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, place)),
-                id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, place + 1)));
-      Box3& box = boxes_[(std::size_t{1} << levels_) - 1 + place];
-      for (std::size_t i = first(levels_, place); i < first(levels_, place + 1); ++i) {
-        const Corners& c = corners_[i] = corners[id_[i]];
-        slot_[id_[i]] = static_cast<int>(i);
-        box.add(c.a), box.add(c.b), box.add(c.c);
-      }
+  boxes_ = boxes_of_tree(levels_, [&](std::size_t leaf) {
+    // Ties between equally near triangles go by their order within a leaf, which the sort leaves open.
+    std::sort(id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, leaf)),
+              id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, leaf + 1)));
+    Box3 box;
+    for (std::size_t i = first(levels_, leaf); i < first(levels_, leaf + 1); ++i) {
+      const Corners& c = corners_[i] = corners[id_[i]];
+      slot_[id_[i]] = static_cast<int>(i);
+      box.add(c.a), box.add(c.b), box.add(c.c);
     }
+    return box;
   });
-  for (std::size_t i = (std::size_t{1} << levels_) - 1; i-- > 0;) {
-    boxes_[i] = boxes_[2 * i + 1];
-    boxes_[i].add(boxes_[2 * i + 2]);
-  }
 }
 
 /// Calls visit(slot) for triangles whose box is nearer than the square root of `bound`, which visit may lower, near

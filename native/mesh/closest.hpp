@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/progress.hpp"
+#include "geom/median_tree.hpp"
 #include "geom/vec.hpp"
 #include "mesh/mesh.hpp"
 
@@ -72,7 +73,7 @@ class Closest {
   template <class Keep>
   Hit nearest(const Vec3& p, double limit, const Keep& keep) const;
   void prepare_sides(const Mesh& mesh);
-  std::size_t first(std::size_t level, std::size_t place) const { return (place * id_.size()) >> level; }
+  std::size_t first(std::size_t level, std::size_t place) const { return first_item(id_.size(), level, place); }
   template <class Visit>
   void descend(const Vec3& p, double& bound, const Visit& visit) const;
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/parallel.hpp"
+#include "geom/median_tree.hpp"
 #include "plan/cc_frame.hpp"
 
 namespace riffler {
@@ -33,24 +34,24 @@ DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
 void DropCutter::build(const std::vector<Triangle>& all) {
   const std::size_t n = count_ = all.size();
   while ((n >> levels_) > 4) ++levels_;
-  boxes_.resize((std::size_t{2} << levels_) - 1);
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  // Only the shadow counts for where a tool comes down: halved along x or y.
-  const auto split = [&](const auto& self, std::size_t node, std::size_t level, std::size_t place) -> void {
-    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first(level, place)),
-               end = order.begin() + static_cast<std::ptrdiff_t>(first(level, place + 1));
-    Box3& box = boxes_[node];
+  const auto box_of = [&](auto begin, auto end) {
+    Box3 box;
     for (auto i = begin; i != end; ++i) box.add(all[*i].a), box.add(all[*i].b), box.add(all[*i].c);
-    if (level == levels_) return;
-    const int side = box.size().x >= box.size().y ? 0 : 1;
-    const auto key = [&](std::size_t t) { return all[t].a[side] + all[t].b[side] + all[t].c[side]; };
-    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(first(level + 1, 2 * place + 1));
-    std::nth_element(begin, middle, end,
-                     [&](std::size_t i, std::size_t j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
-    self(self, 2 * node + 1, level + 1, 2 * place), self(self, 2 * node + 2, level + 1, 2 * place + 1);
+    return box;
   };
-  split(split, 0, 0, 0);
+  // Only the shadow counts for where a tool comes down: halved along x or y.
+  const auto axis = [&](auto begin, auto end) {
+    const Vec3 size = box_of(begin, end).size();
+    return size.x >= size.y ? 0 : 1;
+  };
+  sort_by_medians(order, levels_, axis,
+                  [&](std::size_t t, int side) { return all[t].a[side] + all[t].b[side] + all[t].c[side]; });
+  boxes_ = boxes_of_tree(levels_, [&](std::size_t leaf) {
+    const auto at = [&](std::size_t k) { return order.begin() + static_cast<std::ptrdiff_t>(first(levels_, k)); };
+    return box_of(at(leaf), at(leaf + 1));
+  });
   triangles_.reserve(n);
   for (const std::size_t t : order) triangles_.push_back(all[t]);
 }

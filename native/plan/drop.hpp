@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/progress.hpp"
+#include "geom/median_tree.hpp"
 #include "mesh/mesh.hpp"
 #include "plan/lower_side.hpp"
 #include "tool/tool.hpp"
@@ -43,7 +44,7 @@ class DropCutter {
   };
 
   void build(const std::vector<Triangle>& all);
-  std::size_t first(std::size_t level, std::size_t place) const { return (place * count_) >> level; }
+  std::size_t first(std::size_t level, std::size_t place) const { return first_item(count_, level, place); }
 
   Mat3 turn_;                                      // columns: the frame, its z the axis
   std::vector<std::pair<Part, LowerSide>> sides_;  // of the assembly's pieces

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dexel/boolean.hpp"
-#include "sweep/clay_tile.hpp"
+#include "sweep/cut_region.hpp"
 
 namespace riffler {
 
@@ -24,7 +24,7 @@ void MaskedStock::show(const Volume& left, std::span<const TileExchange::Place> 
     const auto& stock = stock_.grids()[p.grid].shared_tile(p.tile);
     const auto& before = masked_stock_.grids()[p.grid].shared_tile(p.tile);
     const auto& rest = left.grids()[p.grid].shared_tile(p.tile);
-    auto whole = worked_tile(mode_, grid, p.tile, stock, before, rest, builder);
+    auto whole = composite_tile(mode_, grid, p.tile, stock, before, rest, builder);
     if (whole == grid.shared_tile(p.tile)) continue;
     grid.set_tile(p.tile, std::move(whole));
     any = true;

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "stress/thread_count.hpp"
+#include "tool/cutters.hpp"
 
 namespace riffler::stress {
 
@@ -41,7 +42,7 @@ std::string to_json(const Tool& tool) {
   out << "{\"name\": \"\", \"kind\": \"" << tool.kind() << "\"";
   for (const auto& [key, value] : tool.parameters()) {
     out << ", \"" << key << "\": ";
-    key == "flat_tip" ? out << (value != 0 ? "true" : "false") : out << value;
+    is_flag(tool, key) ? out << (value != 0 ? "true" : "false") : out << value;
   }
   if (tool.kind() == "profile") {
     const char* between = ", \"segments\": [";

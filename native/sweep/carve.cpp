@@ -1,11 +1,12 @@
 #include "sweep/carve.hpp"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "base/check.hpp"
-#include "sweep/clay.hpp"
+#include "sweep/cut_region.hpp"
 #include "sweep/grid_carver.hpp"
 
 namespace riffler {
@@ -59,16 +60,20 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   check_options(options, moves);
   require_tolerance_for(options.tolerance, std::max(tool.length(), tool.diameter()));
   check_memory(moves);
-  if (options.mode == CarveMode::Add || options.protect) return carve_clay(volume, tool, poses, options, carve);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
+  // A plain carve cuts the volume's own tiles, and brings them back where it fails.
+  std::optional<CutRegion> region;
+  if (options.mode == CarveMode::Add || options.protect) region = CutRegion::of(volume, options.mode, options.protect);
   Rollback rollback;
   Stats stats;
   stats.moves = moves;
   const std::size_t grids = volume.grids().size();
   for (std::size_t g = 0; g < grids; ++g) {
     Grid& grid = volume.grids()[g];
-    GridCarver carver(grid, &grid == &volume.reference(), options, cut, &rollback);
+    const bool measured = &grid == &volume.reference();
+    GridCarver carver = region ? GridCarver(region->grid(g), measured, options, cut)
+                               : GridCarver(grid, measured, options, cut, &rollback);
     const auto next = [](std::size_t m) { return m + 1; };
     carver.run(cutter, poses, moves, next, [&](std::size_t done) {
       report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
@@ -77,7 +82,7 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
     report(options.progress, static_cast<double>(g + 1) / static_cast<double>(grids));
     stats += carver.take_stats();
   }
-  if (rollback.commit()) volume.touch();
+  if (region ? region->commit(volume) : rollback.commit()) volume.touch();
   volume.count(stats);
   return cut;
 }

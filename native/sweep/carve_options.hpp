@@ -22,7 +22,7 @@ struct CarveOptions {
   double removal_constant = 0.05;
   Progress progress;
   CarveMode mode = CarveMode::Remove;
-  /// What lies in it stays as it is, or null. Of the same frame as the volume, and not the volume itself.
+  /// Region that must not change; null for none. It has the volume's frame and is not the volume itself.
   const Volume* protect = nullptr;
 };
 

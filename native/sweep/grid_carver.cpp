@@ -36,6 +36,7 @@ void GridCarver::flush() {
 
 void GridCarver::cut_steps() {
   assign();
+  if (region_) open_tiles();
   double rays = 0;
   for (const Step& s : steps_) rays += s.footprint.rows().length() * s.footprint.columns().length();
   rays /= grid_.pitch() * grid_.pitch();
@@ -48,6 +49,14 @@ void GridCarver::cut_steps() {
     parallel_for(work_.size(), 1, body);
   for (Work& w : work_) collect(w);
   work_.clear();
+}
+
+/// Computes what may be cut of the batch's tiles, where no batch before has.
+void GridCarver::open_tiles() {
+  std::vector<std::size_t> tiles;
+  for (const Work& w : work_)
+    if (!region_->opened(w.tile)) tiles.push_back(w.tile);
+  region_->open(tiles);
 }
 
 /// Tiles of the batch with the steps that may touch them, both in ascending order.

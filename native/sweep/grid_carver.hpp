@@ -13,6 +13,7 @@
 #include "dexel/grid.hpp"
 #include "dexel/stats.hpp"
 #include "sweep/carve_options.hpp"
+#include "sweep/cut_region.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cutter.hpp"
 
@@ -53,6 +54,11 @@ class GridCarver {
   /// `measured`: what is taken counts towards `cut`. `rollback` may be null.
   GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback* rollback)
       : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback) {}
+  /// Cuts what may be cut of a region. The region's commit, not the carver, changes the volume.
+  GridCarver(GridRegion& region, bool measured, const CarveOptions& options, Cut& cut)
+      : GridCarver(region.cuttable(), measured, options, cut, nullptr) {
+    region_ = &region;
+  }
 
   /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds no more of the program than one batch, so
   /// its length costs no memory here.
@@ -86,6 +92,7 @@ class GridCarver {
   bool full() const;
   void flush();
   void cut_steps();
+  void open_tiles();
   void assign();
   void sort_pairs(std::size_t first, std::size_t last);
   void cut_tile(Work& work) const;
@@ -96,6 +103,7 @@ class GridCarver {
   const CarveOptions& options_;
   Cut& cut_;
   Rollback* rollback_;
+  GridRegion* region_ = nullptr;
   std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   BlockVector<Step> steps_;
   BlockVector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import riffler
 
-from addon.common import tool_sizes
+from addon.common import presets, tool_sizes
 from addon.plan.pure import machine_fields, path_lines, path_names, size_guess
 from addon.program.pure import finding_titles, program_timeline
 
@@ -99,6 +99,16 @@ def test_every_size_that_is_set_makes_a_tool(kind, key, value):
     assert built.kind == kind and math.isclose(made[key], value) and made["name"].endswith(" mm")
     further = made["length"] - 40
     assert built.shank[0][0] == pytest.approx(40 + further) and built.holder[0][2] == pytest.approx(90 + further)
+
+
+@pytest.mark.parametrize("kind", presets.SIZES)
+@pytest.mark.parametrize("diameter", [0.2, 6.0, 60.0])
+def test_every_shape_can_be_chosen_at_any_diameter(kind, diameter):
+    tool = riffler.Tool.ball(diameter, 5 * diameter).to_dict()
+    made = tool_sizes.changed(tool, "kind", kind)
+    built = riffler.Tool.from_dict(made)
+    assert built.kind == kind and (made["diameter"], made["length"]) == (diameter, 5 * diameter)
+    assert set(made) == {"kind", "name", *presets.SIZES[kind]}
 
 
 def test_sizes_that_make_no_tool_are_refused():

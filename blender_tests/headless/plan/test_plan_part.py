@@ -100,12 +100,13 @@ def test_the_cutter_s_sizes_are_fields():
     cutter.length = 35
     now = riffler.Tool.from_dict(scene.plan.tool_dict())
     assert now.shank == [(35, 3, 50, 3)] and now.holder == [(50, 14, 80, 16)]
-    for kind in ("flat", "fillet", "taper", "cone_end", "ball"):
+    presets = common.part("common.presets")
+    for kind in [*list(presets.SIZES)[1:], "ball"]:
         cutter.kind = kind
         made = riffler.Tool.from_dict(scene.plan.tool_dict())
         assert cutter.kind == made.kind == kind and made.length == 35 and len(made.holder) == 1
-        for key in common.part("common.presets").SIZES[kind]:
-            assert key == "flat_tip" or getattr(cutter, key) > 0
+        for key in presets.SIZES[kind]:
+            assert key in presets.FLAGS or getattr(cutter, key) > 0
     cutter.kind = "fillet"
     cutter.corner_radius = 3
     cutter.diameter = 4

@@ -10,8 +10,13 @@
 
 namespace riffler {
 
-/// What a machine's control may read. The writer has a post for each (nc/write/posts.cpp), the reader an interpreter.
-inline constexpr std::array<std::string_view, 4> kLanguages{"rs274", "heidenhain", "sinumerik", "apt"};
+/// The languages that a machine's control may read. `make_<language>` in nc/write/post_<language>.cpp makes the post of
+/// each: a new language is a word here, its post and a machine's file.
+#define RIFFLER_LANGUAGES(X) X(rs274) X(heidenhain) X(sinumerik) X(apt)
+
+#define RIFFLER_LANGUAGE_NAME(name) std::string_view(#name),
+inline constexpr std::array kLanguages{RIFFLER_LANGUAGES(RIFFLER_LANGUAGE_NAME)};
+#undef RIFFLER_LANGUAGE_NAME
 
 /// How the text is to look; of every post.
 struct PostOptions {

@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "nc/apt_cutter.hpp"
 #include "nc/limits.hpp"
 #include "nc/machine/machines.hpp"
 #include "nc/machine/post_options.hpp"
-#include "nc/read/apt_cutter.hpp"
 #include "nc/read/apt_cycle.hpp"
 #include "nc/read/apt_lexer.hpp"
 #include "nc/read/apt_statements.hpp"

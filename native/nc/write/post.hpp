@@ -45,10 +45,8 @@ class Post : public BlockSink {
 /// std::invalid_argument for a machine whose language is not known.
 std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options);
 
-// The factories, each in its own file. A new one is one line in posts.cpp and one in kLanguages.
-std::unique_ptr<Post> make_rs274(const Machine& machine, PostOptions options);
-std::unique_ptr<Post> make_heidenhain(const Machine& machine, PostOptions options);
-std::unique_ptr<Post> make_sinumerik(const Machine& machine, PostOptions options);
-std::unique_ptr<Post> make_apt(const Machine& machine, PostOptions options);
+#define RIFFLER_DECLARE_POST(name) std::unique_ptr<Post> make_##name(const Machine& machine, PostOptions options);
+RIFFLER_LANGUAGES(RIFFLER_DECLARE_POST)
+#undef RIFFLER_DECLARE_POST
 
 }  // namespace riffler

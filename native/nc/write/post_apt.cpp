@@ -1,10 +1,12 @@
 // APT CL file (ISO 4343): tip and axis of every row, for another system's post-processor.
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "geom/math.hpp"
+#include "nc/apt_cutter.hpp"
 #include "nc/number_text.hpp"
 #include "nc/write/post.hpp"
-#include "tool/tool.hpp"
 
 namespace riffler {
 
@@ -73,24 +75,14 @@ class Apt final : public Post {
 
   void line(const std::string& text) { text_ += text + '\n'; }
 
-  /// CUTTER/d, r, e, f, a, b, h: diameter, corner radius, its centre's distance from the axis and height over the tip,
-  /// the angles of end and flank in degrees, length. Of a shape that seven numbers do not say, what is said is a
-  /// comment.
+  /// A comment where seven numbers cannot describe the shape.
   void cutter(const Tool& tool) {
-    double d = tool.diameter(), r = 0, flank = 0;
-    for (const auto& [name, value] : tool.parameters()) {
-      if (name == "corner_radius" || name == "tip_radius") r = value;
-      if (name == "half_angle") flank = value;
-    }
-    if (tool.kind() == "ball") r = d / 2;
-    if (tool.kind() == "taper") d = 2 * r;
-    if (tool.kind() != "ball" && tool.kind() != "flat" && tool.kind() != "fillet" && tool.kind() != "taper") {
-      line("$$ no CUTTER says " + plain(tool.kind()));
-      return;
-    }
-    const double degrees = flank * kRadian;
-    line("CUTTER/" + number_text(d) + ',' + number_text(r) + ',' + number_text(d / 2 - r) + ',' + number_text(r) +
-         ",0," + number_text(degrees) + ',' + number_text(tool.length()));
+    const std::optional<AptCutter> apt = to_apt(tool);
+    if (!apt) return line("$$ no CUTTER says " + plain(tool.kind()));
+    std::string text = "CUTTER/";
+    for (const double number : {apt->d, apt->r, apt->e, apt->f, apt->a * kRadian, apt->b * kRadian, apt->h})
+      text += (text.back() == '/' ? "" : ",") + number_text(number);
+    line(text);
   }
 
   std::int64_t feed_ = kNever;

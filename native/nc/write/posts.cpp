@@ -13,13 +13,9 @@ struct PostLanguage {
   std::unique_ptr<Post> (*make)(const Machine& machine, PostOptions options);
 };
 
-constexpr PostLanguage kPosts[] = {
-    {"rs274", make_rs274},
-    {"heidenhain", make_heidenhain},
-    {"sinumerik", make_sinumerik},
-    {"apt", make_apt},
-};
-static_assert(std::ranges::equal(kPosts, kLanguages, {}, &PostLanguage::name), "one post for each language");
+#define RIFFLER_POST(name) {#name, make_##name},
+constexpr PostLanguage kPosts[] = {RIFFLER_LANGUAGES(RIFFLER_POST)};
+#undef RIFFLER_POST
 
 }  // namespace
 

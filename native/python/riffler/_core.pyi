@@ -6,7 +6,7 @@ import numpy.typing
 import os
 import pathlib
 import typing
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -154,6 +154,78 @@ class Mesh:
         """
         mm³, signed; of a closed mesh.
         """
+class ToolSize:
+    """
+    One size of a cutter shape. It means the same in every shape that has it.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def default(self) -> bool | float:
+        """
+        First value of a form; suits a cutter of 6 mm.
+        """
+    @property
+    def description(self) -> str:
+        """
+        One phrase for a form's tooltip.
+        """
+    @property
+    def high(self) -> float:
+        """
+        Largest value that a form should offer.
+        """
+    @property
+    def label(self) -> str:
+        """
+        Short name for a form.
+        """
+    @property
+    def largest(self) -> float | None:
+        """
+        Largest multiple of the diameter that a form should offer, or None.
+        """
+    @property
+    def low(self) -> float:
+        """
+        Smallest value that a form should offer.
+        """
+    @property
+    def name(self) -> str:
+        """
+        The argument's name, and the key in a tool's dict.
+        """
+    @property
+    def unit(self) -> str:
+        """
+        "mm", "rad" or "bool".
+        """
+class ToolShape:
+    """
+    A named cutter shape, one row of Tool.shapes().
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def description(self) -> str:
+        """
+        One phrase for a form's tooltip.
+        """
+    @property
+    def label(self) -> str:
+        """
+        Short name for a form.
+        """
+    @property
+    def name(self) -> str:
+        """
+        The kind of its tools, and the function of Tool that makes them.
+        """
+    @property
+    def sizes(self) -> list[ToolSize]:
+        """
+        In the order of the function's arguments; one is "diameter", one "length".
+        """
 class Tool:
     """
     A cutter with the shank and holder above it; immutable.
@@ -165,21 +237,37 @@ class Tool:
     def ball(diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
         """
         Ball end mill.
+
+        - ``diameter``: of the cylinder above the end, in mm
+        - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
     def cone_end(tip_half_angle: typing.SupportsFloat, tip_height: typing.SupportsFloat, half_angle: typing.SupportsFloat, diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
         """
-        Sharp tip, a cone up to tip_height, a second cone up to the diameter, then a cylinder.
+        Sharp tip, a first cone, a second cone, then a cylinder.
+
+        - ``tip_half_angle``: between the axis and the first cone, in rad
+        - ``tip_height``: of the first cone, in mm
+        - ``half_angle``: between the axis and the flank, in rad
+        - ``diameter``: of the cylinder above the end, in mm
+        - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
     def fillet(diameter: typing.SupportsFloat, corner_radius: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
         """
         Bull nose: a flat end mill whose edge is rounded.
+
+        - ``diameter``: of the cylinder above the end, in mm
+        - ``corner_radius``: of the rounded edge, in mm
+        - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
     def flat(diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
         """
         Flat end mill.
+
+        - ``diameter``: of the cylinder above the end, in mm
+        - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
     def from_dict(d: dict) -> Tool:
@@ -193,9 +281,20 @@ class Tool:
         centre_radius, centre_height) arcs, the shorter way round; a cylinder follows up to ``length``.
         """
     @staticmethod
+    def shapes() -> list[ToolShape]:
+        """
+        The named cutter shapes with their sizes, for forms: those that have a function here but ``profile``.
+        """
+    @staticmethod
     def taper(tip_radius: typing.SupportsFloat, half_angle: typing.SupportsFloat, diameter: typing.SupportsFloat, length: typing.SupportsFloat, flat_tip: bool = False) -> Tool:
         """
-        Cone above a tangent ball tip (or a flat one) up to the diameter, then a cylinder.
+        Cone above a ball tip or a flat one, then a cylinder.
+
+        - ``tip_radius``: of the ball or flat at the tip, in mm
+        - ``half_angle``: between the axis and the flank, in rad
+        - ``diameter``: of the cylinder above the end, in mm
+        - ``length``: cutting length from the tip, in mm
+        - ``flat_tip``: a flat instead of a ball at the tip
         """
     def __eq__(self, arg0: Tool) -> bool:
         ...

@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 import riffler
+from riffler.command import tools
 
 TOOLS = {
     "ball": riffler.Tool.ball(6, 30),
@@ -17,6 +18,11 @@ TOOLS = {
     "cone end": riffler.Tool.cone_end(1.0, 1, 0.4, 8, 40),
     "profile": riffler.Tool.profile([(1, 0), (3, 2, 1, 2), (2, 6)], 20),
 }
+
+
+SHAPES = {shape.name: shape for shape in riffler.Tool.shapes()}
+# What each row of the table makes of the first values of its form.
+TOOLS |= {f"first {name}": getattr(riffler.Tool, name)(*(s.default for s in SHAPES[name].sizes)) for name in SHAPES}
 
 
 @pytest.mark.parametrize("name", TOOLS)
@@ -34,6 +40,50 @@ def test_a_tool_survives_its_dict_json_and_pickle(name):
 def test_sizes_are_those_asked_for(name, diameter, length):
     assert TOOLS[name].diameter == pytest.approx(diameter, abs=1e-12)
     assert TOOLS[name].length == length
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_shape_is_made_alike_by_its_function_its_dict_and_the_command_line(name):
+    shape, tool = SHAPES[name], TOOLS[f"first {name}"]
+    sizes = {s.name: s.default for s in shape.sizes}
+    assert getattr(riffler.Tool, name)(**sizes) == tool
+    entry = tool.to_dict()
+    assert entry == {"name": tool.name, "kind": name, **sizes}
+    assert [type(entry[s.name]) for s in shape.sizes] == [bool if s.unit == "bool" else float for s in shape.sizes]
+    given = [s for s in shape.sizes if s.unit != "bool" and s.name != "length"]
+    numbers = [math.degrees(s.default) if s.unit == "rad" else s.default for s in given]
+    text = ":".join([name.replace("_", "-"), *map(repr, numbers), "30"])
+    typed = tools.parse(text).make(1).to_dict()
+    assert typed.pop("name") == text and typed.pop("kind") == name
+    assert typed == pytest.approx({s.name: s.default for s in shape.sizes}, rel=1e-12)
+    assert f"  {name.replace('_', '-')}:{':'.join(s.name for s in given)}[:length]\n" in tools.FORMS
+
+
+def test_shapes_describe_themselves_for_forms():
+    assert list(SHAPES)[:5] == ["ball", "flat", "fillet", "taper", "cone_end"], "Blender files keep the numbers"
+    taper = {s.name: s for s in SHAPES["taper"].sizes}
+    assert list(taper) == ["tip_radius", "half_angle", "diameter", "length", "flat_tip"]
+    assert [s.unit for s in taper.values()] == ["mm", "rad", "mm", "mm", "bool"]
+    assert taper["half_angle"].default == math.radians(5) and taper["flat_tip"].default is False
+    assert SHAPES["fillet"].sizes[1].largest == 0.5 and taper["diameter"].largest is None
+    for shape in SHAPES.values():
+        text = getattr(riffler.Tool, shape.name).__doc__
+        assert shape.label and shape.description in text and repr(shape) == f"<riffler.ToolShape {shape.name}>"
+        assert all(f"``{s.name}``" in text and s.label and 0 <= s.low <= s.default <= s.high for s in shape.sizes)
+
+
+def revolved(tool):
+    """Volume of the solid of revolution, mm³, from its outline."""
+    ((_, points),) = tool.outline(1e-4)
+    r, z = points.T
+    return math.pi / 3 * np.sum(np.diff(z) * (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2))
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_cutter_that_stands_still_removes_its_own_volume(name):
+    volume = riffler.Volume.block([0, 0, 0], [8, 8, 32], 0.05)
+    removed = volume.carve(TOOLS[f"first {name}"], [[4, 4, 1, 0, 0, 1]] * 2).removed
+    assert removed[0] == pytest.approx(revolved(TOOLS[f"first {name}"]), rel=2e-3)
 
 
 def plunged(tool, depth):

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "session/journal_file.hpp"
 #include "session/replay.hpp"
@@ -22,18 +23,14 @@ inline Tool read_tool(const std::string& json) {
   std::map<std::string, std::string> values;
   const std::regex entry(R"re("(\w+)":\s*"?([^",}]+)"?)re");
   for (std::sregex_iterator it(json.begin(), json.end(), entry), end; it != end; ++it) values[(*it)[1]] = (*it)[2];
-  const auto get = [&](const char* key) { return std::stod(values.at(key)); };
-  const std::string kind = values.at("kind");
-  if (kind == "ball") return cutters::ball(get("diameter"), get("length"));
-  if (kind == "flat") return cutters::flat(get("diameter"), get("length"));
-  if (kind == "fillet") return cutters::fillet(get("diameter"), get("corner_radius"), get("length"));
-  if (kind == "taper")
-    return cutters::taper(get("tip_radius"), get("half_angle"), get("diameter"), get("length"),
-                          values.at("flat_tip") == "true");
-  if (kind == "cone_end")
-    return cutters::cone_end(get("tip_half_angle"), get("tip_height"), get("half_angle"), get("diameter"),
-                             get("length"));
-  throw std::invalid_argument("scenes have no cutter '" + kind + "'");
+  const CutterShape* shape = find_cutter_shape(values.at("kind"));
+  if (!shape) throw std::invalid_argument("scenes have no cutter '" + values.at("kind") + "'");
+  std::vector<double> sizes;
+  for (const CutterSize& size : shape->sizes) {
+    const std::string& text = values.at(size.name);
+    sizes.push_back(size.unit == SizeUnit::Flag ? text == "true" : std::stod(text));
+  }
+  return make_cutter(*shape, sizes);
 }
 
 inline Volume replay(const std::filesystem::path& path) {

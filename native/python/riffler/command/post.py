@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import Collider, Journal, Program, Tool, plan
+from .. import Collider, Journal, Program, Tool, _core, plan
 from . import tools
 from .arguments import MESHES, add_machine_option, finite, input_file, length, machine_options, output_file
 from .carve import read_program
@@ -219,11 +219,11 @@ def tool_of(planned: plan.Plan, arguments: argparse.Namespace) -> tuple[int, Too
 
 
 def tip_radius(tool: Tool) -> float | None:
-    """Of the ball at its tip; None: there is none."""
-    sizes = tool.to_dict()
-    if tool.kind == "ball":
-        return sizes["diameter"] / 2
-    return sizes["tip_radius"] if tool.kind == "taper" and not sizes.get("flat_tip") else None
+    """Radius of the ball at the tip, mm, or None where the tip is none."""
+    try:
+        return _core.tip_ball_radius(tool, "tool")
+    except ValueError:
+        return None
 
 
 def upright(path, axis: np.ndarray):

@@ -15,21 +15,25 @@ import numpy as np
 from .. import Tool
 from .arguments import finite
 
-FORMS = """tools:
-  ball:D[:L]  flat:D[:L]  fillet:D:r[:L]             diameter, corner radius, length
-  taper:R:A:D[:L]                                    tip radius, half angle in degrees, diameter, length
-  cone-end:A1:H1:A2:D[:L]                            tip's half angle, its height, upper half angle, diameter, length
-  tool.json, tool.toml                               the form of Tool.to_dict, angles in rad there
-  The length defaults to whatever reaches out of the stock. N=… is the tool that the program calls N."""
-
-# Sizes in the order of the command line; those that end with "angle" are in degrees there, in rad in the dictionary.
+# Sizes in the order of the command line. The length comes last and may be left out; flags are false.
 SIZES = {
-    "ball": ("diameter",),
-    "flat": ("diameter",),
-    "fillet": ("diameter", "corner_radius"),
-    "taper": ("tip_radius", "half_angle", "diameter"),
-    "cone-end": ("tip_half_angle", "tip_height", "half_angle", "diameter"),
+    shape.name.replace("_", "-"): [size for size in shape.sizes if size.unit != "bool" and size.name != "length"]
+    for shape in Tool.shapes()
 }
+
+
+def _form(kind: str) -> str:
+    return f"{kind}:{':'.join(size.name for size in SIZES[kind])}[:length]"
+
+
+FORMS = "\n".join(
+    [
+        "tools, lengths in mm and angles in degrees:",
+        *(f"  {_form(kind)}" for kind in SIZES),
+        "  tool.json, tool.toml    the form of Tool.to_dict, angles in rad there",
+        "  The length defaults to whatever reaches out of the stock. N=… is the tool that the program calls N.",
+    ]
+)
 
 
 @dataclass(frozen=True)
@@ -55,15 +59,16 @@ def _maker(form: str, text: str) -> Callable[[float], Tool]:
         tool = Tool.from_dict(_read(Path(form)))
         return lambda _: tool
     kind, *numbers = form.split(":")
-    names = SIZES.get(kind)
-    if names is None:
+    sizes = SIZES.get(kind)
+    if sizes is None:
         raise ValueError(f"--tool {text}: {', '.join(SIZES)} or a .json or .toml file expected")
-    if len(numbers) not in (len(names), len(names) + 1):
-        raise ValueError(f"--tool {text}: {kind}:{':'.join(names)}[:length] expected")
+    if len(numbers) not in (len(sizes), len(sizes) + 1):
+        raise ValueError(f"--tool {text}: {_form(kind)} expected")
     entry: dict[str, Any] = {"kind": kind.replace("-", "_"), "name": form}
-    for name, value in zip((*names, "length"), numbers, strict=False):
+    units = {size.name: size.unit for size in sizes} | {"length": "mm"}
+    for (name, unit), value in zip(units.items(), numbers, strict=False):
         size = finite(value, f"--tool {text}: {name}")
-        entry[name] = math.radians(size) if name.endswith("angle") else size
+        entry[name] = math.radians(size) if unit == "rad" else size
 
     def make(reach: float) -> Tool:
         try:

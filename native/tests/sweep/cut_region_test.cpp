@@ -1,9 +1,10 @@
-// Carving that puts on and that spares what is protected, against the swept solid's distance and whole booleans.
-#include "sweep/clay.hpp"
+// Adding material and carving beside a mask, judged by the swept solid's distance and by booleans of whole volumes.
+#include "sweep/cut_region.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <random>
@@ -12,9 +13,10 @@
 #include "dexel/boolean.hpp"
 #include "dexel/volumes.hpp"
 #include "reference/swept_distance.hpp"
+#include "sweep/carve.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::clay_test {
+namespace riffler::cut_region_test {
 namespace {
 
 Vec3 unit(double x, double y, double z) {
@@ -83,7 +85,7 @@ void expect_right(CarveMode mode, const Tool& tool, bool protecting, const char*
   }
 }
 
-TEST(Clay, HoldsAtEveryPointWhatWasThereWhatIsProtectedAndWhereTheToolWent) {
+TEST(CutRegion, HoldsAtEveryPointWhatWasThereWhatIsProtectedAndWhereTheToolWent) {
   for (const Tool& tool : {cutters::ball(7, 30), cutters::flat(6, 30), cutters::fillet(8, 1, 30)})
     for (const char* directions : {"z", "xyz"}) {
       expect_right(CarveMode::Add, tool, false, directions);
@@ -92,7 +94,7 @@ TEST(Clay, HoldsAtEveryPointWhatWasThereWhatIsProtectedAndWhereTheToolWent) {
     }
 }
 
-TEST(Clay, IsTheUnionWithWhatTheToolTakesFromAFullBlock) {
+TEST(CutRegion, IsTheUnionWithWhatTheToolTakesFromAFullBlock) {
   for (const char* directions : {"z", "x", "xyz"}) {
     const Frame frame = test::lattice_frame(directions);
     Volume swept = Volume::block(frame), rest = swept;
@@ -113,7 +115,36 @@ TEST(Clay, IsTheUnionWithWhatTheToolTakesFromAFullBlock) {
   }
 }
 
-TEST(Clay, NewWallsLookOutOfTheMaterial) {
+TEST(CutRegion, GivesTheBitsOfCarvingAWholeVolumeOfWhatMayBeCut) {
+  const Frame frame{
+      {{0, 0, 0}, {60, 50, 24}}, 0.3, "xyz"};  // 7 × 6 tiles seen from above, of which the path passes some
+  std::vector<Pose> poses = path();
+  for (int k = 0; k < 600; ++k)  // more than one batch
+    poses.push_back({{20 + 0.03 * k, 20 + 8 * std::sin(0.05 * k), 9}, unit(0.3 * std::sin(0.02 * k), 0.2, 1)});
+  Volume stock = Volume::block(frame), mask(frame);
+  carve(stock, cutters::flat(10, 30), std::vector<Pose>{{{0, 25, 12}, {0, 0, 1}}, {{60, 25, 12}, {0, 0, 1}}});
+  CarveOptions put;
+  put.mode = CarveMode::Add;
+  carve(mask, cutters::flat(6, 30), std::vector<Pose>{{{28, 0, 5}, {0, 0, 1}}, {{28, 50, 5}, {0, 0, 1}}}, put);
+  for (const CarveMode mode : {CarveMode::Add, CarveMode::Remove})
+    for (const Volume* protect : {static_cast<const Volume*>(nullptr), static_cast<const Volume*>(&mask)}) {
+      if (mode == CarveMode::Remove && !protect) continue;  // cuts the volume itself
+      Volume cuttable = mode == CarveMode::Add ? Volume::block(frame) : stock;
+      if (mode == CarveMode::Add) apply(Boolean::Subtract, cuttable, stock);
+      if (protect) apply(Boolean::Subtract, cuttable, *protect);
+      Volume cut = cuttable, expected = stock, volume = stock;
+      const Cut by_hand = carve(cuttable, cutters::ball(7, 30), poses);
+      apply(Boolean::Subtract, cut, cuttable);
+      apply(mode == CarveMode::Add ? Boolean::Add : Boolean::Subtract, expected, cut);
+      CarveOptions options;
+      options.mode = mode, options.protect = protect;
+      EXPECT_EQ(carve(volume, cutters::ball(7, 30), poses, options).removed, by_hand.removed);
+      EXPECT_FALSE(test::same_rays(volume, stock));
+      EXPECT_TRUE(test::same_rays(volume, expected)) << (mode == CarveMode::Add) << (protect != nullptr);
+    }
+}
+
+TEST(CutRegion, NewWallsLookOutOfTheMaterial) {
   Volume volume(test::lattice_frame("xyz", 0.4));
   CarveOptions options;
   options.mode = CarveMode::Add;
@@ -137,7 +168,7 @@ TEST(Clay, NewWallsLookOutOfTheMaterial) {
   EXPECT_GT(round, 500U);
 }
 
-TEST(Clay, SaysOfEachMoveWhatItPutOnOrTook) {
+TEST(CutRegion, SaysOfEachMoveWhatItPutOnOrTook) {
   for (const char* directions : {"z", "xyz", "y"})
     for (const CarveMode mode : {CarveMode::Add, CarveMode::Remove}) {
       const Frame frame = test::lattice_frame(directions);
@@ -154,7 +185,7 @@ TEST(Clay, SaysOfEachMoveWhatItPutOnOrTook) {
     }
 }
 
-TEST(Clay, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
+TEST(CutRegion, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
   const Frame frame{{{0, 0, 0}, {80, 60, 20}}, 0.5, "xyz"};
   const Volume before = Volume::block(frame);
   Volume kept(frame);
@@ -180,7 +211,7 @@ TEST(Clay, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
   EXPECT_LE(touched, 16U);  // of 64: those that the tool's footprint meets
 }
 
-TEST(Clay, LeavesEverythingAsItWasWhereNothingChanges) {
+TEST(CutRegion, LeavesEverythingAsItWasWhereNothingChanges) {
   const Frame frame{{{0, 0, 0}, {40, 40, 12}}, 0.5, "xyz"};
   Volume full = Volume::block(frame), empty(frame);
   const Volume all = full;
@@ -196,7 +227,7 @@ TEST(Clay, LeavesEverythingAsItWasWhereNothingChanges) {
   EXPECT_TRUE(test::same_rays(full, all));
 }
 
-TEST(Clay, PuttingOnAndTakingTheSameAgainLeavesTheRest) {
+TEST(CutRegion, PuttingOnAndTakingTheSameAgainLeavesTheRest) {
   Volume volume = Volume::block({{{0, 0, 0}, {24, 24, 24}}, 0.5, "xyz"});
   CarveOptions add;
   add.mode = CarveMode::Add;
@@ -211,7 +242,7 @@ TEST(Clay, PuttingOnAndTakingTheSameAgainLeavesTheRest) {
   EXPECT_NEAR(volume.volume(), cut.volume(), 1e-6);
 }
 
-TEST(Clay, GivesTheSameBytesForAnyNumberOfThreadsFarFromTheOrigin) {
+TEST(CutRegion, GivesTheSameBytesForAnyNumberOfThreadsFarFromTheOrigin) {
   const Vec3 far{1e5, -1e5, 1e5};
   const Frame frame{{far, far + Vec3(60, 50, 24)}, 0.3, "xyz"};
   std::vector<Pose> poses = path();
@@ -232,7 +263,7 @@ TEST(Clay, GivesTheSameBytesForAnyNumberOfThreadsFarFromTheOrigin) {
   EXPECT_TRUE(test::same_rays(volumes[0], volumes[2]));
 }
 
-TEST(Clay, NamesAnotherGridAndStopsWithoutATraceWhenCancelled) {
+TEST(CutRegion, NamesAnotherGridAndStopsWithoutATraceWhenCancelled) {
   const Frame frame = test::lattice_frame("xyz");
   Volume volume = test::random_volume(frame, 1);
   const Volume before = volume, coarse = Volume::block(test::lattice_frame("xyz", 1));
@@ -251,4 +282,4 @@ TEST(Clay, NamesAnotherGridAndStopsWithoutATraceWhenCancelled) {
 }
 
 }  // namespace
-}  // namespace riffler::clay_test
+}  // namespace riffler::cut_region_test
