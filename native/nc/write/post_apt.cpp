@@ -79,9 +79,9 @@ class Apt final : public Post {
   void cutter(const Tool& tool) {
     const std::optional<AptCutter> apt = to_apt(tool);
     if (!apt) return line("$$ no CUTTER says " + plain(tool.kind()));
-    std::string text = "CUTTER/";
-    for (const double number : {apt->d, apt->r, apt->e, apt->f, apt->a * kRadian, apt->b * kRadian, apt->h})
-      text += (text.back() == '/' ? "" : ",") + number_text(number);
+    std::string text = "CUTTER/" + number_text(apt->d);
+    for (const double number : {apt->r, apt->e, apt->f, apt->a * kRadian, apt->b * kRadian, apt->h})
+      text += ',', text += number_text(number);
     line(text);
   }
 
