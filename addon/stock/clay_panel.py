@@ -41,9 +41,9 @@ class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
                     clay.RIFFLER_OT_resample.bl_idname, text=f"{text}: {units.trim(factor * now, 4)} mm"
                 )
                 op.pitch = factor * now
-        row = layout.row(align=True)
-        row.prop(settings, "room")
-        row.operator(clay.RIFFLER_OT_room.bl_idname).room = settings.room
+        column = layout.column(align=True)  # below one another: both labels show whole in a narrow sidebar
+        column.prop(settings, "room")
+        column.operator(clay.RIFFLER_OT_room.bl_idname).room = settings.room
         column = layout.column(align=True)
         column.prop(settings, "plane")
         op = column.operator(clay.RIFFLER_OT_crop.bl_idname, text="Crop")

@@ -59,7 +59,9 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(new_stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
-        if refusals.scaled(ob):
+        if refusals.flat(ob):
+            lines(layout, "The object is scaled to nothing:", "use Object > Clear > Scale.", icon="ERROR")
+        elif refusals.scaled(ob):
             lines(layout, "The object is scaled or mirrored: its", "millimetres are not the scene's.", icon="ERROR")
 
 
@@ -119,7 +121,9 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         if settings.source == "BLOCK":
             column = layout.column(align=True)
             column.label(text="Size")
-            column.row(align=True).prop(settings, "size", text="")
+            column.prop(
+                settings, "size", text=""
+            )  # below one another: sizes of 100 000 mm show whole in a narrow sidebar
             return [units.clean(s) for s in settings.size]
         if settings.source == "RECORDING":
             layout.prop(settings, "recording", text="")

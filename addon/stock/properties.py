@@ -37,7 +37,13 @@ class StockSettings:
     source: EnumProperty(name="From", items=SOURCES, default="BLOCK", description="What is to be the material")
     recording: StringProperty(name="Recording", subtype="FILE_PATH", description="A recording (.rjournal)")
     size: FloatVectorProperty(
-        name="Size", default=(100, 60, 30), min=0.001, max=1e5, precision=2, description="Block along x, y and z, in mm"
+        name="Size",
+        default=(100, 60, 30),
+        min=0.001,
+        max=1e5,
+        precision=2,
+        subtype="XYZ",
+        description="Block along x, y and z, in mm",
     )
     origin: EnumProperty(
         name="Origin", items=ORIGINS, default="CORNER", description="Where the block has the zero of its coordinates"

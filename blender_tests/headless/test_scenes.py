@@ -120,6 +120,22 @@ def test_a_sculpt_that_is_scaled_to_nothing_says_what_helps():
     assert common.content(ob).volume.to_bytes() == before and not live().lives
 
 
+def test_the_panel_says_what_a_scale_means():
+    ob = bpy.data.objects[sculpting.sculpt()]
+    panel = common.part("stock.panel").RIFFLER_PT_sculpt
+    for scale, expected in (
+        ((1, 1, 1), []),
+        ((1, 1, 0), ["The object is scaled to nothing:", "use Object > Clear > Scale."]),
+        ((1, 2, 1), ["The object is scaled or mirrored: its", "millimetres are not the scene's."]),
+    ):
+        ob.scale = scale
+        bpy.context.view_layer.update()
+        shown = []
+        column = SimpleNamespace(label=lambda text, icon, shown=shown: shown.append(text))
+        panel._warnings(None, SimpleNamespace(column=lambda align, column=column: column), bpy.context, ob)
+        assert shown == expected, (scale, shown)
+
+
 def test_the_cursor_over_a_live_sculpt_that_is_scaled_to_nothing_is_quiet():
     name = sculpting.sculpt()
     run = sculpting.work(name)
