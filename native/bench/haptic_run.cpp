@@ -8,8 +8,8 @@
 #include "base/check.hpp"
 #include "base/own_thread.hpp"
 #include "bench/contact_scene.hpp"
+#include "bench/interpolated_wrench.hpp"
 #include "haptics/sculpt_step.hpp"
-#include "haptics/wrench_extrapolator.hpp"
 #include "tool/cutters.hpp"
 
 namespace riffler::bench {
@@ -101,7 +101,7 @@ HapticRun haptic_run(const HapticOptions& o) {
   settings.most.linear *= o.period, settings.most.angular = std::min(1.0, settings.most.angular * o.period);
   SculptStep step(settings, scene.tool, scene.carver.get(), scene.collider.get());
   step.place(scene.grip(0));
-  Interpolated line(o.period * kTick);
+  InterpolatedWrench line(o.period * kTick);
   HapticRun out;
   for (int k = 1; k <= o.steps; ++k) {
     const Pose grip = scene.grip(k * kTick);

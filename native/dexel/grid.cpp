@@ -1,7 +1,6 @@
 #include "dexel/grid.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <unordered_set>
 
@@ -55,17 +54,6 @@ void Grid::fill() {
       }
       tiles_[t] = tile;
     }
-}
-
-Tile& Grid::writable(std::size_t index) {
-  std::shared_ptr<const Tile>& held = tiles_[index];
-  if (held.use_count() == 1) {
-    // The last other holder may have been a reader on another thread: see its reads done before writing.
-    std::atomic_thread_fence(std::memory_order_acquire);
-  } else {
-    held = make_shared_block<Tile>(*held);
-  }
-  return const_cast<Tile&>(*held);  // every tile is made by make_shared_block<Tile>, never as a const object
 }
 
 double Grid::least_area() const {

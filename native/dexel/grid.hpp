@@ -66,9 +66,6 @@ class Grid {
   }
   /// Makes every ray one span through the whole box. Tiles of equal shape are one tile until they are cut.
   void fill();
-  /// The tile for writing: copied first where a snapshot, another volume or another place of this grid holds it too.
-  /// The caller gives it a fresh revision. Different tiles may be written by different threads.
-  Tile& writable(std::size_t index);
 
   std::span<const Span> ray(int i, int j) const { return owner(i, j).ray(ray_index(i, j)); }
   std::span<const SpanNormals> ray_normals(int i, int j) const { return owner(i, j).ray_normals(ray_index(i, j)); }

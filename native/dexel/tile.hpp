@@ -44,8 +44,8 @@ class RayOffsets {
 };
 
 /// Rays of one tile in compressed rows: ray r = a · 32 + b (a along u, b along v) owns spans [offset[r], offset[r +
-/// 1]). A tile that more than one volume or snapshot holds is never written: Grid::writable copies it first. Rays of a
-/// border tile that lie beyond the grid are empty.
+/// 1]). A tile in a grid is never written: volumes and snapshots share it, and a change puts a new one in its place.
+/// Rays of a border tile that lie beyond the grid are empty.
 struct Tile {
   RayOffsets offset;
   BlockVector<Span> spans;

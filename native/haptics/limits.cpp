@@ -38,15 +38,8 @@ double speed_gain(const LimitSettings& s, const Twist& grip) {
                   ramp_down(glm::length(grip.angular), s.full_speed.angular, s.no_force_at.angular));
 }
 
-double magnitude_gain(const LimitSettings& s, const Actuators& actuators, const Wrench& w) {
-  double gain =
-      std::min(factor(glm::length(w.force), s.wrench.linear), factor(glm::length(w.torque), s.wrench.angular));
-  for (std::size_t i = 0; i < actuators.count; ++i) {
-    double effort = 0;
-    for (int k = 0; k < kCoordinates; ++k) effort += actuators.rows[i][static_cast<std::size_t>(k)] * w[k];
-    gain = std::min(gain, factor(std::abs(effort), actuators.most[i]));
-  }
-  return gain;
+double magnitude_gain(const LimitSettings& s, const Wrench& w) {
+  return std::min(factor(glm::length(w.force), s.wrench.linear), factor(glm::length(w.torque), s.wrench.angular));
 }
 
 Wrench slewed(const LimitSettings& s, const Wrench& previous, const Wrench& wanted, double dt) {
@@ -61,22 +54,22 @@ double power_gain(const LimitSettings& s, const Wrench& w, const Twist& grip) {
   return factor(power(w, grip), s.power);
 }
 
-Wrench limited(const LimitSettings& s, const Capability& device, const Actuators& actuators, const Wrench& previous,
-               const Wrench& wanted, const Twist& grip, double dt, LimitReport* report) {
+Wrench limited(const LimitSettings& s, const Capability& device, const Wrench& previous, const Wrench& wanted,
+               const Twist& grip, double dt, LimitReport* report) {
   LimitReport r;
   Wrench w = renderable(device, wanted);
   r.unrendered = wanted - w;
   r.speed = speed_gain(s, grip);
-  r.magnitude = magnitude_gain(s, actuators, w);
+  r.magnitude = magnitude_gain(s, w);
   w = r.speed * r.magnitude * w;
   const Wrench target = w;
-  // Between two wrenches within the limits every one is, as the limits are convex. But the pose has changed since the
-  // previous one, and with it what its actuators bear, what the device can push, and how fast it moves: again.
+  // The limits are convex, so every wrench between two that keep them keeps them. But the pose has changed since the
+  // previous one, and with it what the device can push and how fast it moves: both are applied again.
   w = renderable(device, slewed(s, previous, target, dt));
   r.slewed = !(w == target);
   LimitSettings slow = s;
   slow.wrench = {r.speed * s.wrench.linear, r.speed * s.wrench.angular};
-  w = magnitude_gain(slow, actuators, w) * w;
+  w = magnitude_gain(slow, w) * w;
   r.power = power_gain(s, w, grip);
   if (report) *report = r;
   return r.power * w;

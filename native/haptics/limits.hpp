@@ -19,22 +19,12 @@ struct LimitSettings {
   void validate() const;
 };
 
-/// Most actuators that a device has.
-inline constexpr std::size_t kActuators = 8;
-
-/// How a wrench spreads over the actuators at this tick's pose: effort i = row i · (force, torque). The pen's rows come
-/// from its Jacobians.
-struct Actuators {
-  std::size_t count = 0;
-  std::array<std::array<double, kCoordinates>, kActuators> rows{};
-  std::array<double, kActuators> most{};  ///< greatest effort of each, ≥ 0, in the rows' unit
-};
-
 /// In [0, 1]: by how much the speed of the grip cuts the wrench. Not a number: 0.
 double speed_gain(const LimitSettings& settings, const Twist& grip);
 
-/// In [0, 1]: the largest factor with which force, torque and every effort are within their limits.
-double magnitude_gain(const LimitSettings& settings, const Actuators& actuators, const Wrench& wrench);
+/// In [0, 1]: the largest factor with which force and torque are within their limits. A motor's own limit is kept by
+/// the device's model.
+double magnitude_gain(const LimitSettings& settings, const Wrench& wrench);
 
 /// From `previous` on the straight line to `wanted`, as far as the rates allow in dt (s; nothing for dt ≤ 0).
 Wrench slewed(const LimitSettings& settings, const Wrench& previous, const Wrench& wanted, double dt);
@@ -52,8 +42,7 @@ struct LimitReport {
 /// All of the above: what the device can push, by its speed, magnitudes, rates and power. From one tick to the next the
 /// wrench changes by no more than rate · dt, or it is a shrunk form of one that does: cuts for the sake of safety are
 /// never delayed.
-Wrench limited(const LimitSettings& settings, const Capability& device, const Actuators& actuators,
-               const Wrench& previous, const Wrench& wanted, const Twist& grip, double dt,
-               LimitReport* report = nullptr);
+Wrench limited(const LimitSettings& settings, const Capability& device, const Wrench& previous, const Wrench& wanted,
+               const Twist& grip, double dt, LimitReport* report = nullptr);
 
 }  // namespace riffler

@@ -30,7 +30,7 @@ void Passivity::reset() {
   energy_ = settings_.reserve;
   rate_ = {};
   last_dt_ = settings_.period;
-  absorbed_ = {}, way_ = {}, way_time_ = {};
+  way_ = {}, way_time_ = {};
   kept_ = 1, damped_ = 0;
   on_the_way_ = {};
   waiting_ = static_cast<std::size_t>(std::ceil(settings_.latency / settings_.period - 1e-9));
@@ -58,7 +58,6 @@ void Passivity::observe(const Wrench& held, const Twist& displacement, double dt
     rate_ = {};
     return;
   }
-  for (int k = 0; k < kCoordinates; ++k) absorbed_[static_cast<std::size_t>(k)] -= held[k] * displacement[k];
   energy_ += dissipated(displacement, dt) - power(held, displacement);
   // Credit is forgotten, debt never is. What is not held by an object was lost for good, to friction or to cutting, and
   // must not pay for a later fault: no object holds more than `storage`, and none anything where nothing is felt.

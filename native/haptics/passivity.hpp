@@ -57,8 +57,6 @@ class Passivity {
 
   /// N·mm that may go to the hand; below zero a debt.
   double energy() const { return energy_; }
-  /// N·mm that the hand has given to rendering since the start, by coordinate; less than zero where it got some.
-  const std::array<double, kCoordinates>& absorbed() const { return absorbed_; }
   /// Factor of the wanted wrench and share of max_damping in the last wrench let through: (1, 0) is untouched.
   double kept() const { return kept_; }
   double damped() const { return damped_; }
@@ -78,7 +76,6 @@ class Passivity {
   double last_dt_;
   Twist way_{};  // since the device's own dissipation was credited last, and for how long: by coordinate
   std::array<double, kCoordinates> way_time_{};
-  std::array<double, kCoordinates> absorbed_{};
   double kept_ = 1, damped_ = 0;
   static constexpr std::size_t kMaxOnTheWay = 8;
   std::array<Wrench, kMaxOnTheWay> on_the_way_{};  // the first `waiting_`, oldest first

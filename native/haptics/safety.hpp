@@ -12,9 +12,9 @@
 //   const auto [on_grip, on_tool, energy] = couple(coupling, stretch(grip, tool), twist, tool_twist);
 //   tool = ...;  // goes where on_tool takes it, or is held by what it touches
 //
-//   w = limited(limits, capability, actuators, w, on_grip, twist, dt);  // rates: from the last w, not from applied
+//   w = limited(limits, capability, w, on_grip, twist, dt);  // rates: from the last w, not from applied
 //   w = passivity.control(w, capability);
-//   w = magnitude_gain(limits, actuators, w) * w;  // damping was added
+//   w = magnitude_gain(limits, w) * w;  // damping was added
 //
 //   device.write(safety.release(w));  // the gain of ramp and fade, the last checks
 //
@@ -93,7 +93,6 @@ class Safety {
   SafeWrench release(const Wrench& wanted);
 
   void switch_on() { apply(ForceEvent::SwitchOn); }
-  void switch_off() { apply(ForceEvent::SwitchOff); }
   /// Clears a trip that does not heal by itself; the device must report itself homed again.
   void reset() { apply(ForceEvent::Reset); }
 

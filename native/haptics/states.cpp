@@ -5,8 +5,6 @@ namespace riffler {
 ForceState next(ForceState state, ForceEvent event) {
   using S = ForceState;
   switch (event) {
-    case ForceEvent::SwitchOff:
-      return S::Off;
     case ForceEvent::SwitchOn:
       return state == S::Off ? S::Homing : state;
     case ForceEvent::Trip:
@@ -56,8 +54,8 @@ const char* name(ForceState state) {
 }
 
 const char* name(ForceEvent event) {
-  static constexpr const char* kNames[kForceEvents] = {"switch on", "switch off", "homed", "press",  "release",
-                                                       "risen",     "late",       "trip",  "rested", "reset"};
+  static constexpr const char* kNames[kForceEvents] = {"switch on", "homed", "press",  "release", "risen",
+                                                       "late",      "trip",  "rested", "reset"};
   return kNames[static_cast<std::size_t>(event)];
 }
 

@@ -8,7 +8,7 @@ namespace riffler {
 
 /// Only Ramp, Active and Degraded let a force through.
 enum class ForceState : std::uint8_t {
-  Off,       ///< switched off
+  Off,       ///< not switched on yet
   Homing,    ///< switched on; the device does not know its pose yet
   Ready,     ///< waiting for the dead-man switch
   Ramp,      ///< the force grows from nothing
@@ -20,7 +20,6 @@ inline constexpr std::size_t kForceStates = 7;
 
 enum class ForceEvent : std::uint8_t {
   SwitchOn,
-  SwitchOff,
   Homed,    ///< the device knows its pose
   Press,    ///< the dead-man switch is held
   Release,  ///< it is not
@@ -30,7 +29,7 @@ enum class ForceEvent : std::uint8_t {
   Rested,   ///< every check has passed for a while after a trip that heals by itself
   Reset,    ///< somebody cleared the trip
 };
-inline constexpr std::size_t kForceEvents = 10;
+inline constexpr std::size_t kForceEvents = 9;
 
 /// Why the force was taken away. In the order in which checks are made: a tick that fails several is told by the first.
 enum class Cause : std::uint8_t {

@@ -35,7 +35,6 @@ class Workspace {
 
   /// Of this tick: the target. Of a grip that is not finite or has no axis the last one.
   Pose target(const Pose& grip, std::uint32_t buttons);
-  bool clutched() const { return clutched_; }
   bool dead_man(std::uint32_t buttons) const {
     return settings_.dead_man_mask == 0 || (buttons & settings_.dead_man_mask) != 0;
   }

@@ -1,4 +1,4 @@
-// What the hand is given in a tick whose step is not done in time, and the scheme that always does so.
+// What the hand is given in a tick whose step is not done in time.
 #pragma once
 
 #include "haptics/settings.hpp"
@@ -38,31 +38,6 @@ class WrenchExtrapolator {
   Wrench out_, last_, slope_;  // slope: per second, between the last two steps
   double age_ = 0;
   bool begun_ = false;
-};
-
-/// The source's way (3.4): a force is computed every `period` s, in the cycle of the graphics, and the pen gets the
-/// straight line between the last two: a whole period late.
-class Interpolated {
- public:
-  /// period > 0, s.
-  explicit Interpolated(double period) : period_(period) {}
-
-  /// A wrench has been computed, now.
-  void computed(const Wrench& wrench) { from_ = at(), to_ = wrench, age_ = 0; }
-  /// The wrench dt s later.
-  Wrench tick(double dt) {
-    age_ += dt;
-    return at();
-  }
-
- private:
-  Wrench at() const {
-    const double t = age_ < period_ ? age_ / period_ : 1;
-    return from_ + t * (to_ - from_);
-  }
-
-  double period_, age_ = 0;
-  Wrench from_, to_;
 };
 
 }  // namespace riffler

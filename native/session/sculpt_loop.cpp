@@ -183,11 +183,10 @@ Wrench SculptLoop::missed(double dt, const char* why, SculptTick& tick) noexcept
 /// Limits and the controller, in the order of haptics/safety.hpp.
 Wrench SculptLoop::rendered(const PenSample& sample, const Wrench& wanted, double dt) noexcept {
   const Capability push = pushed(device_, sample.pose.axis);
-  const Actuators none{};  // the device's model keeps each motor's limit, and the wrench's direction
-  slewed_ = limited(settings_.limits, push, none, slewed_, lets_force_through(safety_.state()) ? wanted : Wrench{},
+  slewed_ = limited(settings_.limits, push, slewed_, lets_force_through(safety_.state()) ? wanted : Wrench{},
                     {sample.velocity, sample.turning}, dt);
   const Wrench borne = passivity_.control(slewed_, push);
-  return magnitude_gain(settings_.limits, none, borne) * borne;
+  return magnitude_gain(settings_.limits, borne) * borne;
 }
 
 /// With the move that has just taken something: from where the tool was before it.

@@ -5,14 +5,40 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace riffler::stress {
 
-inline std::uint64_t whole_number(const char* name, const char* text) {
+/// A double as strtod reads all of `text`; std::invalid_argument naming the option.
+inline double number(std::string_view name, const char* text) {
+  char* end = nullptr;
+  const double value = text ? std::strtod(text, &end) : 0;
+  if (!text || end == text || *end != '\0') throw std::invalid_argument(std::string(name) + " needs a number");
+  return value;
+}
+
+inline std::uint64_t whole_number(std::string_view name, const char* text) {
   char* end = nullptr;
   const unsigned long long value = text ? std::strtoull(text, &end, 10) : 0;
   if (!text || end == text || *end != '\0') throw std::invalid_argument(std::string(name) + " needs a whole number");
   return value;
+}
+
+/// What an option on the command line takes: itself alone, the word that follows too, or it is not known.
+enum class Takes { Flag, Value, Unknown };
+
+/// Calls `take(option, value)` for each option, with null for a value that is missing. std::invalid_argument naming an
+/// option that is not known, or whose value is missing.
+template <class Take>
+void each_option(int argc, char** argv, Take&& take) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view option = argv[k];
+    const char* const value = k + 1 < argc ? argv[k + 1] : nullptr;
+    const Takes takes = take(option, value);
+    if (takes == Takes::Unknown || (takes == Takes::Value && !value))
+      throw std::invalid_argument("unknown or incomplete option " + std::string(option));
+    if (takes == Takes::Value) ++k;
+  }
 }
 
 }  // namespace riffler::stress

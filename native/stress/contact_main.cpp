@@ -31,20 +31,19 @@ void usage() {
 
 Arguments parse(int argc, char** argv) {
   Arguments out;
-  for (int k = 1; k < argc; k += 2) {
-    const std::string key = argv[k];
-    const char* value = k + 1 < argc ? argv[k + 1] : nullptr;
-    if (key == "--poses")
-      out.poses = static_cast<long>(whole_number("--poses", value));
-    else if (key == "--seed")
-      out.options.seed = whole_number("--seed", value);
-    else if (key == "--reference-every")
-      out.options.reference_every = std::max(1, static_cast<int>(whole_number("--reference-every", value)));
-    else if (key == "--session")
-      out.session = whole_number("--session", value), out.options.reference_every = 1;
+  each_option(argc, argv, [&](std::string_view option, const char* value) {
+    if (option == "--poses")
+      out.poses = static_cast<long>(whole_number(option, value));
+    else if (option == "--seed")
+      out.options.seed = whole_number(option, value);
+    else if (option == "--reference-every")
+      out.options.reference_every = std::max(1, static_cast<int>(whole_number(option, value)));
+    else if (option == "--session")
+      out.session = whole_number(option, value), out.options.reference_every = 1;
     else
-      throw std::invalid_argument("unknown or incomplete option " + key);
-  }
+      return Takes::Unknown;
+    return Takes::Value;
+  });
   return out;
 }
 

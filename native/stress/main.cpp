@@ -42,31 +42,26 @@ void usage() {
 
 Arguments parse(int argc, char** argv) {
   Arguments out;
-  for (int k = 1; k < argc; ++k) {
-    const std::string key = argv[k];
-    const char* value = k + 1 < argc ? argv[k + 1] : nullptr;
-    if (key == "--table") {
-      out.table = true;
-      continue;
-    }
-    if (key == "--moves")
-      out.moves = static_cast<long>(whole_number("--moves", value));
-    else if (key == "--seed")
-      out.options.seed = whole_number("--seed", value);
-    else if (key == "--session")
-      out.session = whole_number("--session", value);
-    else if (key == "--first-session")
-      out.options.first_session = whole_number("--first-session", value);
-    else if (key == "--compare-every")
-      out.options.compare_every = static_cast<int>(whole_number("--compare-every", value));
-    else if (key == "--cutter" && value)
+  each_option(argc, argv, [&](std::string_view option, const char* value) {
+    if (option == "--table") return out.table = true, Takes::Flag;
+    if (option == "--moves")
+      out.moves = static_cast<long>(whole_number(option, value));
+    else if (option == "--seed")
+      out.options.seed = whole_number(option, value);
+    else if (option == "--session")
+      out.session = whole_number(option, value);
+    else if (option == "--first-session")
+      out.options.first_session = whole_number(option, value);
+    else if (option == "--compare-every")
+      out.options.compare_every = static_cast<int>(whole_number(option, value));
+    else if (option == "--cutter" && value)
       out.cutter = value;
-    else if (key == "--journal" && value)
+    else if (option == "--journal" && value)
       out.journal = value;
     else
-      throw std::invalid_argument("unknown or incomplete option " + key);
-    ++k;
-  }
+      return Takes::Unknown;
+    return Takes::Value;
+  });
   if (out.journal && !out.session) throw std::invalid_argument("--journal needs --session");
   if (out.session && !out.cutter) throw std::invalid_argument("--session needs --cutter");
   bool known = !out.cutter;

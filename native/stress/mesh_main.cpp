@@ -35,22 +35,21 @@ void usage() {
 
 Arguments parse(int argc, char** argv) {
   Arguments out;
-  for (int k = 1; k < argc; k += 2) {
-    const std::string key = argv[k];
-    const char* value = k + 1 < argc ? argv[k + 1] : nullptr;
-    if (key == "--volumes")
-      out.volumes = whole_number("--volumes", value);
-    else if (key == "--seconds")
-      out.seconds = static_cast<double>(whole_number("--seconds", value));
-    else if (key == "--seed")
-      out.options.seed = whole_number("--seed", value);
-    else if (key == "--volume")
-      out.volume = whole_number("--volume", value);
-    else if (key == "--save" && value)
+  each_option(argc, argv, [&](std::string_view option, const char* value) {
+    if (option == "--volumes")
+      out.volumes = whole_number(option, value);
+    else if (option == "--seconds")
+      out.seconds = static_cast<double>(whole_number(option, value));
+    else if (option == "--seed")
+      out.options.seed = whole_number(option, value);
+    else if (option == "--volume")
+      out.volume = whole_number(option, value);
+    else if (option == "--save" && value)
       out.save = value;
     else
-      throw std::invalid_argument("unknown or incomplete option " + key);
-  }
+      return Takes::Unknown;
+    return Takes::Value;
+  });
   if (out.save && !out.volume) throw std::invalid_argument("--save needs --volume");
   return out;
 }

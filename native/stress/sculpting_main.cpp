@@ -1,7 +1,6 @@
 // Ten minutes of sculpting with the simulated pen, or as many as one likes, and what they cost.
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 
 #include "stress/arguments.hpp"
@@ -13,25 +12,23 @@ namespace {
 
 SculptingOptions parse(int argc, char** argv) {
   SculptingOptions options;
-  for (int k = 1; k < argc; ++k) {
-    const char* const value = k + 1 < argc ? argv[k + 1] : nullptr;
-    if (!std::strcmp(argv[k], "--seconds"))
-      options.seconds = static_cast<double>(whole_number(argv[k++], value));
-    else if (!std::strcmp(argv[k], "--micrometres"))
-      options.pitch = 1e-3 * static_cast<double>(whole_number(argv[k++], value));
-    else if (!std::strcmp(argv[k], "--jitter"))
-      options.jitter_us = static_cast<std::int64_t>(whole_number(argv[k++], value));
-    else if (!std::strcmp(argv[k], "--stiffness"))
-      options.stiffness = static_cast<double>(whole_number(argv[k++], value));
-    else if (!std::strcmp(argv[k], "--three"))
-      options.directions = "xyz";
-    else if (!std::strcmp(argv[k], "--uncontrolled"))
-      options.controlled = false;
+  each_option(argc, argv, [&](std::string_view option, const char* value) {
+    if (option == "--three") return options.directions = "xyz", Takes::Flag;
+    if (option == "--uncontrolled") return options.controlled = false, Takes::Flag;
+    if (option == "--seconds")
+      options.seconds = static_cast<double>(whole_number(option, value));
+    else if (option == "--micrometres")
+      options.pitch = 1e-3 * static_cast<double>(whole_number(option, value));
+    else if (option == "--jitter")
+      options.jitter_us = static_cast<std::int64_t>(whole_number(option, value));
+    else if (option == "--stiffness")
+      options.stiffness = static_cast<double>(whole_number(option, value));
     else
       throw std::invalid_argument(
           "usage: riffler_sculpting [--seconds N] [--micrometres PITCH] [--jitter US] [--stiffness N/MM] [--three] "
           "[--uncontrolled]");
-  }
+    return Takes::Value;
+  });
   options.progress = [](double share) { std::fprintf(stderr, "\r%3.0f %%", 100 * share); };
   return options;
 }

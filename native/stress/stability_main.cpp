@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "haptics/passive_bound.hpp"
 #include "stress/arguments.hpp"
+#include "stress/passive_bound.hpp"
 #include "stress/stability.hpp"
 
 using namespace riffler;
@@ -137,34 +137,40 @@ void pen(double damping, double friction) {
   }
 }
 
-double number(const char* name, const char* text) {
-  char* end = nullptr;
-  const double value = text ? std::strtod(text, &end) : 0;
-  if (!text || end == text || *end != '\0') throw std::invalid_argument(std::string(name) + " needs a number");
-  return value;
+struct Arguments {
+  double damping = 2e-3, friction = 0.2;
+  bool pen_only = false, help = false;
+};
+
+Arguments parse(int argc, char** argv) {
+  Arguments out;
+  each_option(argc, argv, [&](std::string_view option, const char* value) {
+    if (option == "--pen") return out.pen_only = true, Takes::Flag;
+    if (option == "--help") return out.help = true, Takes::Flag;
+    if (option == "--damping")
+      out.damping = number(option, value);
+    else if (option == "--friction")
+      out.friction = number(option, value);
+    else
+      return Takes::Unknown;
+    return Takes::Value;
+  });
+  return out;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    double damping = 2e-3, friction = 0.2;
-    bool pen_only = false;
-    for (int k = 1; k < argc; ++k) {
-      const std::string key = argv[k];
-      if (key == "--pen") {
-        pen_only = true;
-      } else if (key == "--damping" || key == "--friction") {
-        ++k;
-        (key == "--damping" ? damping : friction) = number(key.c_str(), k < argc ? argv[k] : nullptr);
-      } else {
-        std::puts("riffler_stability [--pen] [--damping N·s/mm] [--friction N]\n  --pen  the table of the pen alone");
-        return key == "--help" ? 0 : 2;
-      }
+    const Arguments arguments = parse(argc, argv);
+    if (arguments.help) {
+      std::puts("riffler_stability [--pen] [--damping N·s/mm] [--friction N]\n  --pen  the table of the pen alone");
+      return 0;
     }
+    const double damping = arguments.damping, friction = arguments.friction;
     std::printf("{");
     pen(damping, friction);
-    if (!pen_only) {
+    if (!arguments.pen_only) {
       sampling(), wall_damping(), quantisation(), five_coordinates(), touched(damping, friction);
       PassivitySettings settings;
       settings.jitter = 0;

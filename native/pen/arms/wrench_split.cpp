@@ -19,11 +19,6 @@ Wrench wrench_of(const ArmForces& forces, const Vec3& apart) noexcept {
   return {right + left, glm::cross(0.5 * apart, left - right)};
 }
 
-double tension(const ArmForces& forces, const Vec3& apart) noexcept {
-  const double length = glm::length(apart);
-  return length > 0 ? 0.5 * glm::dot(forces[index(Arm::L)] - forces[index(Arm::R)], apart) / length : 0;
-}
-
 PenEffort pen_effort(const PenKinematics& pen, const PenPosture& posture, const Wrench& wrench,
                      const Vec3& at) noexcept {
   const Wrench here = moved(wrench, at, posture.pose.tip);

@@ -25,9 +25,6 @@ WrenchSplit split_wrench(const Wrench& wrench, const Vec3& apart) noexcept;
 /// The wrench about the pivot that the hand feels of the arms' forces.
 Wrench wrench_of(const ArmForces& forces, const Vec3& apart) noexcept;
 
-/// What the hand feels nothing of: the force along the grip with which the arms pull it apart (positive) or squeeze it.
-double tension(const ArmForces& forces, const Vec3& apart) noexcept;
-
 struct PenEffort {
   JointAngles torques{};  // N·mm at the joints: θ1 θ2 θ3 of R, of L
   Vec3 missing{0};        // torque, frame of poses

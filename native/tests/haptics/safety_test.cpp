@@ -63,7 +63,7 @@ TEST(Safety, LetsNothingThroughWithoutChecksInTheSameTick) {
   EXPECT_EQ(r.safety.release(kPush).wrench(), kPush);
   EXPECT_EQ(r.safety.release(kPush).wrench(), Wrench{});
   r.safety.observe(good());
-  r.safety.switch_off();
+  r.safety.interrupt();
   EXPECT_EQ(r.safety.release(kPush).wrench(), Wrench{});
   EXPECT_EQ(SafeWrench{}.wrench(), Wrench{});
 }
@@ -339,7 +339,7 @@ TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
   const std::vector<Fault> kinds = faults();
   for (int k = 0; k < 300'000; ++k) {
     if (random.one_in(200)) safety.switch_on();
-    if (random.one_in(3000)) safety.switch_off();
+    if (random.one_in(3000)) safety.interrupt();
     if (random.one_in(30)) safety.reset();
     Observation o = good();
     o.dead_man = !random.one_in(40);

@@ -22,8 +22,6 @@ class Loop {
         last_(tool_) {
     safety_.switch_on();
     capability_.push[5] = false;
-    actuators_.count = 3;
-    for (std::size_t i = 0; i < 3; ++i) actuators_.rows[i][i] = 180, actuators_.most[i] = 700;
   }
 
   Wrench tick(Observation now) {
@@ -34,9 +32,9 @@ class Loop {
     if (!lets_force_through(safety_.observe(now))) w_ = {};
     passivity_.observe(held_.wrench(), displacement, now.dt);
     const auto [on_grip, on_tool, energy] = couple(coupling_, pose_error(now.pose, tool_), now.twist, {});
-    w_ = limited(limits_, capability_, actuators_, w_, on_grip, now.twist, now.dt);
+    w_ = limited(limits_, capability_, w_, on_grip, now.twist, now.dt);
     w_ = passivity_.control(w_, capability_);
-    w_ = magnitude_gain(limits_, actuators_, w_) * w_;
+    w_ = magnitude_gain(limits_, w_) * w_;
     held_ = safety_.release(w_);
     return held_.wrench();
   }
@@ -48,7 +46,6 @@ class Loop {
   CouplingSettings coupling_;
   LimitSettings limits_;
   Capability capability_;
-  Actuators actuators_;
   Passivity passivity_;
   Safety safety_;
   Pose tool_, last_;

@@ -43,7 +43,10 @@ TEST(Scenes, HashesTellOneBit) {
   const Volume block = Volume::block(frame);
   EXPECT_EQ(hash(block), hash(Volume::block(frame)));
   Volume other = block;
-  other.grids()[2].writable(0).spans[7].far = std::nextafter(4.0, 0);
+  Grid& grid = other.grids()[2];
+  auto tile = std::make_shared<Tile>(grid.tile(0));
+  tile->spans[7].far = std::nextafter(4.0, 0);
+  grid.set_tile(0, tile);
   EXPECT_NE(hash(block), hash(other));
 }
 

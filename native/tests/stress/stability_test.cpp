@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/passive_bound.hpp"
+#include "stress/passive_bound.hpp"
 #include "support/effort.hpp"
 
 namespace riffler::stress::stability_test {

@@ -12,6 +12,11 @@ namespace {
 
 constexpr double kEps = 0x1p-52;
 
+/// The force along the grip with which the arms pull it apart (positive) or squeeze it; the hand feels nothing of it.
+double tension(const ArmForces& forces, const Vec3& apart) {
+  return 0.5 * glm::dot(forces[index(Arm::L)] - forces[index(Arm::R)], apart) / glm::length(apart);
+}
+
 TEST(WrenchSplit, SumAndMomentAreExactForAMillionWrenches) {
   stress::Random random(21);
   double worst_sum = 0, worst_moment = 0, worst_squeeze = 0;

@@ -1,4 +1,4 @@
-#include "haptics/passive_bound.hpp"
+#include "stress/passive_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
