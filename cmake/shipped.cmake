@@ -1,10 +1,13 @@
 # Writes the descriptions that come with Riffler into source files, listed in shipped_sources.
 set(shipped_sources)
 
-# `function`() of `header` gives the texts of `folder`/`name`.toml, in the order of the names.
+# `function`() of `header` gives the texts of all `folder`/*.toml. Lists of them begin with the names that are given here.
 function(ship_texts function header folder)
+  file(GLOB others CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.toml)
+  list(TRANSFORM others REPLACE "^.*/|[.]toml$" "")
+  list(REMOVE_ITEM others ${ARGN})
   set(entries "")
-  foreach(name IN LISTS ARGN)
+  foreach(name IN LISTS ARGN others)
     set(file ${PROJECT_SOURCE_DIR}/${folder}/${name}.toml)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
     file(READ ${file} text)
@@ -27,7 +30,7 @@ std::span<const ShippedText> @function@() {
   set(shipped_sources ${shipped_sources} ${PROJECT_BINARY_DIR}/${function}.cpp PARENT_SCOPE)
 endfunction()
 
-# A new description is one file and its name here.
+# A new description is one file in its folder.
 ship_texts(shipped_machines nc/machine/shipped_machines.hpp native/nc/machine/shipped
            tcp tcp-bc linuxcnc-xyzac linuxcnc-xyzbc head-head head-table 3-axis heidenhain heidenhain-bc
            sinumerik sinumerik-bc apt)

@@ -75,7 +75,9 @@ Program parse_whole(std::string_view text, const std::string& file, const ReadOp
   NcSource source(text, file);
   check_language(source, language);
   if (language == "sinumerik") return parse_sinumerik(text, file, options, folder);
-  return language == "apt" ? parse_apt(text, file, options) : parse_heidenhain(text, file, options);
+  if (language == "apt") return parse_apt(text, file, options);
+  if (language == "heidenhain") return parse_heidenhain(text, file, options);
+  throw FormatError(file + ": a program in the language " + language + " is written, and cannot be read back");
 }
 
 Program read_whole(const std::filesystem::path& path, const ReadOptions& options, const std::string& language) {
