@@ -77,7 +77,7 @@ Program parse_whole(std::string_view text, const std::string& file, const ReadOp
   if (language == "sinumerik") return parse_sinumerik(text, file, options, folder);
   if (language == "apt") return parse_apt(text, file, options);
   if (language == "heidenhain") return parse_heidenhain(text, file, options);
-  throw FormatError(file + ": a program in the language " + language + " is written, and cannot be read back");
+  throw FormatError(file, "line 1", "programs in the language " + language + " are written, and cannot be read");
 }
 
 Program read_whole(const std::filesystem::path& path, const ReadOptions& options, const std::string& language) {
