@@ -226,7 +226,7 @@ void record(SharedSession& self, const std::filesystem::path& path, const py::di
                      self.mask ? mask.filename().string() : ""});
   writer->add_tool(1, tool_json(py::cast(self.tool)));
   writer->sync();
-  JournalStream::Options options;
+  JournalStreamOptions options;
   options.mode = stroke_mode(self);
   auto sink = std::make_shared<JournalSink>(std::move(writer), 1, self.carving.tolerance, options);
   self.session->record(sink);

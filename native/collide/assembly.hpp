@@ -4,11 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "collide/outline_lanes.hpp"
-#include "collide/outline_runs.hpp"
 #include "tool/outline.hpp"
 
 namespace riffler {
+
+struct LaneEdge;
+class OutlineRuns;
 
 /// Prepare it once, use it for many poses, from any number of threads.
 class Assembly {
@@ -35,14 +36,14 @@ class Assembly {
   const std::vector<Vec2>& deepest() const;
 
   /// The outline in the forms that searches use.
-  const OutlineRuns& runs() const { return runs_; }
-  const std::vector<LaneEdge>& lane_edges() const { return lane_edges_; }
+  const OutlineRuns& runs() const;
+  const std::vector<LaneEdge>& lane_edges() const;
 
  private:
   Tool tool_;
   Outline outline_;
-  OutlineRuns runs_;
-  std::vector<LaneEdge> lane_edges_;
+  struct Forms;
+  std::shared_ptr<const Forms> forms_;
   std::vector<HeightBand> stretches_;
   double reach_, max_radius_;
   struct Deepest;

@@ -9,6 +9,7 @@
 #include "collide/fixture.hpp"
 #include "collide/force.hpp"
 #include "collide/nearest_search.hpp"
+#include "collide/swept_search.hpp"
 #include "collide/winding.hpp"
 #include "marching/to_mesh.hpp"
 #include "mesh/decimate/decimate.hpp"

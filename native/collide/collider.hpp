@@ -7,7 +7,7 @@
 
 #include "collide/assembly.hpp"
 #include "collide/contact.hpp"
-#include "collide/swept_search.hpp"
+#include "collide/swept.hpp"
 #include "dexel/volume.hpp"
 #include "geom/pose.hpp"
 #include "mesh/mesh.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/block_pool.hpp"
+#include "collide/outline_lanes.hpp"
 
 namespace riffler {
 

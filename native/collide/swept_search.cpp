@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "collide/outline_lanes.hpp"
 #include "geom/math.hpp"
 
 namespace riffler {

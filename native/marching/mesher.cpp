@@ -3,6 +3,7 @@
 #include "base/parallel.hpp"
 #include "marching/corner_normals.hpp"
 #include "marching/facets.hpp"
+#include "marching/first_hit.hpp"
 #include "marching/mesh_state.hpp"
 #include "marching/to_mesh.hpp"
 

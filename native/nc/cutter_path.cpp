@@ -6,6 +6,8 @@
 #include <string>
 
 #include "base/parallel.hpp"
+#include "nc/links.hpp"
+#include "nc/retract_path.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "nc/links.hpp"
+#include "nc/link_rule.hpp"
 #include "nc/program.hpp"
 
 namespace riffler {

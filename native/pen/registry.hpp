@@ -9,13 +9,15 @@
 
 #include "pen/arms/compensation.hpp"
 #include "pen/device.hpp"
-#include "pen/driver_loop.hpp"
+#include "pen/driver_settings.hpp"
 #include "pen/hid/hid_list.hpp"
 #include "pen/hid/open_error.hpp"
-#include "pen/hid_model.hpp"
 #include "pen/models/rate_control.hpp"
 
 namespace riffler {
+
+class HidModel;
+class Transport;
 
 struct PenOptions {
   RateSettings rate{};                     ///< of pucks

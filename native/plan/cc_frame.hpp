@@ -3,7 +3,6 @@
 
 #include <string_view>
 
-#include "geom/directions.hpp"
 #include "plan/path.hpp"
 
 namespace riffler {

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "base/progress.hpp"
-#include "geom/median_tree.hpp"
 #include "mesh/mesh.hpp"
-#include "plan/lower_side.hpp"
 #include "tool/tool.hpp"
 
 namespace riffler {
@@ -35,22 +34,11 @@ class DropCutter {
   /// All of them, in parallel.
   std::vector<Landing> operator()(const std::vector<Vec3>& points, const Progress& progress = {}) const;
 
-  const Vec3& axis() const { return turn_[2]; }
+  const Vec3& axis() const;
 
  private:
-  struct Search;
-  struct Triangle {
-    Vec3 a, b, c;
-  };
-
-  void build(const std::vector<Triangle>& all);
-  std::size_t first(std::size_t level, std::size_t place) const { return first_item(count_, level, place); }
-
-  Mat3 turn_;                                      // columns: the frame, its z the axis
-  std::vector<std::pair<Part, LowerSide>> sides_;  // of the assembly's pieces
-  std::size_t count_ = 0, levels_ = 0;             // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
-  std::vector<Box3> boxes_;
-  std::vector<Triangle> triangles_;  // in the frame, in the order of the leaves
+  struct Core;
+  std::shared_ptr<const Core> core_;
 };
 
 }  // namespace riffler

@@ -7,6 +7,7 @@
 
 #include "base/check.hpp"
 #include "base/parallel.hpp"
+#include "geom/directions.hpp"
 #include "mesh/closest.hpp"
 #include "mesh/orient.hpp"
 #include "mesh/smooth_normals.hpp"

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/check.hpp"
+#include "geom/directions.hpp"
 
 namespace riffler {
 

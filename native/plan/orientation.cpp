@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/directions.hpp"
 #include "geom/math.hpp"
 #include "geom/pose.hpp"
 #include "plan/cc_frame.hpp"

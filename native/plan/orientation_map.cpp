@@ -7,7 +7,9 @@
 
 #include "base/check.hpp"
 #include "base/parallel.hpp"
+#include "geom/directions.hpp"
 #include "geom/math.hpp"
+#include "plan/contact_location.hpp"
 
 namespace riffler {
 

@@ -8,7 +8,6 @@
 #include "base/progress.hpp"
 #include "collide/collider.hpp"
 #include "plan/cc_frame.hpp"
-#include "plan/contact_location.hpp"
 #include "plan/orientation.hpp"
 
 namespace riffler {

@@ -16,7 +16,7 @@
 #include "haptics/workspace.hpp"
 #include "haptics/wrench_extrapolator.hpp"
 #include "pen/capability.hpp"
-#include "pen/driver_loop.hpp"
+#include "pen/pen_step.hpp"
 #include "session/stroke_sink.hpp"
 #include "session/tile_exchange.hpp"
 

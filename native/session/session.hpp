@@ -1,16 +1,12 @@
 // A sculpting session: a device, a tool and a stock, cut in the thread of the device and shown in another.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/block_pool.hpp"
-#include "base/own_thread.hpp"
 #include "pen/device.hpp"
-#include "session/masked_stock.hpp"
 #include "session/sculpt_loop.hpp"
 
 namespace riffler {
@@ -57,7 +53,7 @@ class Session {
 
   /// The device's thread sculpts from now on: its own, or one that asks it a thousand times a second. Once.
   void start();
-  bool running() const noexcept { return state_ == State::Running; }
+  bool running() const noexcept;
   /// The device does not push any more, and everything that was cut is in `shown`. Nothing where it does not run. As
   /// frame() for a volume that was changed by something else, but the session has stopped all the same: the next call
   /// gives its last ticks.
@@ -75,47 +71,12 @@ class Session {
   std::size_t redo(Volume& shown);
 
   /// As of SculptLoop. nullptr before start().
-  SculptLoop* loop() noexcept { return loop_.get(); }
-  Pen& pen() noexcept { return *pen_; }
+  SculptLoop* loop() noexcept;
+  Pen& pen() noexcept;
 
  private:
-  enum class State : unsigned char { New, Running, Ended };
-  /// The volume between two strokes.
-  struct Moment {
-    std::uint64_t strokes;  // from the moment before to this one: one, or more where frames came seldom
-    Volume volume;
-    std::optional<Volume> left{};  // of what may be cut, where that is not the volume itself
-
-    const Volume& cut() const { return left ? *left : volume; }  // the loop's
-  };
-
-  std::optional<Pose> start_pose() const;
-  void poll() noexcept;
-  TileExchange::Mark follow(Volume& shown, std::vector<TileExchange::Place>& places);
-  void take_ticks(SessionFrame& frame);
-  void look(Volume& shown, SessionFrame& frame);
-  std::size_t go_to(Volume& shown, int step, const char* what);
-  void note_differences(const Volume& from, const Volume& to);
-
-  SessionSettings settings_;
-  Tool tool_;
-  std::shared_ptr<Pen> pen_;
-  std::shared_ptr<const Collider> obstacles_;
-  std::shared_ptr<StrokeSink> sink_;
-  std::shared_ptr<SculptLoop> loop_;
-  State state_ = State::New;
-  OwnThread poller_;
-  HomeProcess home_;
-  std::atomic<bool> ending_{false};
-  BlockReserve reserve_;
-
-  std::optional<MaskedStock> masked_stock_;  // where that is not the volume itself
-  std::optional<Volume> left_;               // of it, as it is shown
-  std::uint64_t shown_ = 0;                  // revision of the volume that is shown
-  std::vector<Moment> moments_;              // between strokes; oldest first
-  std::size_t here_ = 0;                     // of them, the one that is shown or being changed
-  std::uint64_t strokes_ = 0;                // that were seen
-  SessionFrame kept_;                        // for the next
+  struct Core;
+  std::unique_ptr<Core> core_;
 };
 
 }  // namespace riffler

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/check.hpp"
+#include "sweep/carve_moves.hpp"
 #include "sweep/cut_region.hpp"
 #include "sweep/grid_carver.hpp"
 

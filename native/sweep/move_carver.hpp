@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "dexel/volume.hpp"
-#include "sweep/grid_carver.hpp"
+#include "geom/pose.hpp"
 #include "tool/tool.hpp"
 
 namespace riffler {
@@ -29,11 +29,12 @@ class MoveCarver {
   MoveCarver(Volume& volume, const Tool& tool, const Options& options);
   MoveCarver(const MoveCarver&) = delete;
   MoveCarver& operator=(const MoveCarver&) = delete;
+  ~MoveCarver();
 
   /// Throws std::invalid_argument as `carve` does for poses or a `dt` (s) that make no move; then nothing was cut.
   Taken move(const Pose& from, const Pose& to, double dt);
 
-  double pitch() const { return volume_.reference().pitch(); }
+  double pitch() const;
 
   /// A tile by the numbers of its grid and in it.
   struct Place {
@@ -41,16 +42,11 @@ class MoveCarver {
     friend bool operator==(const Place&, const Place&) = default;
   };
   /// What the last move replaced.
-  std::span<const Place> replaced() const { return replaced_; }
+  std::span<const Place> replaced() const;
 
  private:
-  Volume& volume_;
-  std::vector<ConvexGroup> cutter_;
-  CarveOptions options_;
-  Cut cut_;
-  Rollback rollback_;
-  BlockVector<Place> replaced_;
-  std::vector<GridCarver> carvers_;
+  struct Core;
+  std::unique_ptr<Core> core_;
 };
 
 }  // namespace riffler

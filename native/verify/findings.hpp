@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nc/program.hpp"
+#include "verify/event.hpp"
 #include "verify/report.hpp"
 
 namespace riffler {

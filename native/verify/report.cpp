@@ -8,6 +8,18 @@
 
 namespace riffler {
 
+const char* name_of(Kind kind) {
+  static constexpr const char* names[] = {"rapid", "holder",  "shank",   "fixture", "gouge",
+                                          "rest",  "spindle", "machine", "unknown"};
+  return names[static_cast<int>(kind)];
+}
+
+VerifyStats& VerifyStats::operator+=(const VerifyStats& o) {
+  moves += o.moves, slabs += o.slabs, slabs_kept += o.slabs_kept, snapshots_used += o.snapshots_used;
+  probes += o.probes, probed_moves += o.probed_moves, bisections += o.bisections, skipped += o.skipped;
+  return *this;
+}
+
 void add_notes(VerifyReport& report, const std::vector<Note>& notes) {
   for (const Note& n : notes) {
     report.not_checked.push_back("line " + std::to_string(n.line) + ": " + n.message);

@@ -8,11 +8,9 @@
 #include "geom/pose.hpp"
 #include "sweep/convex_group.hpp"
 #include "tool/tool.hpp"
+#include "verify/report.hpp"
 
 namespace riffler {
-
-/// Of a tool in the machine. Beyond: where its description has ended and nobody knows what there is.
-enum class Member : unsigned char { Cutter, Shank, Holder, Beyond };
 
 /// A cylinder round some of a tool's pieces: heights on the axis and radius, mm.
 struct Rod {

@@ -1,34 +1,31 @@
-// Verification of programs while they are edited.
+// Verification of a program, and again while it is edited.
 #pragma once
 
-#include <optional>
+#include <memory>
 
-#include "verify/edit.hpp"
-#include "verify/slab_run.hpp"
+#include "base/progress.hpp"
+#include "nc/program.hpp"
+#include "verify/arguments.hpp"
+#include "verify/report.hpp"
 
 namespace riffler {
 
-/// Of a program that is like the one before only what differs is simulated again. The report is that of a fresh run,
-/// bit for bit.
+/// Verifies a program. Of the next one that is like it, only what differs is simulated. The report is that of a fresh
+/// run, bit for bit.
 class Verification {
  public:
   /// Throws std::invalid_argument naming the argument.
   explicit Verification(VerifyArguments arguments, const Progress& progress = {});
+  ~Verification();
+  Verification(Verification&&) noexcept;
+  Verification& operator=(Verification&&) noexcept;
 
   /// Throws as SlabRun::feed. After that, or Cancelled, this is as it was before the call.
   VerifyReport run(const Program& program, const Progress& progress = {});
 
  private:
-  struct Memory {  // of the run before
-    RunRows rows;
-    std::vector<SlabState> slabs;
-  };
-
-  /// Which slabs can stay as they are, and from where on the others must be run again.
-  std::vector<SlabState> resume(const RunRows& rows, VerifyStats& stats) const;
-
-  std::shared_ptr<VerifyScene> scene_;
-  std::optional<Memory> memory_;
+  struct Core;
+  std::unique_ptr<Core> core_;
 };
 
 }  // namespace riffler

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dexel/stats.hpp"
-#include "sweep/carve.hpp"
+#include "sweep/carve_moves.hpp"
 #include "verify/slab.hpp"
 
 namespace riffler {

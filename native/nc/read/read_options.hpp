@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/progress.hpp"
-#include "nc/options.hpp"
+#include "nc/option_values.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "nc/machine/machine_motion.hpp"
-#include "nc/options.hpp"
+#include "nc/option_values.hpp"
 
 namespace riffler {
 

@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "pen/hid/hid_list.hpp"
+#include "pen/hid/hidapi_mutex.hpp"
 
 namespace riffler {
 namespace {

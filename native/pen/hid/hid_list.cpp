@@ -9,6 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "pen/hid/hidapi_mutex.hpp"
+
 namespace riffler {
 namespace {
 

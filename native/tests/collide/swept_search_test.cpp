@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collide/collider.hpp"
+#include "collide/outline_lanes.hpp"
 #include "collide/tools.hpp"
 #include "mesh/shapes.hpp"
 #include "reference/assembly_distance.hpp"

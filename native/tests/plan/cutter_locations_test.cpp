@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "geom/directions.hpp"
 #include "mesh/shapes.hpp"
 #include "plan/least_tilt.hpp"
 #include "plan/orientation.hpp"

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "geom/directions.hpp"
 #include "plan/cc_frame.hpp"
 #include "plan/smooth_axes.hpp"
 #include "stress/random.hpp"

@@ -69,7 +69,7 @@ std::vector<Fault> faults() {
 }
 
 std::unique_ptr<JournalSink> sink_to(const std::filesystem::path& path, const Volume& stock,
-                                     const JournalStream::Options& options = {}) {
+                                     const JournalStreamOptions& options = {}) {
   auto writer = std::make_unique<JournalWriter>(path, JournalWriter::Keep::Rules);
   writer->set_stock({stock.frame().box, stock.frame().pitch, stock.frame().directions, ""});
   writer->add_tool(1, "{}");
