@@ -4,11 +4,11 @@
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
-#include "dexel/file/file.hpp"
-#include "haptics/material.hpp"
-#include "pen/pointer.hpp"
-#include "session/journal_sink.hpp"
-#include "session/session.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/haptics/material.hpp"
+#include "riffler/pen/pointer.hpp"
+#include "riffler/session/journal_sink.hpp"
+#include "riffler/session/session.hpp"
 
 namespace riffler {
 

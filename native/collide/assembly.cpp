@@ -1,4 +1,4 @@
-#include "collide/assembly.hpp"
+#include "riffler/collide/assembly.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "collide/assembly.hpp"
 #include "collide/drift.hpp"
 #include "collide/surface.hpp"
-#include "collide/swept.hpp"
 #include "collide/triangle_search.hpp"
-#include "geom/pose.hpp"
+#include "riffler/collide/assembly.hpp"
+#include "riffler/collide/swept.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler {
 

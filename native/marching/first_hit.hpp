@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "marching/lattice.hpp"
-#include "marching/surface_hit.hpp"
+#include "riffler/marching/surface_hit.hpp"
 
 namespace riffler::marching {
 

@@ -1,4 +1,4 @@
-#include "marching/pick.hpp"
+#include "riffler/marching/pick.hpp"
 
 #include <utility>
 

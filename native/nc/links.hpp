@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "collide/collider.hpp"
-#include "nc/link_rule.hpp"
 #include "nc/retract_path.hpp"
+#include "riffler/collide/collider.hpp"
+#include "riffler/nc/link_rule.hpp"
 
 namespace riffler {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "geom/vec.hpp"
-#include "nc/option_values.hpp"
+#include "riffler/geom/vec.hpp"
+#include "riffler/nc/option_values.hpp"
 
 namespace riffler {
 

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <memory>
 
-#include "haptics/safety.hpp"
-#include "pen/driver_settings.hpp"
-#include "pen/hid/open_error.hpp"
 #include "pen/hid_model.hpp"
-#include "pen/link_status.hpp"
-#include "pen/pen_step.hpp"
-#include "pen/published.hpp"
+#include "riffler/haptics/safety.hpp"
+#include "riffler/pen/driver_settings.hpp"
+#include "riffler/pen/hid/open_error.hpp"
+#include "riffler/pen/link_status.hpp"
+#include "riffler/pen/pen_step.hpp"
+#include "riffler/pen/published.hpp"
 
 namespace riffler {
 

@@ -1,14 +1,14 @@
-#include "plan/drop.hpp"
+#include "riffler/plan/drop.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 
-#include "base/parallel.hpp"
 #include "geom/median_tree.hpp"
-#include "plan/cc_frame.hpp"
 #include "plan/lower_side.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/plan/cc_frame.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "session/journal_sink.hpp"
+#include "riffler/session/journal_sink.hpp"
 
 #include <utility>
 

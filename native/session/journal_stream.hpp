@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/own_thread.hpp"
-#include "session/journal_file.hpp"
-#include "session/journal_stream_options.hpp"
+#include "riffler/session/journal_file.hpp"
+#include "riffler/session/journal_stream_options.hpp"
 
 namespace riffler {
 

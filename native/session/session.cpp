@@ -1,4 +1,4 @@
-#include "session/session.hpp"
+#include "riffler/session/session.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "base/block_pool.hpp"
 #include "base/own_thread.hpp"
 #include "pen/driver.hpp"
+#include "riffler/base/block_pool.hpp"
 #include "session/masked_stock.hpp"
 
 namespace riffler {

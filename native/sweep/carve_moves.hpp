@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "dexel/grid.hpp"
-#include "dexel/stats.hpp"
-#include "geom/pose.hpp"
+#include "riffler/dexel/grid.hpp"
+#include "riffler/dexel/stats.hpp"
+#include "riffler/geom/pose.hpp"
 #include "sweep/convex_group.hpp"
 
 namespace riffler {

@@ -1,10 +1,10 @@
-#include "sweep/move_carver.hpp"
+#include "riffler/sweep/move_carver.hpp"
 
 #include <array>
 #include <vector>
 
-#include "base/block_pool.hpp"
-#include "base/check.hpp"
+#include "riffler/base/block_pool.hpp"
+#include "riffler/base/check.hpp"
 #include "sweep/grid_carver.hpp"
 
 namespace riffler {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "geom/vec.hpp"
-#include "verify/report.hpp"
+#include "riffler/geom/vec.hpp"
+#include "riffler/verify/report.hpp"
 
 namespace riffler {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "nc/program.hpp"
-#include "verify/arguments.hpp"
-#include "verify/report.hpp"
+#include "riffler/nc/program.hpp"
+#include "riffler/verify/arguments.hpp"
+#include "riffler/verify/report.hpp"
 
 namespace riffler {
 

@@ -1,10 +1,10 @@
-#include "verify/report.hpp"
+#include "riffler/verify/report.hpp"
 
 #include <limits>
 #include <string>
 
-#include "marching/to_mesh.hpp"
 #include "mesh/closest.hpp"
+#include "riffler/marching/to_mesh.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "verify/arguments.hpp"
-#include "verify/report.hpp"
+#include "riffler/verify/arguments.hpp"
+#include "riffler/verify/report.hpp"
 #include "verify/slab_job.hpp"
 #include "verify/toolset.hpp"
 

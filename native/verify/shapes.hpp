@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/tool.hpp"
+#include "riffler/verify/report.hpp"
 #include "sweep/convex_group.hpp"
-#include "tool/tool.hpp"
-#include "verify/report.hpp"
 
 namespace riffler {
 

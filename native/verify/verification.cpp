@@ -1,10 +1,10 @@
-#include "verify/verification.hpp"
+#include "riffler/verify/verification.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 #include "verify/edit.hpp"
 #include "verify/slab_run.hpp"
 

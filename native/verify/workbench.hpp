@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "dexel/stats.hpp"
+#include "riffler/dexel/stats.hpp"
 #include "sweep/carve_moves.hpp"
 #include "verify/slab.hpp"
 

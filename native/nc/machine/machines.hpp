@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "nc/machine/machine.hpp"
-#include "nc/machine/machine_list.hpp"
 #include "nc/options.hpp"
+#include "riffler/nc/machine/machine_list.hpp"
 
 namespace riffler {
 

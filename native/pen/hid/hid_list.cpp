@@ -1,4 +1,4 @@
-#include "pen/hid/hid_list.hpp"
+#include "riffler/pen/hid/hid_list.hpp"
 
 #include <hidapi/hidapi.h>
 

@@ -1,9 +1,9 @@
-#include "haptics/passivity.hpp"
+#include "riffler/haptics/passivity.hpp"
 
 #include <gtest/gtest.h>
 
-#include "haptics/coupling.hpp"
 #include "haptics/passive_bound.hpp"
+#include "riffler/haptics/coupling.hpp"
 #include "stress/stability.hpp"
 #include "support/effort.hpp"
 #include "support/error_of.hpp"
