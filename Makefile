@@ -88,7 +88,7 @@ lint:  ## Check style, layers, and that every header stands alone
 
 format:  ## Bring all sources into style
 	@$(ready)
-	find native device -name '*.[ch]pp' -o -name '*.[ch]' | xargs .venv/bin/clang-format -i
+	find native device examples -name '*.[ch]pp' -o -name '*.[ch]' | xargs .venv/bin/clang-format -i
 	$(python) -m ruff check --fix-only --quiet .
 	$(python) -m ruff format .
 

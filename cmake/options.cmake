@@ -13,5 +13,3 @@ target_link_options(riffler_options INTERFACE LINKER:--as-needed)
 if(RIFFLER_WERROR)
   target_compile_options(riffler_options INTERFACE -Werror)
 endif()
-# glm is used without its implicit conversions and with double precision throughout.
-target_compile_definitions(riffler_options INTERFACE GLM_FORCE_EXPLICIT_CTOR GLM_FORCE_XYZW_ONLY)

@@ -1,7 +1,8 @@
 """Checks the Markdown documents: relative links and anchors lead somewhere, every picture of docs/images is shown,
 Python examples and `riffler` command lines run. All ```python blocks of a document run as one script, then the lines of
 its ```sh blocks that start with `riffler`, in an empty folder. A block under the line `<!-- not run: reason -->` is
-left out, and the reason printed; Blender's run in blender_tests/headless/test_documents.py.
+left out, and the reason printed; Blender's run in blender_tests/headless/test_documents.py. A block under the line
+`<!-- file: path -->` is a part of that file, word for word: its tests run it.
 
     tools/check_docs.py [FILE ...]
 """
@@ -20,6 +21,7 @@ from shell import PYTHON, ROOT, main, tool_environment
 LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
 FENCE = re.compile(r"^(\s*)(```+|~~~+)\s*(\w*)")
 NOT_RUN = re.compile(r"<!--\s*not run:\s*(.+?)\s*-->")
+QUOTED = re.compile(r"<!--\s*file:\s*(\S+)\s*-->")
 CODE = re.compile(r"`[^`]*`")
 SECONDS = 300
 
@@ -35,6 +37,7 @@ class Document:
     commands: list[tuple[int, str]] = field(default_factory=list)
     blocks: int = 0
     skipped: list[tuple[int, str]] = field(default_factory=list)
+    quotes: list[tuple[int, str, list[str]]] = field(default_factory=list)  # line, file, what is quoted of it
 
     @property
     def name(self) -> str:
@@ -50,6 +53,7 @@ def slug(heading: str) -> str:
 def read(path: Path) -> Document:
     document = Document(path)
     fence = language = None
+    quote: list[str] | None = None
     previous = ""
     for number, line in enumerate(path.read_text().splitlines(), 1):
         document.python.append("")
@@ -59,10 +63,15 @@ def read(path: Path) -> Document:
             if above := NOT_RUN.search(previous):
                 document.skipped.append((number, above[1]))
                 language = None
+            if above := QUOTED.search(previous):
+                quote = []
+                document.quotes.append((number, above[1], quote))
             document.blocks += language == "python"
         elif fence is not None and match and match[2].startswith(fence) and not match[3]:
-            fence = language = None
+            fence = language = quote = None
         elif fence is not None:
+            if quote is not None:
+                quote.append(line)
             if language == "python":
                 document.python[-1] = line
             elif language == "sh" and line.startswith("riffler "):
@@ -86,6 +95,17 @@ def link_problems(document: Document, documents: dict[Path, Document]) -> list[s
             problems.append(f"{document.name}:{number}: {target}: no such file")
         elif anchor and path in documents and anchor not in documents[path].anchors:
             problems.append(f"{document.name}:{number}: {target}: no such heading")
+    return problems
+
+
+def quote_problems(document: Document) -> list[str]:
+    problems = []
+    for number, name, lines in document.quotes:
+        path = ROOT / name
+        if not path.is_file():
+            problems.append(f"{document.name}:{number}: {name}: no such file")
+        elif "\n" + "\n".join(lines) + "\n" not in "\n" + path.read_text():
+            problems.append(f"{document.name}:{number}: this is not what stands in {name}")
     return problems
 
 
@@ -119,14 +139,15 @@ def entry() -> None:
     problems = [] if sys.argv[1:] else picture_problems(documents)
     for path in wanted:
         document = documents[path]
-        problems += link_problems(document, documents) + example_problems(document)
+        problems += link_problems(document, documents) + quote_problems(document) + example_problems(document)
         for number, reason in document.skipped:
             print(f"{document.name}:{number}: not run: {reason}")
     print("\n".join(problems))
     chosen = [documents[path] for path in wanted]
     print(
         f"docs: {len(chosen)} documents, {sum(len(d.links) for d in chosen)} links, "
-        f"{sum(d.blocks for d in chosen)} Python examples, {sum(len(d.commands) for d in chosen)} command lines: "
+        f"{sum(d.blocks for d in chosen)} Python examples, {sum(len(d.commands) for d in chosen)} command lines, "
+        f"{sum(len(d.quotes) for d in chosen)} quoted files: "
         + (f"{len(problems)} PROBLEMS" if problems else "all right")
     )
     sys.exit(bool(problems))

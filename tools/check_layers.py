@@ -1,8 +1,9 @@
 """Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, a folder of a topic only those
 that FOLDERS names, no file leads back to itself, the core touches neither Python nor what it is judged by, and the
 pen's C files touch nothing but each other. A source includes its own header first, which shows that the header stands
-alone. No type is defined twice in one namespace (cpp_types.py). The add-on's rules are in addon_layers.py. Prints every
-line that breaks a rule and exits 1."""
+alone. A public header (native/include/riffler) includes public headers, the standard library and GLM only. No type is
+defined twice in one namespace (cpp_types.py). The add-on's rules are in addon_layers.py. Prints every line that breaks
+a rule and exits 1."""
 
 from __future__ import annotations
 
@@ -47,6 +48,9 @@ FOLDERS = {
 USES_DEVICE = {"pen"}
 # What the pen's C files may include of the standard library: all of it is there without an operating system.
 FREESTANDING = {"stddef.h", "stdint.h", "string.h"}
+# Where public headers lie, and the folders of other libraries that they may include.
+PUBLIC = "native/include/riffler"
+PUBLIC_LIBRARIES = {"glm"}
 
 
 def topics(root: Path) -> list[str]:
@@ -70,11 +74,23 @@ def includes(root: Path, folder: Path) -> Iterator[tuple[str, str, str]]:
             yield place, match[1], match[2]
 
 
+def topic_includes(root: Path, topic: str) -> Iterator[tuple[str, str, str]]:
+    """Those of a topic's private and public files; "riffler/geom/pose.hpp" is given as "geom/pose.hpp"."""
+    for folder in (root / "native" / topic, root / PUBLIC / topic):
+        for place, quote, name in includes(root, folder):
+            yield place, quote, name.removeprefix("riffler/") if quote == '"' else name
+
+
+def in_core(place: str) -> str:
+    """The path within the topics of "native/…/geom/pose.hpp:12": "geom/pose.hpp"."""
+    return place.removeprefix(f"{PUBLIC}/").removeprefix("native/").split(":")[0]
+
+
 def core_problems(root: Path) -> list[str]:
     order = topics(root)
     problems = []
     for rank, topic in enumerate(order):
-        for place, quote, name in includes(root, root / "native" / topic):
+        for place, quote, name in topic_includes(root, topic):
             folder = name.split("/")[0]
             if name == "Python.h" or folder == "pybind11":
                 problems.append(f"{place}: the core includes {name}")
@@ -90,8 +106,8 @@ def core_problems(root: Path) -> list[str]:
 def folder_problems(root: Path) -> list[str]:
     problems = []
     for topic in topics(root):
-        for place, quote, name in includes(root, root / "native" / topic):
-            folder = str(Path(place).parent).removeprefix("native/")
+        for place, quote, name in topic_includes(root, topic):
+            folder = str(Path(in_core(place)).parent)
             used = name.rpartition("/")[0]
             if quote != '"' or folder not in FOLDERS or used == folder or used.split("/")[0] != topic:
                 continue
@@ -105,8 +121,8 @@ def circle_problems(root: Path) -> list[str]:
     """A header and its source are one here; a -inl.hpp belongs to the sources that include it."""
     used: dict[str, set[str]] = {}
     for topic in topics(root):
-        for place, quote, name in includes(root, root / "native" / topic):
-            path = place.removeprefix("native/").split(":")[0]
+        for place, quote, name in topic_includes(root, topic):
+            path = in_core(place)
             if quote == '"' and not path.endswith("-inl.hpp"):
                 used.setdefault(path.rsplit(".", 1)[0], set()).add(name.rsplit(".", 1)[0])
     problems = []
@@ -131,7 +147,7 @@ def beside_problems(root: Path) -> list[str]:
     for name, (above, beside) in BESIDE.items():
         allowed = [name, *(order if above is None else above), *beside]
         for place, quote, header in includes(root, root / "native" / name):
-            folder = header.split("/")[0]
+            folder = header.removeprefix("riffler/").split("/")[0]
             if quote == '"' and "/" in header and folder not in allowed:
                 problems.append(
                     f"{place}: {name} includes {header}; of native/ it may use {', '.join(allowed[1:])} only"
@@ -156,12 +172,27 @@ def header_problems(root: Path) -> list[str]:
     problems = []
     for topic in [*topics(root), "reference"]:
         for source in sorted((root / "native" / topic).rglob("*.cpp")):
-            own = source.with_suffix(".hpp")
+            own = source.relative_to(root / "native").with_suffix(".hpp")
+            public = (root / PUBLIC / own).exists()
             found = [INCLUDE.match(line) for line in source.read_text().splitlines()]
             first = next((match[2] for match in found if match), None)
-            name = str(own.relative_to(root / "native"))
-            if own.exists() and first != name:
+            name = f"riffler/{own}" if public else str(own)
+            if (public or (root / "native" / own).exists()) and first != name:
                 problems.append(f"{source.relative_to(root)}: includes {first} before {name}")
+    return problems
+
+
+def public_problems(root: Path) -> list[str]:
+    """What is installed needs nothing that is not."""
+    problems = []
+    for header in sorted((root / PUBLIC).rglob("*.hpp")):
+        if (root / "native" / header.relative_to(root / PUBLIC)).exists():
+            problems.append(f"{header.relative_to(root)}: there is a private header of that name too")
+    for place, quote, name in includes(root, root / PUBLIC):
+        if quote == '"' and not (root / "native" / "include" / name).exists():
+            problems.append(f"{place}: a public header includes {name}, which is private")
+        elif quote == "<" and ("/" in name or name.endswith(".h")) and name.split("/")[0] not in PUBLIC_LIBRARIES:
+            problems.append(f"{place}: a public header includes <{name}>, of another library than GLM")
     return problems
 
 
@@ -180,6 +211,7 @@ CHECKS = [
     beside_problems,
     device_problems,
     header_problems,
+    public_problems,
     type_problems,
     addon_layers.problems,
 ]

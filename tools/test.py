@@ -57,7 +57,7 @@ def lint() -> None:
     """Style, layers, and that every header stands alone."""
     run(PYTHON, "-m", "ruff", "check", ".")
     run(PYTHON, "-m", "ruff", "format", "--check", ".")
-    sources = [path for folder in ("native", "device") for path in (ROOT / folder).rglob("*.[chp]*")]
+    sources = [path for folder in ("native", "device", "examples") for path in (ROOT / folder).rglob("*.[chp]*")]
     sources = sorted(path for path in sources if path.suffix in {".c", ".h", ".cpp", ".hpp"})
     run(PYTHON.with_name("clang-format"), "--dry-run", "-Werror", *sources)
     run(PYTHON, "tools/check_layers.py")

@@ -47,7 +47,7 @@ SYSTEM_LIBRARIES = ("linux-vdso.so", "libstdc++.so", "libgcc_s.so", "libc.so", "
 def sources(distribution: Distribution = RIFFLER) -> list[Path]:
     """Every file that the wheel depends on."""
     files = [ROOT / name for name in ("CMakeLists.txt", "pyproject.toml", "README.md", "LICENSE")]
-    files += (ROOT / "cmake").rglob("*.cmake")
+    files += (ROOT / "cmake").rglob("*.cmake*")
     files += (ROOT / "device" / "geometry").glob("*.toml")
     files += (ROOT / "device").rglob("CMakeLists.txt")
     files += (ROOT / "device").rglob("*.[ch]")

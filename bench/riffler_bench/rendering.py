@@ -85,9 +85,10 @@ def errors(out: Report, settings: Settings) -> None:
     table.notes.append(
         f"Stock of {pitch:g} mm. In shares of the largest force. Late by: the shift of the small steps' force that "
         "comes nearest. Groove: a Ø6 bull nose sideways into a block, 1 to 3 mm deep, leaning to and fro. The area "
-        "that the cutter meets is learnt over a third of the pitch (memory_for, native/haptics/resistance.hpp), by "
-        "small steps over 0.01 mm (wave) and 0.02 mm (groove). That third was chosen by wave and by slots of a flat "
-        "end; groove checks it, and native/tests/haptics compares with closed forms."
+        "that the cutter meets is learnt over a third of the pitch (memory_for, "
+        "native/include/riffler/haptics/resistance.hpp), by small steps over 0.01 mm (wave) and 0.02 mm (groove). "
+        "That third was chosen by wave and by slots of a flat end; groove checks it, and native/tests/haptics compares "
+        "with closed forms."
     )
 
 

@@ -47,7 +47,7 @@ def test_the_preferences_are_the_addons_in_whatever_way_it_was_installed():
 
 
 def test_limits_come_as_they_are_in_the_core():
-    """The defaults of the native core (native/haptics/limits.hpp): 5 N, 300 N·mm, 2 W."""
+    """The defaults of the native core (native/include/riffler/haptics/limits.hpp): 5 N, 300 N·mm, 2 W."""
     given = common.part("blender.preferences_access").limits()
     assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (5, 300, 2000))
 

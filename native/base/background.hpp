@@ -9,7 +9,7 @@
 #include <mutex>
 
 #include "base/own_thread.hpp"
-#include "base/progress.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "base/bulk.hpp"
+#include "riffler/base/bulk.hpp"
 
 #include <sys/mman.h>
 

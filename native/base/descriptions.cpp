@@ -1,4 +1,4 @@
-#include "base/descriptions.hpp"
+#include "riffler/base/descriptions.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

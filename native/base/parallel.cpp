@@ -1,4 +1,4 @@
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 #include <sched.h>
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

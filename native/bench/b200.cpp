@@ -6,8 +6,8 @@
 
 #include "bench/process.hpp"
 #include "bench/scenes.hpp"
-#include "marching/to_mesh.hpp"
-#include "sweep/carve.hpp"
+#include "riffler/marching/to_mesh.hpp"
+#include "riffler/sweep/carve.hpp"
 
 int main(int argc, char** argv) {
   using namespace riffler;

@@ -6,7 +6,7 @@
 
 #include "bench/capsule_loop.hpp"
 #include "bench/scenes.hpp"
-#include "sweep/carve.hpp"
+#include "riffler/sweep/carve.hpp"
 
 namespace {
 

@@ -9,10 +9,10 @@
 
 #include "base/own_thread.hpp"
 #include "bench/process.hpp"
-#include "collide/collider.hpp"
 #include "reference/surface_distance.hpp"
 #include "reference/surface_entry.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/collide/collider.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::bench {
 

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "geom/math.hpp"
-#include "tool/cutters.hpp"
-#include "tool/outline.hpp"
+#include "riffler/tool/cutters.hpp"
+#include "riffler/tool/outline.hpp"
 
 namespace riffler::bench {
 

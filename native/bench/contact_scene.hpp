@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "geom/pose.hpp"
-#include "mesh/mesh.hpp"
-#include "tool/tool.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/mesh/mesh.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler::bench {
 

@@ -5,12 +5,12 @@
 #include <memory>
 #include <stdexcept>
 
-#include "base/check.hpp"
 #include "base/own_thread.hpp"
 #include "bench/contact_scene.hpp"
 #include "bench/interpolated_wrench.hpp"
-#include "haptics/sculpt_step.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/haptics/sculpt_step.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::bench {
 

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
 #include "bench/scenes.hpp"
-#include "marching/mesher.hpp"
-#include "marching/to_mesh.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/marching/mesher.hpp"
+#include "riffler/marching/to_mesh.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::bench {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "geom/math.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::bench {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "geom/pose.hpp"
-#include "tool/tool.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler::bench {
 

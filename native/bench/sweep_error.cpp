@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "base/parallel.hpp"
 #include "reference/swept_path.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::bench {
 

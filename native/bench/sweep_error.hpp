@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "dexel/volume.hpp"
-#include "geom/pose.hpp"
-#include "tool/tool.hpp"
+#include "riffler/dexel/volume.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler::bench {
 

@@ -3,12 +3,12 @@
 #include <memory>
 #include <mutex>
 
-#include "base/parallel.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
-#include "collide/collider.hpp"
-#include "haptics/material.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/collide/collider.hpp"
+#include "riffler/haptics/material.hpp"
 
 namespace riffler {
 

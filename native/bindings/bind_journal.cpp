@@ -5,9 +5,9 @@
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
-#include "session/journal.hpp"
-#include "session/journal_file.hpp"
-#include "session/replay.hpp"
+#include "riffler/session/journal.hpp"
+#include "riffler/session/journal_file.hpp"
+#include "riffler/session/replay.hpp"
 
 namespace riffler {
 

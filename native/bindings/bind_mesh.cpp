@@ -1,19 +1,19 @@
 // riffler.Mesh: triangle meshes, their files, audit, decimation and smoothing.
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 #include <array>
 #include <cstring>
 #include <memory>
 
 #include "bindings/task.hpp"
-#include "mesh/audit.hpp"
 #include "mesh/closest.hpp"
-#include "mesh/decimate/decimate.hpp"
-#include "mesh/io/io.hpp"
 #include "mesh/io/scan.hpp"
-#include "mesh/orient.hpp"
-#include "mesh/smooth.hpp"
 #include "mesh/weld.hpp"
+#include "riffler/mesh/audit.hpp"
+#include "riffler/mesh/decimate/decimate.hpp"
+#include "riffler/mesh/io/io.hpp"
+#include "riffler/mesh/orient.hpp"
+#include "riffler/mesh/smooth.hpp"
 
 namespace riffler {
 

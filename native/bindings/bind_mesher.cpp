@@ -5,8 +5,8 @@
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
 #include "geom/math.hpp"
-#include "marching/mesher.hpp"
 #include "marching/patch_edges.hpp"
+#include "riffler/marching/mesher.hpp"
 
 namespace riffler {
 

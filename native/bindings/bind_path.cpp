@@ -2,11 +2,11 @@
 #include <cmath>
 #include <memory>
 
-#include "base/check.hpp"
 #include "bindings/bindings.hpp"
-#include "plan/cc_frame.hpp"
-#include "plan/orientation.hpp"
 #include "plan/pick.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/plan/cc_frame.hpp"
+#include "riffler/plan/orientation.hpp"
 
 namespace riffler {
 

@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "bindings/bindings.hpp"
-#include "pen/arms/motors.hpp"
 #include "pen/arms/pens.hpp"
 #include "pen/arms/redundancy.hpp"
 #include "pen/arms/wrench_split.hpp"
-#include "pen/capability.hpp"
+#include "riffler/pen/arms/motors.hpp"
+#include "riffler/pen/capability.hpp"
 
 namespace riffler {
 

@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "bindings/bindings.hpp"
-#include "pen/arms/kinematics.hpp"
-#include "pen/hid/open_error.hpp"
-#include "pen/playback.hpp"
-#include "pen/pointer.hpp"
-#include "pen/registry.hpp"
 #include "pen/simulated/simulated_device.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
+#include "riffler/pen/hid/open_error.hpp"
+#include "riffler/pen/playback.hpp"
+#include "riffler/pen/pointer.hpp"
+#include "riffler/pen/registry.hpp"
 
 namespace riffler {
 namespace {

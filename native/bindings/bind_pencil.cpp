@@ -3,8 +3,8 @@
 
 #include "bindings/task.hpp"
 #include "plan/passes.hpp"
-#include "plan/pencil.hpp"
-#include "tool/tool.hpp"
+#include "riffler/plan/pencil.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler {
 

@@ -2,14 +2,14 @@
 #include <limits>
 #include <memory>
 
-#include "base/parallel.hpp"
 #include "bindings/task.hpp"
-#include "collide/collider.hpp"
-#include "plan/contact_location.hpp"
-#include "plan/cutter_locations.hpp"
-#include "plan/drop.hpp"
-#include "plan/least_tilt.hpp"
-#include "plan/lift.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/collide/collider.hpp"
+#include "riffler/plan/contact_location.hpp"
+#include "riffler/plan/cutter_locations.hpp"
+#include "riffler/plan/drop.hpp"
+#include "riffler/plan/least_tilt.hpp"
+#include "riffler/plan/lift.hpp"
 
 namespace riffler {
 

@@ -1,7 +1,7 @@
 // riffler.Program.save, .load, .to_bytes, and pickling: programs to the bit.
 #include "base/bytes.hpp"
 #include "bindings/bindings.hpp"
-#include "nc/program_file.hpp"
+#include "riffler/nc/program_file.hpp"
 
 namespace riffler {
 

@@ -4,11 +4,11 @@
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_volume.hpp"
-#include "dexel/file/file.hpp"
-#include "haptics/material.hpp"
-#include "pen/pointer.hpp"
-#include "session/journal_sink.hpp"
-#include "session/session.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/haptics/material.hpp"
+#include "riffler/pen/pointer.hpp"
+#include "riffler/session/journal_sink.hpp"
+#include "riffler/session/session.hpp"
 
 namespace riffler {
 
@@ -226,7 +226,7 @@ void record(SharedSession& self, const std::filesystem::path& path, const py::di
                      self.mask ? mask.filename().string() : ""});
   writer->add_tool(1, tool_json(py::cast(self.tool)));
   writer->sync();
-  JournalStream::Options options;
+  JournalStreamOptions options;
   options.mode = stroke_mode(self);
   auto sink = std::make_shared<JournalSink>(std::move(writer), 1, self.carving.tolerance, options);
   self.session->record(sink);

@@ -3,7 +3,7 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
-#include "dexel/smooth/smooth_dabs.hpp"
+#include "riffler/dexel/smooth/smooth_dabs.hpp"
 
 namespace riffler {
 

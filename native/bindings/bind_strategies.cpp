@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "bindings/bindings.hpp"
-#include "plan/engrave.hpp"
-#include "plan/swarf.hpp"
+#include "riffler/plan/engrave.hpp"
+#include "riffler/plan/swarf.hpp"
 
 namespace riffler {
 

@@ -1,6 +1,6 @@
 // riffler.Task and the number of threads.
-#include "base/parallel.hpp"
 #include "bindings/task.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -5,8 +5,8 @@
 #include <variant>
 
 #include "bindings/bindings.hpp"
-#include "tool/cutters.hpp"
-#include "tool/outline.hpp"
+#include "riffler/tool/cutters.hpp"
+#include "riffler/tool/outline.hpp"
 
 namespace riffler {
 

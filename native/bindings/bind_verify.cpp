@@ -5,8 +5,8 @@
 #include "bindings/shared_report.hpp"
 #include "bindings/task.hpp"
 #include "bindings/verify_arguments.hpp"
+#include "riffler/verify/verification.hpp"
 #include "verify/slab_run.hpp"
-#include "verify/verification.hpp"
 
 namespace riffler {
 

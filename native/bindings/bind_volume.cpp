@@ -4,11 +4,11 @@
 #include "bindings/lost.hpp"
 #include "bindings/task.hpp"
 #include "bindings/volume_class.hpp"
-#include "dexel/boolean.hpp"
-#include "dexel/file/file.hpp"
-#include "dexel/from_mesh/from_mesh.hpp"
-#include "marching/to_mesh.hpp"
-#include "sweep/carve.hpp"
+#include "riffler/dexel/boolean.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
+#include "riffler/marching/to_mesh.hpp"
+#include "riffler/sweep/carve.hpp"
 
 namespace riffler {
 

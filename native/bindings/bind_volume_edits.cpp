@@ -1,13 +1,13 @@
 // riffler.Volume: what is done to it as a whole.
 #include "bindings/task.hpp"
 #include "bindings/volume_class.hpp"
-#include "dexel/clip.hpp"
-#include "dexel/contains.hpp"
-#include "dexel/from_mesh/from_mesh.hpp"
-#include "dexel/grown.hpp"
-#include "dexel/parts.hpp"
-#include "dexel/quadrics.hpp"
-#include "marching/to_mesh.hpp"
+#include "riffler/dexel/clip.hpp"
+#include "riffler/dexel/contains.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
+#include "riffler/dexel/grown.hpp"
+#include "riffler/dexel/parts.hpp"
+#include "riffler/dexel/quadrics.hpp"
+#include "riffler/marching/to_mesh.hpp"
 
 namespace riffler {
 

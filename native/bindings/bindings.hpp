@@ -9,13 +9,13 @@
 #include <optional>
 #include <string>
 
-#include "base/progress.hpp"
 #include "bindings/gil.hpp"
-#include "collide/contact.hpp"
-#include "geom/pose.hpp"
-#include "geom/vec.hpp"
 #include "nc/options.hpp"
-#include "plan/orientation.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/collide/contact.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/geom/vec.hpp"
+#include "riffler/plan/orientation.hpp"
 
 namespace riffler {
 

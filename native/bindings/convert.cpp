@@ -2,8 +2,8 @@
 #include <cmath>
 #include <memory>
 
-#include "base/check.hpp"
 #include "bindings/bindings.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "bindings/bindings.hpp"
-#include "pen/hid/open_error.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/pen/hid/open_error.hpp"
 
 namespace riffler {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bindings/bindings.hpp"
-#include "dexel/from_mesh/mesh_report.hpp"
-#include "marching/thin.hpp"
+#include "riffler/dexel/from_mesh/mesh_report.hpp"
+#include "riffler/marching/thin.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bindings/lazy_object.hpp"
-#include "verify/report.hpp"
+#include "riffler/verify/report.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <shared_mutex>
 #include <stdexcept>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler {
 

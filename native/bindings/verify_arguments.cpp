@@ -4,8 +4,8 @@
 #include <map>
 #include <tuple>
 
-#include "dexel/from_mesh/from_mesh.hpp"
-#include "nc/read/reader.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
+#include "riffler/nc/read/reader.hpp"
 
 namespace riffler {
 

@@ -1,10 +1,20 @@
-#include "collide/assembly.hpp"
+#include "riffler/collide/assembly.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
+#include "collide/outline_lanes.hpp"
+#include "collide/outline_runs.hpp"
+
 namespace riffler {
+
+struct Assembly::Forms {
+  OutlineRuns runs;
+  std::vector<LaneEdge> lane_edges;
+
+  explicit Forms(const std::vector<OutlineEdge>& edges) : runs(edges), lane_edges(edges.begin(), edges.end()) {}
+};
 
 struct Assembly::Deepest {
   std::once_flag once;
@@ -58,12 +68,11 @@ double widest(const OutlineEdge& e) {
 Assembly::Assembly(const Tool& tool)
     : tool_(tool),
       outline_(tool),
-      runs_(outline_.edges()),
+      forms_(std::make_shared<const Forms>(outline_.edges())),
       reach_(0),
       max_radius_(0),
       deepest_(std::make_shared<Deepest>()) {
   for (const OutlineEdge& e : outline_.edges()) {
-    lane_edges_.emplace_back(e);
     reach_ = std::max({reach_, glm::length(e.from), glm::length(e.to)});
     max_radius_ = std::max(max_radius_, widest(e));
     if (e.centre) reach_ = std::max(reach_, glm::length(*e.centre) + std::abs(e.bulge));
@@ -73,6 +82,14 @@ Assembly::Assembly(const Tool& tool)
     stretches_.back().high = e.to.y, stretches_.back().top = e.to.x;
     stretches_.back().radius = std::max(stretches_.back().radius, widest(e));
   }
+}
+
+const OutlineRuns& Assembly::runs() const {
+  return forms_->runs;
+}
+
+const std::vector<LaneEdge>& Assembly::lane_edges() const {
+  return forms_->lane_edges;
 }
 
 Part Assembly::part_at(double z) const {

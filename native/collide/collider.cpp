@@ -1,4 +1,4 @@
-#include "collide/collider.hpp"
+#include "riffler/collide/collider.hpp"
 
 #include <algorithm>
 #include <mutex>
@@ -9,10 +9,11 @@
 #include "collide/fixture.hpp"
 #include "collide/force.hpp"
 #include "collide/nearest_search.hpp"
+#include "collide/swept_search.hpp"
 #include "collide/winding.hpp"
-#include "marching/to_mesh.hpp"
-#include "mesh/decimate/decimate.hpp"
-#include "mesh/orient.hpp"
+#include "riffler/marching/to_mesh.hpp"
+#include "riffler/mesh/decimate/decimate.hpp"
+#include "riffler/mesh/orient.hpp"
 
 namespace riffler {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/block_pool.hpp"
 #include "collide/box_lanes.hpp"
+#include "riffler/base/block_pool.hpp"
 
 namespace riffler {
 

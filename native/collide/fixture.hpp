@@ -3,14 +3,14 @@
 
 #include <cstddef>
 
-#include "collide/assembly.hpp"
-#include "collide/contact.hpp"
 #include "collide/deadline.hpp"
 #include "collide/material_boxes.hpp"
 #include "collide/surface.hpp"
 #include "collide/tool_frame.hpp"
-#include "dexel/volume.hpp"
 #include "mesh/closest.hpp"
+#include "riffler/collide/assembly.hpp"
+#include "riffler/collide/contact.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler {
 

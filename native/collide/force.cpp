@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/block_pool.hpp"
+#include "collide/outline_lanes.hpp"
+#include "riffler/base/block_pool.hpp"
 
 namespace riffler {
 

@@ -1,11 +1,11 @@
 // Force and torque of a part's surface on a tool that is in it: (4.7), (4.8).
 #pragma once
 
-#include "collide/assembly.hpp"
-#include "collide/contact.hpp"
 #include "collide/deadline.hpp"
 #include "collide/sample_points.hpp"
 #include "collide/tool_frame.hpp"
+#include "riffler/collide/assembly.hpp"
+#include "riffler/collide/contact.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

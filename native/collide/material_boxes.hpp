@@ -5,7 +5,7 @@
 
 #include "collide/box_lanes.hpp"
 #include "collide/sphere_tree.hpp"
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler {
 

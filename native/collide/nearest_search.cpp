@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "collide/outline_lanes.hpp"
+
 namespace riffler {
 
 NearestSearch::NearestSearch(const Assembly& assembly, const ToolFrame& frame)

@@ -3,11 +3,11 @@
 
 #include <span>
 
-#include "base/block_pool.hpp"
-#include "collide/assembly.hpp"
-#include "collide/contact.hpp"
 #include "collide/deadline.hpp"
 #include "collide/surface.hpp"
+#include "riffler/base/block_pool.hpp"
+#include "riffler/collide/assembly.hpp"
+#include "riffler/collide/contact.hpp"
 
 namespace riffler {
 

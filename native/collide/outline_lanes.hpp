@@ -9,7 +9,7 @@
 #include "collide/sphere_tree.hpp"
 #include "collide/tool_frame.hpp"
 #include "collide/triangle_search.hpp"
-#include "tool/outline.hpp"
+#include "riffler/tool/outline.hpp"
 
 namespace riffler {
 

@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "tool/outline.hpp"
+#include "riffler/tool/outline.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

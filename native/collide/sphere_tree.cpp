@@ -4,8 +4,8 @@
 #include <limits>
 #include <numeric>
 
-#include "base/parallel.hpp"
 #include "geom/median_tree.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

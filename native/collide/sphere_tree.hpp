@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/lanes.hpp"
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 
 #include "collide/sphere_tree.hpp"
 #include "collide/triangle_search.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.hpp"
+#include "collide/outline_lanes.hpp"
 #include "geom/math.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

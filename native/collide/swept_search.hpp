@@ -1,31 +1,18 @@
-// Whether a tool that moves between two poses stays clear of surfaces: not at sampled poses only.
+// The search for the place and the time at which a moving tool comes too near to surfaces.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "collide/assembly.hpp"
-#include "collide/contact.hpp"
 #include "collide/drift.hpp"
 #include "collide/surface.hpp"
 #include "collide/triangle_search.hpp"
-#include "geom/pose.hpp"
+#include "riffler/collide/assembly.hpp"
+#include "riffler/collide/swept.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler {
-
-struct Swept {
-  enum class Answer {
-    Clear,    ///< the clearance is at least the wanted one all along
-    Gouges,   ///< it is less at time `at`
-    Unknown,  ///< the evaluations ran out
-  } answer = Answer::Unknown;
-  double at = 0;         ///< time of the least clearance seen
-  double clearance = 0;  ///< that clearance, mm; ∞ where everything is far off
-  double bound = 0;      ///< no pose in between has less than this, mm
-  Touch touch = Touch::Cutter;
-  std::size_t evaluations = 0;  ///< groups of bounds, and triangles looked at by themselves
-};
 
 /// Branch and bound over the part and over time at once: what is far from all of the motion is dismissed for all of it,
 /// and only what the tool passes close to is looked at in ever shorter stretches. Over a stretch the distance of a

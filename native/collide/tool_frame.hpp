@@ -1,7 +1,7 @@
 // Coordinates in which a tool stands still.
 #pragma once
 
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler {
 

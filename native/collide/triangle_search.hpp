@@ -4,11 +4,11 @@
 #include <array>
 #include <limits>
 
-#include "base/block_pool.hpp"
 #include "collide/deadline.hpp"
 #include "collide/drift.hpp"
 #include "collide/outline_runs.hpp"
-#include "geom/vec.hpp"
+#include "riffler/base/block_pool.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

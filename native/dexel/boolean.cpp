@@ -1,6 +1,6 @@
 // Every ray is a linear merge of two sorted lists of ends. Work follows the pairs of *distinct* tiles: a block's inner
 // tiles are one shared tile, and what happens to a pair of tiles happens to every place that holds it.
-#include "dexel/boolean.hpp"
+#include "riffler/dexel/boolean.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "dexel/joiner.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

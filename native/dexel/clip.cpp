@@ -1,13 +1,13 @@
 // The half space is a volume of one span a ray, and a clip its intersection with it.
-#include "dexel/clip.hpp"
+#include "riffler/dexel/clip.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
-#include "dexel/boolean.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/dexel/boolean.hpp"
 
 namespace riffler {
 

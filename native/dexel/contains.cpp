@@ -1,9 +1,9 @@
-#include "dexel/contains.hpp"
+#include "riffler/dexel/contains.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "dexel/grid.hpp"
+#include "riffler/dexel/grid.hpp"
 
 #include <algorithm>
 #include <cmath>

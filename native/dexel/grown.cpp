@@ -1,6 +1,6 @@
 // Tiles change hands as they are where rays move by whole tiles. Otherwise each new tile is put together from up to
 // four old ones, once for every four that meet: a block's inner tiles are one shared tile, and stay one.
-#include "dexel/grown.hpp"
+#include "riffler/dexel/grown.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -1,7 +1,7 @@
 // How ends along a ray become spans again.
 #pragma once
 
-#include "dexel/tile.hpp"
+#include "riffler/dexel/tile.hpp"
 
 namespace riffler {
 

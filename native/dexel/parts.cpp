@@ -1,5 +1,5 @@
 // Union-find over all spans.
-#include "dexel/parts.hpp"
+#include "riffler/dexel/parts.hpp"
 
 #include <algorithm>
 #include <cmath>

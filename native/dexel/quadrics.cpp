@@ -1,6 +1,6 @@
 // Each ray is cut with the solid in closed form, in the grid's cyclic frame, where rays run along z. Chords are taken
 // from the distance between the ray and the centre or the axis as √((r − d)(r + d)), which loses nothing near tangency.
-#include "dexel/quadrics.hpp"
+#include "riffler/dexel/quadrics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
 #include "dexel/joiner.hpp"
-#include "geom/interval.hpp"
 #include "geom/math.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/geom/interval.hpp"
 
 namespace riffler {
 

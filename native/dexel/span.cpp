@@ -1,4 +1,4 @@
-#include "dexel/span.hpp"
+#include "riffler/dexel/span.hpp"
 
 #include <algorithm>
 #include <cmath>

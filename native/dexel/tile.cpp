@@ -1,4 +1,4 @@
-#include "dexel/tile.hpp"
+#include "riffler/dexel/tile.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

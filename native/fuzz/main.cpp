@@ -17,10 +17,10 @@
 #include <map>
 #include <string>
 
-#include "base/parallel.hpp"
 #include "fuzz/coverage.hpp"
 #include "fuzz/mutator.hpp"
 #include "fuzz/targets.hpp"
+#include "riffler/base/parallel.hpp"
 
 // Of the sanitizers' runtime, where there is one.
 extern "C" [[gnu::weak]] void __sanitizer_set_death_callback(void (*callback)());

@@ -1,15 +1,15 @@
 #include "fuzz/samples.hpp"
 
-#include "dexel/file/file.hpp"
 #include "mesh/io/obj.hpp"
 #include "mesh/io/ply.hpp"
 #include "mesh/io/stl.hpp"
 #include "nc/machine/shipped_machines.hpp"
-#include "nc/program_file.hpp"
 #include "pen/arms/shipped_pens.hpp"
-#include "session/journal_file.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/nc/program_file.hpp"
+#include "riffler/session/journal_file.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "verify/slab_packets.hpp"
 
 namespace riffler::fuzz {

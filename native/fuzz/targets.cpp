@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
-#include "dexel/file/file.hpp"
 #include "fuzz/repair.hpp"
 #include "fuzz/samples.hpp"
 #include "mesh/io/obj.hpp"
@@ -12,11 +10,13 @@
 #include "mesh/io/stl.hpp"
 #include "nc/machine/description.hpp"
 #include "nc/machine/machine.hpp"
-#include "nc/program_file.hpp"
-#include "nc/read/reader.hpp"
 #include "pen/arms/description.hpp"
 #include "pen/hid/hid_descriptor.hpp"
-#include "session/journal_file.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/nc/program_file.hpp"
+#include "riffler/nc/read/reader.hpp"
+#include "riffler/session/journal_file.hpp"
 #include "verify/slab_packets.hpp"
 
 namespace riffler::fuzz {

@@ -1,7 +1,7 @@
 // Rounding to the coordinates that a binary STL holds.
 #pragma once
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/parallel.hpp"
-#include "geom/vec.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "haptics/balance.hpp"
+#include "riffler/haptics/balance.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "haptics/coupling.hpp"
+#include "riffler/haptics/coupling.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "geom/math.hpp"
-#include "haptics/settings.hpp"
+#include "riffler/haptics/settings.hpp"
 
 namespace riffler {
 

@@ -1,9 +1,9 @@
-#include "haptics/limits.hpp"
+#include "riffler/haptics/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

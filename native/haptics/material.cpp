@@ -1,6 +1,6 @@
-#include "haptics/material.hpp"
+#include "riffler/haptics/material.hpp"
 
-#include "haptics/settings.hpp"
+#include "riffler/haptics/settings.hpp"
 
 namespace riffler {
 

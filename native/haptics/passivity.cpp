@@ -1,9 +1,9 @@
-#include "haptics/passivity.hpp"
+#include "riffler/haptics/passivity.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

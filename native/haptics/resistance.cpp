@@ -1,4 +1,4 @@
-#include "haptics/resistance.hpp"
+#include "riffler/haptics/resistance.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "haptics/safety.hpp"
+#include "riffler/haptics/safety.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/check.hpp"
 #include "geom/directions.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

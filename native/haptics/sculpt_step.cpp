@@ -1,10 +1,10 @@
-#include "haptics/sculpt_step.hpp"
+#include "riffler/haptics/sculpt_step.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

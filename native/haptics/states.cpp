@@ -1,4 +1,4 @@
-#include "haptics/states.hpp"
+#include "riffler/haptics/states.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "haptics/trip_log.hpp"
+#include "riffler/haptics/trip_log.hpp"
 
 namespace riffler {
 

@@ -1,9 +1,9 @@
-#include "haptics/workspace.hpp"
+#include "riffler/haptics/workspace.hpp"
 
 #include <cmath>
 
-#include "haptics/coupling.hpp"
-#include "haptics/settings.hpp"
+#include "riffler/haptics/coupling.hpp"
+#include "riffler/haptics/settings.hpp"
 
 namespace riffler {
 

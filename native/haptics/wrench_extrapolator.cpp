@@ -1,9 +1,9 @@
-#include "haptics/wrench_extrapolator.hpp"
+#include "riffler/haptics/wrench_extrapolator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

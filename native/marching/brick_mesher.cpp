@@ -1,9 +1,9 @@
 #include <bit>
 
-#include "base/parallel.hpp"
 #include "marching/neighbourhood.hpp"
 #include "marching/surface.hpp"
 #include "marching/vertices.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
 

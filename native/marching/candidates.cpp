@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "base/parallel.hpp"
 #include "marching/surface.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "dexel/volume.hpp"
 #include "marching/bricks.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler::marching {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "marching/patch.hpp"
+#include "riffler/marching/patch.hpp"
 
 namespace riffler::marching {
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "geom/vec.hpp"
 #include "marching/lattice.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler::marching {
 

@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/block_pool.hpp"
 #include "marching/sight.hpp"
 #include "marching/surface.hpp"
+#include "riffler/base/block_pool.hpp"
 
 namespace riffler::marching {
 

@@ -3,9 +3,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/parallel.hpp"
 #include "base/sort_unique.hpp"
 #include "marching/surface.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
 

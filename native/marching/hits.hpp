@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "dexel/volume.hpp"
 #include "marching/bricks.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler::marching {
 

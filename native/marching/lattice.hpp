@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler::marching {
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "base/parallel.hpp"
 #include "base/sort_unique.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "marching/changes.hpp"
-#include "marching/pick.hpp"
 #include "marching/signs.hpp"
 #include "marching/slots.hpp"
 #include "marching/surface.hpp"
+#include "riffler/marching/pick.hpp"
 
 namespace riffler::marching {
 

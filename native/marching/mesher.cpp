@@ -1,10 +1,11 @@
-#include "marching/mesher.hpp"
+#include "riffler/marching/mesher.hpp"
 
-#include "base/parallel.hpp"
 #include "marching/corner_normals.hpp"
 #include "marching/facets.hpp"
+#include "marching/first_hit.hpp"
 #include "marching/mesh_state.hpp"
-#include "marching/to_mesh.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/marching/to_mesh.hpp"
 
 namespace riffler {
 

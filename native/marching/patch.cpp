@@ -1,4 +1,4 @@
-#include "marching/patch.hpp"
+#include "riffler/marching/patch.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,7 +1,7 @@
 // The edges of a patch, as programs that draw it want them.
 #pragma once
 
-#include "marching/patch.hpp"
+#include "riffler/marching/patch.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler::marching {
 

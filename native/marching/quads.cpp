@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/parallel.hpp"
 #include "base/sort_unique.hpp"
 #include "marching/cases.hpp"
 #include "marching/surface.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler::marching {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "base/progress.hpp"
-#include "dexel/volume.hpp"
 #include "marching/bricks.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler::marching {
 

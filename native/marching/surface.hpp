@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "marching/bricks.hpp"
 #include "marching/diagonal.hpp"
 #include "marching/float_grid.hpp"
 #include "marching/hits.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler::marching {
 

@@ -1,13 +1,13 @@
-#include "marching/thin.hpp"
+#include "riffler/marching/thin.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "marching/lattice.hpp"
 #include "marching/signs.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

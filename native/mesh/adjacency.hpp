@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

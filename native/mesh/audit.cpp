@@ -1,4 +1,4 @@
-#include "mesh/audit.hpp"
+#include "riffler/mesh/audit.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/near_points.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

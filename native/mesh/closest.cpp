@@ -6,11 +6,11 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "base/parallel.hpp"
 #include "geom/directions.hpp"
 #include "geom/median_tree.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/orient.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/mesh/orient.hpp"
 
 namespace riffler {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "geom/median_tree.hpp"
-#include "geom/vec.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/geom/vec.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

@@ -1,7 +1,7 @@
 // When two triangles are as good as folded onto each other.
 #pragma once
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -1,8 +1,8 @@
-#include "mesh/measure.hpp"
+#include "riffler/mesh/measure.hpp"
 
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

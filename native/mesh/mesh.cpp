@@ -1,10 +1,10 @@
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

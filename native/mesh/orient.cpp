@@ -1,4 +1,4 @@
-#include "mesh/orient.hpp"
+#include "riffler/mesh/orient.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/near_points.hpp"
 #include "mesh/shells.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

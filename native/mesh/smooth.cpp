@@ -1,4 +1,4 @@
-#include "mesh/smooth.hpp"
+#include "riffler/mesh/smooth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "geom/float32.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/fold.hpp"
 #include "mesh/weld.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "base/parallel.hpp"
 #include "geom/directions.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "nc/source.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler {
 

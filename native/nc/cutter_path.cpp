@@ -1,11 +1,13 @@
-#include "nc/cutter_path.hpp"
+#include "riffler/nc/cutter_path.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "base/parallel.hpp"
+#include "nc/links.hpp"
+#include "nc/retract_path.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "nc/edit.hpp"
+#include "riffler/nc/edit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
 #include "nc/limits.hpp"
-#include "tool/outline.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/tool/outline.hpp"
 
 namespace riffler {
 

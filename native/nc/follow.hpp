@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "nc/program.hpp"
+#include "riffler/nc/program.hpp"
 
 namespace riffler {
 

@@ -1,20 +1,16 @@
-// Named options of posts and machines, as callers give them.
+// Reads the named options that callers give to posts and machines.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
+#include "riffler/nc/option_values.hpp"
 
 namespace riffler {
-
-using OptionValue = std::variant<bool, double, std::string, std::vector<double>>;
-using Options = std::map<std::string, OptionValue>;
 
 /// An option that an OptionReader was asked for.
 struct OptionFact {

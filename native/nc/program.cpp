@@ -1,4 +1,4 @@
-#include "nc/program.hpp"
+#include "riffler/nc/program.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "nc/program_file.hpp"
+#include "riffler/nc/program_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <stdexcept>
 
 #include "base/bytes.hpp"
-#include "base/error.hpp"
 #include "base/io.hpp"
-#include "base/parallel.hpp"
 #include "base/planes.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "geom/pose.hpp"
-#include "tool/tool.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <system_error>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

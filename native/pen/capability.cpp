@@ -1,4 +1,4 @@
-#include "pen/capability.hpp"
+#include "riffler/pen/capability.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "geom/math.hpp"
-#include "pen/arms/motors.hpp"
 #include "pen/arms/wrench_split.hpp"
+#include "riffler/pen/arms/motors.hpp"
 
 namespace riffler {
 

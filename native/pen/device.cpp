@@ -1,4 +1,4 @@
-#include "pen/device.hpp"
+#include "riffler/pen/device.hpp"
 
 #include <limits>
 

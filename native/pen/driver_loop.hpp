@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <memory>
 
-#include "haptics/safety.hpp"
-#include "pen/hid/open_error.hpp"
 #include "pen/hid_model.hpp"
-#include "pen/link_status.hpp"
-#include "pen/pen_step.hpp"
-#include "pen/published.hpp"
+#include "riffler/haptics/safety.hpp"
+#include "riffler/pen/driver_settings.hpp"
+#include "riffler/pen/hid/open_error.hpp"
+#include "riffler/pen/link_status.hpp"
+#include "riffler/pen/pen_step.hpp"
+#include "riffler/pen/published.hpp"
 
 namespace riffler {
 
@@ -23,18 +24,6 @@ class Connector {
   enum class Answer : unsigned char { Pending, Failed, Opened };
   /// Of the attempt that was asked for. Opened hands the transport over; Failed says why.
   virtual Answer poll(std::unique_ptr<Transport>& transport, OpenProblem& problem) noexcept = 0;
-};
-
-struct DriverSettings {
-  double read_timeout = 0.01;  ///< s without a report after which the step runs all the same, with an old sample
-  double silence = 0.25;       ///< s without a report after which a device that has a period counts as gone
-  double first_retry = 0.1;    ///< s after which a lost device is looked for; doubled after every failure …
-  double longest_retry = 2;    ///< … up to this
-  double poll = 0.01;          ///< s between two looks at the connector
-  unsigned most_reads = 256;   ///< in one tick: a device that floods cannot hold up the step
-
-  /// std::invalid_argument naming the field.
-  void validate() const;
 };
 
 class DriverLoop {

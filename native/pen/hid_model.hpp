@@ -6,12 +6,12 @@
 #include <span>
 #include <string>
 
-#include "haptics/safety.hpp"
-#include "pen/capability.hpp"
-#include "pen/hid/open_error.hpp"
 #include "pen/hid/transport.hpp"
-#include "pen/passivity_settings.hpp"
-#include "pen/sample.hpp"
+#include "riffler/haptics/safety.hpp"
+#include "riffler/pen/capability.hpp"
+#include "riffler/pen/hid/open_error.hpp"
+#include "riffler/pen/passivity_settings.hpp"
+#include "riffler/pen/sample.hpp"
 
 namespace riffler {
 

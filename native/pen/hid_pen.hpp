@@ -6,9 +6,9 @@
 #include <mutex>
 #include <string>
 
-#include "haptics/safety.hpp"
-#include "pen/device.hpp"
 #include "pen/driver.hpp"
+#include "riffler/haptics/safety.hpp"
+#include "riffler/pen/device.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "pen/link_status.hpp"
+#include "riffler/pen/link_status.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "pen/passivity_settings.hpp"
+#include "riffler/pen/passivity_settings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "geom/math.hpp"
-#include "pen/arms/geometry.hpp"
+#include "riffler/pen/arms/geometry.hpp"
 
 namespace riffler {
 

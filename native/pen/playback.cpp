@@ -1,12 +1,12 @@
-#include "pen/playback.hpp"
+#include "riffler/pen/playback.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "base/check.hpp"
 #include "pen/driver.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 namespace {

@@ -1,4 +1,4 @@
-#include "pen/pointer.hpp"
+#include "riffler/pen/pointer.hpp"
 
 #include <algorithm>
 #include <cmath>

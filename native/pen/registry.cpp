@@ -1,4 +1,4 @@
-#include "pen/registry.hpp"
+#include "riffler/pen/registry.hpp"
 
 #include <optional>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "plan/cc_frame.hpp"
+#include "riffler/plan/cc_frame.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,10 +1,10 @@
-#include "plan/contact_location.hpp"
+#include "riffler/plan/contact_location.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "plan/cc_frame.hpp"
+#include "riffler/plan/cc_frame.hpp"
 
 namespace riffler {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "base/progress.hpp"
 #include "plan/rolling_ball.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "plan/cutter_locations.hpp"
+#include "riffler/plan/cutter_locations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
-#include "plan/contact_location.hpp"
-#include "plan/lift.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/plan/contact_location.hpp"
+#include "riffler/plan/lift.hpp"
 
 namespace riffler {
 

@@ -1,13 +1,14 @@
-#include "plan/drop.hpp"
+#include "riffler/plan/drop.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 
-#include "base/parallel.hpp"
 #include "geom/median_tree.hpp"
-#include "plan/cc_frame.hpp"
+#include "plan/lower_side.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/plan/cc_frame.hpp"
 
 namespace riffler {
 
@@ -17,7 +18,26 @@ constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
+struct DropCutter::Core {
+  struct Search;
+  Core(const Mesh& mesh, const Tool& tool, const Vec3& axis);
+  Landing drop(const Vec3& p, Stats* stats) const;
+
+  struct Triangle {
+    Vec3 a, b, c;
+  };
+
+  void build(const std::vector<Triangle>& all);
+  std::size_t first(std::size_t level, std::size_t place) const { return first_item(count_, level, place); }
+
+  Mat3 turn_;                                      // columns: the frame, its z the axis
+  std::vector<std::pair<Part, LowerSide>> sides_;  // of the assembly's pieces
+  std::size_t count_ = 0, levels_ = 0;             // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
+  std::vector<Box3> boxes_;
+  std::vector<Triangle> triangles_;  // in the frame, in the order of the leaves
+};
+
+DropCutter::Core::Core(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
   validate(mesh);
   if (mesh.empty()) throw std::invalid_argument("a part without triangles");
   // Straight along z nothing is turned: coordinates stay what they are, to the bit.
@@ -31,7 +51,7 @@ DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
   build(all);
 }
 
-void DropCutter::build(const std::vector<Triangle>& all) {
+void DropCutter::Core::build(const std::vector<Triangle>& all) {
   const std::size_t n = count_ = all.size();
   while ((n >> levels_) > 4) ++levels_;
   std::vector<std::size_t> order(n);
@@ -57,8 +77,8 @@ void DropCutter::build(const std::vector<Triangle>& all) {
 }
 
 /// One descent, best boxes first.
-struct DropCutter::Search {
-  const DropCutter& tree;
+struct DropCutter::Core::Search {
+  const Core& tree;
   Vec2 at;
   Stats counts{};
   LowerSide::Stop stop{kNowhere, Vec3(0), false};
@@ -98,13 +118,24 @@ struct DropCutter::Search {
   }
 };
 
-DropCutter::Landing DropCutter::operator()(const Vec3& p, Stats* stats) const {
+DropCutter::Landing DropCutter::Core::drop(const Vec3& p, Stats* stats) const {
   const Vec3 local = p * turn_;
   Search search{*this, {local.x, local.y}};
   if (search.bound(0) > kNowhere) search.descend(0, 0, 0);
   if (stats) stats->boxes += search.counts.boxes, stats->triangles += search.counts.triangles;
   if (!search.stop.touches) return {};
   return {true, search.stop.tip, turn_ * (search.stop.point + Vec3(search.at, 0)), sides_[search.side].first};
+}
+
+DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis)
+    : core_(std::make_shared<const Core>(mesh, tool, axis)) {}
+
+const Vec3& DropCutter::axis() const {
+  return core_->turn_[2];
+}
+
+DropCutter::Landing DropCutter::operator()(const Vec3& p, Stats* stats) const {
+  return core_->drop(p, stats);
 }
 
 std::vector<DropCutter::Landing> DropCutter::operator()(const std::vector<Vec3>& points,

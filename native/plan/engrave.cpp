@@ -1,17 +1,18 @@
-#include "plan/engrave.hpp"
+#include "riffler/plan/engrave.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
+#include "geom/directions.hpp"
 #include "mesh/closest.hpp"
-#include "mesh/orient.hpp"
 #include "mesh/smooth_normals.hpp"
-#include "plan/cc_frame.hpp"
-#include "plan/contact_location.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/mesh/orient.hpp"
+#include "riffler/plan/cc_frame.hpp"
+#include "riffler/plan/contact_location.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "plan/least_tilt.hpp"
+#include "riffler/plan/least_tilt.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "base/check.hpp"
+#include "geom/directions.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

@@ -1,13 +1,13 @@
-#include "plan/lift.hpp"
+#include "riffler/plan/lift.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
 #include "plan/point_lift.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tool/tool.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler {
 

@@ -1,13 +1,14 @@
-#include "plan/orientation.hpp"
+#include "riffler/plan/orientation.hpp"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "geom/directions.hpp"
 #include "geom/math.hpp"
-#include "geom/pose.hpp"
-#include "plan/cc_frame.hpp"
 #include "plan/smooth_axes.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/plan/cc_frame.hpp"
 
 namespace riffler {
 

@@ -1,13 +1,15 @@
-#include "plan/orientation_map.hpp"
+#include "riffler/plan/orientation_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
+#include "geom/directions.hpp"
 #include "geom/math.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/plan/contact_location.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "base/progress.hpp"
-#include "plan/path.hpp"
 #include "plan/valley.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/plan/path.hpp"
 
 namespace riffler {
 

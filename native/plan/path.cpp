@@ -1,10 +1,10 @@
-#include "plan/path.hpp"
+#include "riffler/plan/path.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

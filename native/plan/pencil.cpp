@@ -1,18 +1,18 @@
-#include "plan/pencil.hpp"
+#include "riffler/plan/pencil.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
-#include "mesh/orient.hpp"
-#include "mesh/smooth.hpp"
-#include "plan/contact_location.hpp"
 #include "plan/passes.hpp"
 #include "plan/valley_index.hpp"
 #include "plan/valley_starts.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/mesh/orient.hpp"
+#include "riffler/mesh/smooth.hpp"
+#include "riffler/plan/contact_location.hpp"
 
 namespace riffler {
 

@@ -1,7 +1,7 @@
 // The point of a path that a pen or a mouse points at.
 #pragma once
 
-#include "plan/path.hpp"
+#include "riffler/plan/path.hpp"
 
 namespace riffler {
 

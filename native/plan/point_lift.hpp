@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tool/outline.hpp"
+#include "riffler/tool/outline.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "geom/math.hpp"
-#include "mesh/smooth.hpp"
 #include "plan/half_spaces.hpp"
+#include "riffler/mesh/smooth.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "mesh/closest.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geom/math.hpp"
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler {
 

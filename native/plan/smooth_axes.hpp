@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

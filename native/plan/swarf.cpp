@@ -1,4 +1,4 @@
-#include "plan/swarf.hpp"
+#include "riffler/plan/swarf.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
 #include "geom/math.hpp"
 #include "mesh/closest.hpp"
-#include "plan/cc_frame.hpp"
-#include "plan/contact_location.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/plan/cc_frame.hpp"
+#include "riffler/plan/contact_location.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

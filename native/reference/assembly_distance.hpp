@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "geom/pose.hpp"
-#include "tool/tool.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler::reference {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "tool/profile.hpp"
+#include "riffler/tool/profile.hpp"
 
 namespace riffler::reference {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <queue>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::reference {
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "geom/pose.hpp"
 #include "reference/cutter_distance.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler::reference {
 

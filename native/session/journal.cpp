@@ -1,4 +1,4 @@
-#include "session/journal.hpp"
+#include "riffler/session/journal.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "session/journal_file.hpp"
+#include "riffler/session/journal_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
+#include "riffler/base/error.hpp"
 #include "session/journal_records.hpp"
 
 namespace riffler {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler::journal_format {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "session/journal.hpp"
+#include "riffler/session/journal.hpp"
 
 namespace riffler::journal_format {
 

@@ -1,11 +1,11 @@
-#include "session/journal_rules.hpp"
+#include "riffler/session/journal_rules.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "base/check.hpp"
 #include "nc/limits.hpp"
-#include "nc/program.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/nc/program.hpp"
 
 namespace riffler {
 

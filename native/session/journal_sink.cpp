@@ -1,49 +1,87 @@
-#include "session/journal_sink.hpp"
+#include "riffler/session/journal_sink.hpp"
 
 #include <utility>
 
+#include "session/journal_stream.hpp"
+
 namespace riffler {
 
+struct JournalSink::Core {
+  Core(std::unique_ptr<JournalWriter> writer, int tool, double tolerance, const JournalStreamOptions& options)
+      : writer_(std::move(writer)), stream_(*writer_, options), tool_(tool), tolerance_(tolerance) {
+    stream_.start();
+  }
+  void owe(int strokes) noexcept;
+  bool settle() noexcept;
+
+  std::unique_ptr<JournalWriter> writer_;
+  JournalStream stream_;
+  int tool_;
+  double tolerance_;
+  int owed_ = 0;  // strokes to be taken back (< 0) or brought back, for which there was no room
+};
+
 JournalSink::JournalSink(std::unique_ptr<JournalWriter> writer, int tool, double tolerance,
-                         const JournalStream::Options& options)
-    : writer_(std::move(writer)), stream_(*writer_, options), tool_(tool), tolerance_(tolerance) {
-  stream_.start();
-}
+                         const JournalStreamOptions& options)
+    : core_(std::make_unique<Core>(std::move(writer), tool, tolerance, options)) {}
+
+JournalSink::~JournalSink() = default;
 
 /// For what was taken back, the beginning of a stroke and a row.
 bool JournalSink::room() noexcept {
-  return stream_.room(3) && settle();
+  return core_->stream_.room(3) && core_->settle();
 }
 
 void JournalSink::begin(double time, const Pose& tool) noexcept {
-  stream_.begin(tool_, tolerance_, {tool, time, {}, 0});
+  core_->stream_.begin(core_->tool_, core_->tolerance_, {tool, time, {}, 0});
 }
 
 void JournalSink::row(double time, const Pose& tool, const Wrench& wrench, double removed) noexcept {
-  stream_.put({tool, time, wrench, removed});
+  core_->stream_.put({tool, time, wrench, removed});
 }
 
 void JournalSink::end() noexcept {
-  stream_.end();
+  core_->stream_.end();
 }
 
-void JournalSink::owe(int strokes) noexcept {
+void JournalSink::undo(std::size_t strokes) noexcept {
+  core_->owe(-static_cast<int>(strokes));
+}
+
+void JournalSink::redo(std::size_t strokes) noexcept {
+  core_->owe(static_cast<int>(strokes));
+}
+
+void JournalSink::Core::owe(int strokes) noexcept {
   owed_ += strokes;
   settle();
 }
 
-bool JournalSink::settle() noexcept {
+bool JournalSink::Core::settle() noexcept {
   if (owed_ != 0 && stream_.count_back(owed_)) owed_ = 0;
   return owed_ == 0;
 }
 
 bool JournalSink::close() {
-  stream_.end();
-  bool done = stream_.stop();
-  if (!settle()) done = false;
-  if (owed_ == 0 && stream_.waiting() > 0) done = stream_.stop();
-  writer_->close();
+  Core& core = *core_;
+  core.stream_.end();
+  bool done = core.stream_.stop();
+  if (!core.settle()) done = false;
+  if (core.owed_ == 0 && core.stream_.waiting() > 0) done = core.stream_.stop();
+  core.writer_->close();
   return done;
+}
+
+std::string JournalSink::problem() const {
+  return core_->stream_.problem();
+}
+
+std::size_t JournalSink::waiting() const noexcept {
+  return core_->stream_.waiting();
+}
+
+bool JournalSink::written(double seconds) const {
+  return core_->stream_.written(seconds);
 }
 
 }  // namespace riffler

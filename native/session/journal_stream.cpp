@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "base/check.hpp"
 #include "pen/driver.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

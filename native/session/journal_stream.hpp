@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "base/own_thread.hpp"
-#include "session/journal_file.hpp"
+#include "riffler/session/journal_file.hpp"
+#include "riffler/session/journal_stream_options.hpp"
 
 namespace riffler {
 
@@ -30,13 +31,7 @@ struct JournalRow {
 /// Nothing is dropped: what a journal cannot hold at all (a pose that is none) is counted and ends its stroke.
 class JournalStream {
  public:
-  struct Options {
-    std::size_t rows = 1 << 16;  ///< that may wait, 128 bytes each: 65 s at 1000 Hz
-    double drain = 0.05;         ///< s from one look at the ring to the next
-    double sync = 1;             ///< s from one sync to the next while rows come; and one for each end of a stroke
-    double retry = 1;            ///< s from one refusal of the disk to the next attempt
-    StrokeMode mode = StrokeMode::Remove;  ///< of all strokes
-  };
+  using Options = JournalStreamOptions;
 
   /// `writer` must outlive this, and is the keeper's: see `use`. Takes all its memory here. std::invalid_argument for
   /// options that are not positive, or fewer than 4 rows.

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "dexel/boolean.hpp"
+#include "riffler/dexel/boolean.hpp"
 #include "sweep/cut_region.hpp"
 
 namespace riffler {

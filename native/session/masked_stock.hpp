@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "dexel/volume.hpp"
-#include "session/tile_exchange.hpp"
-#include "sweep/carve.hpp"
+#include "riffler/dexel/volume.hpp"
+#include "riffler/session/tile_exchange.hpp"
+#include "riffler/sweep/carve.hpp"
 
 namespace riffler {
 

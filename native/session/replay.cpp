@@ -1,12 +1,12 @@
-#include "session/replay.hpp"
+#include "riffler/session/replay.hpp"
 
 #include <stdexcept>
 #include <string>
 
-#include "dexel/file/file.hpp"
-#include "dexel/smooth/smooth_dabs.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/dexel/smooth/smooth_dabs.hpp"
+#include "riffler/sweep/carve.hpp"
 #include "session/masked_stock.hpp"
-#include "sweep/carve.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "session/sculpt_loop.hpp"
+#include "riffler/session/sculpt_loop.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <thread>
 #include <utility>
 
-#include "base/check.hpp"
 #include "base/own_thread.hpp"
-#include "haptics/coupling.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/haptics/coupling.hpp"
 
 namespace riffler {
 

@@ -1,6 +1,7 @@
-#include "session/session.hpp"
+#include "riffler/session/session.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <iterator>
 #include <span>
@@ -8,7 +9,10 @@
 #include <string>
 #include <utility>
 
+#include "base/own_thread.hpp"
 #include "pen/driver.hpp"
+#include "riffler/base/block_pool.hpp"
+#include "session/masked_stock.hpp"
 
 namespace riffler {
 
@@ -42,8 +46,60 @@ void SessionSettings::validate() const {
     throw std::invalid_argument("start must be a finite point and an axis of unit length");
 }
 
-Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen,
-                 std::shared_ptr<const Collider> obstacles, const SessionSettings& settings, const Volume* protect)
+/// Both sides of a session: what the loop cuts, and what is shown.
+struct Session::Core {
+  Core(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen, std::shared_ptr<const Collider> obstacles,
+       const SessionSettings& settings, const Volume* protect);
+  ~Core();
+
+  void record(std::shared_ptr<StrokeSink> sink);
+  void start();
+  SessionFrame stop(Volume& shown);
+  SessionFrame frame(Volume& shown);
+  std::size_t undo(Volume& shown);
+  std::size_t redo(Volume& shown);
+
+  enum class State : unsigned char { New, Running, Ended };
+  /// The volume between two strokes.
+  struct Moment {
+    std::uint64_t strokes;  // from the moment before to this one: one, or more where frames came seldom
+    Volume volume;
+    std::optional<Volume> left{};  // of what may be cut, where that is not the volume itself
+
+    const Volume& cut() const { return left ? *left : volume; }  // the loop's
+  };
+
+  std::optional<Pose> start_pose() const;
+  void poll() noexcept;
+  TileExchange::Mark follow(Volume& shown, std::vector<TileExchange::Place>& places);
+  void take_ticks(SessionFrame& frame);
+  void look(Volume& shown, SessionFrame& frame);
+  std::size_t go_to(Volume& shown, int step, const char* what);
+  void note_differences(const Volume& from, const Volume& to);
+
+  SessionSettings settings_;
+  Tool tool_;
+  std::shared_ptr<Pen> pen_;
+  std::shared_ptr<const Collider> obstacles_;
+  std::shared_ptr<StrokeSink> sink_;
+  std::shared_ptr<SculptLoop> loop_;
+  State state_ = State::New;
+  OwnThread poller_;
+  HomeProcess home_;
+  std::atomic<bool> ending_{false};
+  BlockReserve reserve_;
+
+  std::optional<MaskedStock> masked_stock_;  // where that is not the volume itself
+  std::optional<Volume> left_;               // of it, as it is shown
+  std::uint64_t shown_ = 0;                  // revision of the volume that is shown
+  std::vector<Moment> moments_;              // between strokes; oldest first
+  std::size_t here_ = 0;                     // of them, the one that is shown or being changed
+  std::uint64_t strokes_ = 0;                // that were seen
+  SessionFrame kept_;                        // for the next
+};
+
+Session::Core::Core(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen,
+                    std::shared_ptr<const Collider> obstacles, const SessionSettings& settings, const Volume* protect)
     : settings_((settings.validate(), settings)),
       tool_(tool),
       pen_(std::move(pen)),
@@ -55,7 +111,7 @@ Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen
   moments_.push_back({0, stock, left_});
 }
 
-Session::~Session() {
+Session::Core::~Core() {
   if (!home_.here()) {  // a thread that is missing here may hold what these would wait for
     static_cast<void>(new std::shared_ptr<SculptLoop>(std::move(loop_)));
     static_cast<void>(new std::shared_ptr<Pen>(std::move(pen_)));
@@ -66,19 +122,19 @@ Session::~Session() {
   stop(nobody);
 }
 
-void Session::record(std::shared_ptr<StrokeSink> sink) {
+void Session::Core::record(std::shared_ptr<StrokeSink> sink) {
   if (state_ != State::New) throw std::runtime_error("the session has begun: what it did would be missing");
   sink_ = std::move(sink);
 }
 
 /// Where the tool stands at the start.
-std::optional<Pose> Session::start_pose() const {
+std::optional<Pose> Session::Core::start_pose() const {
   if (settings_.start || pen_->in_part_frame()) return settings_.start;
   const Box3& box = moments_[0].volume.frame().box;
   return Pose{{0.5 * (box.lower.x + box.upper.x), 0.5 * (box.lower.y + box.upper.y), box.upper.z + 5}, {0, 0, 1}};
 }
 
-void Session::start() {
+void Session::Core::start() {
   if (state_ != State::New) throw std::runtime_error("a session runs once: make another");
   loop_ = std::make_shared<SculptLoop>(settings_.loop, moments_[0].cut(), tool_, obstacles_.get(), pen_->capability(),
                                        start_pose(), sink_.get());
@@ -88,7 +144,7 @@ void Session::start() {
 }
 
 /// The thread of a device that has none.
-void Session::poll() noexcept {
+void Session::Core::poll() noexcept {
   const auto tick = std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(kTick));
   auto next = std::chrono::steady_clock::now();
   for (double last = steady_seconds(); !ending_.load();) {
@@ -99,7 +155,7 @@ void Session::poll() noexcept {
   }
 }
 
-SessionFrame Session::stop(Volume& shown) {
+SessionFrame Session::Core::stop(Volume& shown) {
   if (state_ != State::Running) return std::exchange(kept_, {});
   home_.check("the session");
   SessionFrame frame = std::exchange(kept_, {});
@@ -118,7 +174,7 @@ SessionFrame Session::stop(Volume& shown) {
   return frame;
 }
 
-SessionFrame Session::frame(Volume& shown) {
+SessionFrame Session::Core::frame(Volume& shown) {
   if (state_ != State::Running) throw std::runtime_error("the session does not run");
   home_.check("the session");
   SessionFrame frame = std::exchange(kept_, {});
@@ -131,7 +187,7 @@ SessionFrame Session::frame(Volume& shown) {
 }
 
 /// What the loop has cut since comes into `shown`.
-TileExchange::Mark Session::follow(Volume& shown, std::vector<TileExchange::Place>& places) {
+TileExchange::Mark Session::Core::follow(Volume& shown, std::vector<TileExchange::Place>& places) {
   if (!masked_stock_) return loop_->show(shown, places);
   const std::size_t before = places.size();
   const TileExchange::Mark mark = loop_->show(*left_, places);
@@ -139,12 +195,12 @@ TileExchange::Mark Session::follow(Volume& shown, std::vector<TileExchange::Plac
   return mark;
 }
 
-void Session::take_ticks(SessionFrame& frame) {
+void Session::Core::take_ticks(SessionFrame& frame) {
   for (SculptTick tick; loop_->take(tick);) frame.ticks.push_back(tick);
   frame.strokes = strokes_, frame.dropped_ticks = loop_->dropped_ticks();
 }
 
-void Session::look(Volume& shown, SessionFrame& frame) {
+void Session::Core::look(Volume& shown, SessionFrame& frame) {
   if (shown.revision() != shown_)
     throw std::runtime_error(
         "the volume was changed by something else while the session ran: what was cut since the last frame is not in "
@@ -160,16 +216,16 @@ void Session::look(Volume& shown, SessionFrame& frame) {
   here_ = moments_.size() - 1;
 }
 
-std::size_t Session::undo(Volume& shown) {
+std::size_t Session::Core::undo(Volume& shown) {
   return go_to(shown, -1, "undone");
 }
 
-std::size_t Session::redo(Volume& shown) {
+std::size_t Session::Core::redo(Volume& shown) {
   return go_to(shown, 1, "redone");
 }
 
 /// One moment on or back.
-std::size_t Session::go_to(Volume& shown, int step, const char* what) {
+std::size_t Session::Core::go_to(Volume& shown, int step, const char* what) {
   SessionFrame frame;
   if (state_ != State::Running) throw std::runtime_error("the session does not run");
   home_.check("the session");
@@ -190,11 +246,53 @@ std::size_t Session::go_to(Volume& shown, int step, const char* what) {
 }
 
 /// Tiles that the two do not share are told with the next frame.
-void Session::note_differences(const Volume& from, const Volume& to) {
+void Session::Core::note_differences(const Volume& from, const Volume& to) {
   for (std::uint32_t g = 0; g < from.grids().size(); ++g)
     for (std::size_t t = 0; t < from.grids()[g].tile_count(); ++t)
       if (from.grids()[g].shared_tile(t) != to.grids()[g].shared_tile(t))
         kept_.tiles.push_back({g, static_cast<std::uint32_t>(t)});
+}
+
+Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen,
+                 std::shared_ptr<const Collider> obstacles, const SessionSettings& settings, const Volume* protect)
+    : core_(std::make_unique<Core>(stock, tool, std::move(pen), std::move(obstacles), settings, protect)) {}
+
+Session::~Session() = default;
+
+void Session::record(std::shared_ptr<StrokeSink> sink) {
+  core_->record(std::move(sink));
+}
+
+void Session::start() {
+  core_->start();
+}
+
+bool Session::running() const noexcept {
+  return core_->state_ == Core::State::Running;
+}
+
+SessionFrame Session::stop(Volume& shown) {
+  return core_->stop(shown);
+}
+
+SessionFrame Session::frame(Volume& shown) {
+  return core_->frame(shown);
+}
+
+std::size_t Session::undo(Volume& shown) {
+  return core_->undo(shown);
+}
+
+std::size_t Session::redo(Volume& shown) {
+  return core_->redo(shown);
+}
+
+SculptLoop* Session::loop() noexcept {
+  return core_->loop_.get();
+}
+
+Pen& Session::pen() noexcept {
+  return *core_->pen_;
 }
 
 }  // namespace riffler

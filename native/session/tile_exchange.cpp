@@ -1,4 +1,4 @@
-#include "session/tile_exchange.hpp"
+#include "riffler/session/tile_exchange.hpp"
 
 #include <utility>
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "riffler/sweep/carve.hpp"
 #include "stress/scenario.hpp"
-#include "sweep/carve.hpp"
 
 namespace riffler::stress {
 

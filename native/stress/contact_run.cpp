@@ -5,8 +5,8 @@
 #include <exception>
 #include <sstream>
 
-#include "collide/collider.hpp"
 #include "reference/surface_distance.hpp"
+#include "riffler/collide/collider.hpp"
 
 namespace riffler::stress {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::stress {
 

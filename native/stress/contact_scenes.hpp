@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "geom/pose.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/mesh/mesh.hpp"
+#include "riffler/tool/tool.hpp"
 #include "stress/random.hpp"
-#include "tool/tool.hpp"
 
 namespace riffler::stress {
 

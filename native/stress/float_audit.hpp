@@ -4,7 +4,7 @@
 
 #include <ostream>
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler::stress {
 

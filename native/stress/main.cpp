@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "session/journal_file.hpp"
+#include "riffler/session/journal_file.hpp"
 #include "stress/arguments.hpp"
 #include "stress/run.hpp"
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "marching/to_mesh.hpp"
+#include "riffler/marching/to_mesh.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/thread_count.hpp"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "dexel/file/file.hpp"
+#include "riffler/dexel/file/file.hpp"
 #include "stress/arguments.hpp"
 #include "stress/mesh_run.hpp"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "dexel/boolean.hpp"
+#include "riffler/dexel/boolean.hpp"
+#include "riffler/sweep/carve.hpp"
 #include "stress/scenario.hpp"
-#include "sweep/carve.hpp"
 
 namespace riffler::stress {
 

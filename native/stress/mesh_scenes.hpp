@@ -1,7 +1,7 @@
 // What the meshing stress run meshes: small volumes, random and from the degenerate limits.
 #pragma once
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 #include "stress/random.hpp"
 #include "stress/solids.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "haptics/settings.hpp"
+#include "riffler/haptics/settings.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler::stress {
 

@@ -4,8 +4,8 @@
 #include <exception>
 #include <sstream>
 
+#include "riffler/tool/cutters.hpp"
 #include "stress/thread_count.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::stress {
 

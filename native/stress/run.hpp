@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "session/journal.hpp"
+#include "riffler/session/journal.hpp"
 #include "stress/checks.hpp"
 
 namespace riffler::stress {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "dexel/volume.hpp"
-#include "geom/pose.hpp"
+#include "riffler/dexel/volume.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/tool.hpp"
 #include "stress/random.hpp"
-#include "tool/tool.hpp"
 
 namespace riffler::stress {
 

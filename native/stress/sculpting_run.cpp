@@ -5,12 +5,12 @@
 #include <fstream>
 #include <memory>
 
-#include "marching/mesher.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/simulated/simulated_transport.hpp"
-#include "session/journal_rules.hpp"
+#include "riffler/marching/mesher.hpp"
+#include "riffler/session/journal_rules.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/checks.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::stress {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "session/sculpt_loop.hpp"
+#include "riffler/session/sculpt_loop.hpp"
 
 namespace riffler::stress {
 

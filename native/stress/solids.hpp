@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 #include "stress/random.hpp"
 
 namespace riffler::stress {

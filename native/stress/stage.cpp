@@ -2,8 +2,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "riffler/tool/cutters.hpp"
 #include "stress/scenario.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::stress {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "haptics/passivity.hpp"
+#include "riffler/haptics/passivity.hpp"
 #include "stress/matrix.hpp"
 
 namespace riffler::stress {

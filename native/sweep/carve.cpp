@@ -1,11 +1,12 @@
-#include "sweep/carve.hpp"
+#include "riffler/sweep/carve.hpp"
 
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
+#include "sweep/carve_moves.hpp"
 #include "sweep/cut_region.hpp"
 #include "sweep/grid_carver.hpp"
 

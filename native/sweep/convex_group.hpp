@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tool/piece.hpp"
+#include "riffler/tool/piece.hpp"
 
 namespace riffler {
 

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "base/parallel.hpp"
-#include "dexel/boolean.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/dexel/boolean.hpp"
 
 namespace riffler {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "dexel/volume.hpp"
-#include "sweep/carve_options.hpp"
+#include "riffler/dexel/volume.hpp"
+#include "riffler/sweep/carve_options.hpp"
 
 namespace riffler {
 

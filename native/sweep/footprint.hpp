@@ -4,11 +4,11 @@
 #include <initializer_list>
 #include <span>
 
-#include "dexel/tile.hpp"
-#include "geom/interval.hpp"
-#include "geom/pose.hpp"
+#include "riffler/dexel/tile.hpp"
+#include "riffler/geom/interval.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/piece.hpp"
 #include "sweep/convex_group.hpp"
-#include "tool/piece.hpp"
 
 namespace riffler {
 

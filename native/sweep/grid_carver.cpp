@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

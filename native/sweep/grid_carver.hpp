@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/block_pool.hpp"
-#include "dexel/grid.hpp"
-#include "dexel/stats.hpp"
-#include "sweep/carve_options.hpp"
+#include "riffler/base/block_pool.hpp"
+#include "riffler/dexel/grid.hpp"
+#include "riffler/dexel/stats.hpp"
+#include "riffler/sweep/carve_options.hpp"
 #include "sweep/cut_region.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cutter.hpp"

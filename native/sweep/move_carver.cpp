@@ -1,12 +1,28 @@
-#include "sweep/move_carver.hpp"
+#include "riffler/sweep/move_carver.hpp"
 
 #include <array>
+#include <vector>
 
-#include "base/check.hpp"
+#include "riffler/base/block_pool.hpp"
+#include "riffler/base/check.hpp"
+#include "sweep/grid_carver.hpp"
 
 namespace riffler {
 
-MoveCarver::MoveCarver(Volume& volume, const Tool& tool, const Options& options)
+struct MoveCarver::Core {
+  Core(Volume& volume, const Tool& tool, const Options& options);
+  Taken move(const Pose& from, const Pose& to, double dt);
+
+  Volume& volume_;
+  std::vector<ConvexGroup> cutter_;
+  CarveOptions options_;
+  Cut cut_;
+  Rollback rollback_;
+  BlockVector<Place> replaced_;
+  std::vector<GridCarver> carvers_;
+};
+
+MoveCarver::Core::Core(Volume& volume, const Tool& tool, const Options& options)
     : volume_(volume), cutter_(convex_groups(tool.cutter())), cut_{{0}, {Vec3(0)}, {Vec3(0)}} {
   options_.tolerance = options.tolerance, options_.removal_constant = options.removal_constant;
   options_.dt = {1};
@@ -17,7 +33,7 @@ MoveCarver::MoveCarver(Volume& volume, const Tool& tool, const Options& options)
     carvers_.emplace_back(grid, &grid == &volume.reference(), options_, cut_, &rollback_);
 }
 
-MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) {
+MoveCarver::Taken MoveCarver::Core::move(const Pose& from, const Pose& to, double dt) {
   const std::array<Pose, 2> poses{from, to};
   check_path(poses);
   options_.dt[0] = dt;
@@ -42,6 +58,23 @@ MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) 
   if (rollback_.commit()) volume_.touch();
   volume_.count(stats);
   return {cut_.removed[0], cut_.force[0], cut_.torque[0]};
+}
+
+MoveCarver::MoveCarver(Volume& volume, const Tool& tool, const Options& options)
+    : core_(std::make_unique<Core>(volume, tool, options)) {}
+
+MoveCarver::~MoveCarver() = default;
+
+MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) {
+  return core_->move(from, to, dt);
+}
+
+double MoveCarver::pitch() const {
+  return core_->volume_.reference().pitch();
+}
+
+std::span<const MoveCarver::Place> MoveCarver::replaced() const {
+  return core_->replaced_;
 }
 
 }  // namespace riffler

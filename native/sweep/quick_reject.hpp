@@ -5,7 +5,7 @@
 // does all of the ray's material.
 #pragma once
 
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
 #include "sweep/footprint.hpp"
 #include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"

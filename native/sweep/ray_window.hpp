@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/lanes.hpp"
-#include "dexel/tile.hpp"
+#include "riffler/dexel/tile.hpp"
 #include "sweep/quick_reject.hpp"
 
 namespace riffler {

@@ -6,8 +6,8 @@
 #include <span>
 #include <variant>
 
-#include "dexel/grid.hpp"
-#include "geom/pose.hpp"
+#include "riffler/dexel/grid.hpp"
+#include "riffler/geom/pose.hpp"
 #include "sweep/footprint.hpp"
 #include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"

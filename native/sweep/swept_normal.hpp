@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
 #include "sweep/convex_group.hpp"
 
 namespace riffler {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "dexel/tile.hpp"
+#include "riffler/dexel/tile.hpp"
 #include "sweep/ray_window.hpp"
 
 namespace riffler {

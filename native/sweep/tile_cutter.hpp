@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "dexel/grid.hpp"
-#include "dexel/stats.hpp"
-#include "sweep/carve_options.hpp"
+#include "riffler/dexel/grid.hpp"
+#include "riffler/dexel/stats.hpp"
+#include "riffler/sweep/carve_options.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cut.hpp"
 

@@ -1,4 +1,4 @@
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "base/check.hpp"
 #include "geom/math.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "tool/outline.hpp"
+#include "riffler/tool/outline.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tool/piece.hpp"
+#include "riffler/tool/piece.hpp"
 
 #include <algorithm>
 #include <cmath>

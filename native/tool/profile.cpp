@@ -1,4 +1,4 @@
-#include "tool/profile.hpp"
+#include "riffler/tool/profile.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "tool/tool.hpp"
+#include "riffler/tool/tool.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "nc/program.hpp"
-#include "verify/report.hpp"
+#include "riffler/nc/program.hpp"
+#include "riffler/verify/report.hpp"
+#include "verify/event.hpp"
 
 namespace riffler {
 

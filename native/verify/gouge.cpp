@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "dexel/from_mesh/from_mesh.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
 
 namespace riffler {
 

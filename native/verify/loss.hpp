@@ -1,7 +1,7 @@
 // What a tile has lost: the pieces of its spans that a later state of it no longer has.
 #pragma once
 
-#include "dexel/grid.hpp"
+#include "riffler/dexel/grid.hpp"
 #include "verify/slab.hpp"
 
 namespace riffler {

@@ -1,7 +1,7 @@
 #include "verify/machine_check.hpp"
 
-#include "nc/edit.hpp"
 #include "nc/write/row_check.hpp"
+#include "riffler/nc/edit.hpp"
 
 namespace riffler {
 

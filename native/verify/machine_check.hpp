@@ -1,24 +1,14 @@
 // Whether a machine can run a program: its limits and its reach.
 #pragma once
 
+#include <cstdint>
 #include <optional>
-#include <string>
 
-#include "geom/vec.hpp"
-#include "nc/options.hpp"
-#include "nc/program.hpp"
-#include "verify/report.hpp"
+#include "riffler/nc/program.hpp"
+#include "riffler/verify/arguments.hpp"
+#include "riffler/verify/report.hpp"
 
 namespace riffler {
-
-/// What a program is to run on: a name of machines(), or the path of a description, and its options.
-struct MachineChoice {
-  std::string name;
-  Options options;
-  /// From the verified coordinates to those that the machine's program is in: p → turn p + shift.
-  Mat3 turn{1};
-  Vec3 shift{0};
-};
 
 /// The first row that cannot be written for the machine, within the limits of its axes, or nothing. `program` begins
 /// with row `first_row`. std::invalid_argument for a machine or an option that is not known.

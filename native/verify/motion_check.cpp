@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <map>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
 #include "nc/links.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
 #include "verify/slab_run.hpp"
 
 namespace riffler {

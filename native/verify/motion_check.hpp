@@ -1,10 +1,10 @@
 // Whether what a machine makes of a program meets part, fixtures or stock: asked before NC code is written.
 #pragma once
 
-#include "base/progress.hpp"
-#include "collide/collider.hpp"
-#include "nc/machine/machine_motion.hpp"
-#include "nc/program.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/collide/collider.hpp"
+#include "riffler/nc/machine/machine_motion.hpp"
+#include "riffler/nc/program.hpp"
 
 namespace riffler {
 

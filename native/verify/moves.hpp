@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
 #include "verify/shapes.hpp"
 
 namespace riffler {

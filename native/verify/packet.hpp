@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "base/error.hpp"
 #include "base/planes.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sweep/carve.hpp"
+#include "riffler/sweep/carve.hpp"
 #include "verify/timing.hpp"
 
 namespace riffler {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "base/progress.hpp"
-#include "nc/program.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/nc/program.hpp"
 #include "verify/event.hpp"
 #include "verify/machine_check.hpp"
 #include "verify/toolset.hpp"

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 #include "verify/simulate.hpp"
 
 namespace riffler {

@@ -1,12 +1,24 @@
-#include "verify/report.hpp"
+#include "riffler/verify/report.hpp"
 
 #include <limits>
 #include <string>
 
-#include "marching/to_mesh.hpp"
 #include "mesh/closest.hpp"
+#include "riffler/marching/to_mesh.hpp"
 
 namespace riffler {
+
+const char* name_of(Kind kind) {
+  static constexpr const char* names[] = {"rapid", "holder",  "shank",   "fixture", "gouge",
+                                          "rest",  "spindle", "machine", "unknown"};
+  return names[static_cast<int>(kind)];
+}
+
+VerifyStats& VerifyStats::operator+=(const VerifyStats& o) {
+  moves += o.moves, slabs += o.slabs, slabs_kept += o.slabs_kept, snapshots_used += o.snapshots_used;
+  probes += o.probes, probed_moves += o.probed_moves, bisections += o.bisections, skipped += o.skipped;
+  return *this;
+}
 
 void add_notes(VerifyReport& report, const std::vector<Note>& notes) {
   for (const Note& n : notes) {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

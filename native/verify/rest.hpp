@@ -1,7 +1,7 @@
 // Rest material: what stands on the part.
 #pragma once
 
-#include "base/progress.hpp"
+#include "riffler/base/progress.hpp"
 #include "verify/gouge.hpp"
 
 namespace riffler {

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
-#include "mesh/orient.hpp"
 #include "nc/limits.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/mesh/orient.hpp"
 
 namespace riffler {
 

@@ -1,34 +1,15 @@
 // What programs are verified on: stock, part and fixtures, cut in slabs and made ready once.
 #pragma once
 
-#include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "verify/machine_check.hpp"
+#include "riffler/verify/arguments.hpp"
+#include "riffler/verify/report.hpp"
 #include "verify/slab_job.hpp"
 #include "verify/toolset.hpp"
 
 namespace riffler {
-
-struct VerifyOptions {
-  double tolerance = 0.01;               ///< mm: as CarveOptions::tolerance; contact less deep than it is none
-  double gouge_tolerance = 0.05;         ///< mm under the part's surface
-  std::optional<double> rest_tolerance;  ///< mm over the part's surface; without it rest material is no fault
-  double rapid_feed = 10'000;            ///< mm/min, for the time that rapids take
-  /// On which it is to run; without it limits are not checked. Chunks of a program are checked one by one.
-  std::optional<MachineChoice> machine = {};
-};
-
-/// What a verification is given but for the program.
-struct VerifyArguments {
-  Volume stock;
-  std::shared_ptr<const Mesh> part = {};  ///< may be null
-  std::vector<Volume> fixtures = {};
-  std::map<int, Tool> tools = {};  ///< they come before a program's own
-  VerifyOptions options = {};
-};
 
 /// Several runs, one after the other, may share one: only its toolset changes, which learns the tools of programs.
 class VerifyScene {

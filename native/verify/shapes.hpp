@@ -5,14 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/tool/tool.hpp"
+#include "riffler/verify/report.hpp"
 #include "sweep/convex_group.hpp"
-#include "tool/tool.hpp"
 
 namespace riffler {
-
-/// Of a tool in the machine. Beyond: where its description has ended and nobody knows what there is.
-enum class Member : unsigned char { Cutter, Shank, Holder, Beyond };
 
 /// A cylinder round some of a tool's pieces: heights on the axis and radius, mm.
 struct Rod {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler {
 

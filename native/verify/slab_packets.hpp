@@ -1,9 +1,9 @@
 // What goes to a worker for a slab, and what comes back, as packets.
 #pragma once
 
-#include "geom/pose.hpp"
-#include "mesh/mesh.hpp"
-#include "tool/tool.hpp"
+#include "riffler/geom/pose.hpp"
+#include "riffler/mesh/mesh.hpp"
+#include "riffler/tool/tool.hpp"
 #include "verify/packet.hpp"
 #include "verify/slab_job.hpp"
 

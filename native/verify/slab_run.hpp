@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "nc/follow.hpp"
+#include "riffler/verify/report.hpp"
 #include "verify/findings.hpp"
 #include "verify/program_rows.hpp"
-#include "verify/report.hpp"
 #include "verify/scene.hpp"
 
 namespace riffler {

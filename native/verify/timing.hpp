@@ -1,7 +1,7 @@
 // How long moves take.
 #pragma once
 
-#include "nc/program.hpp"
+#include "riffler/nc/program.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "nc/program.hpp"
+#include "riffler/nc/program.hpp"
 #include "verify/moves.hpp"
 
 namespace riffler {

@@ -1,9 +1,12 @@
-#include "verify/verification.hpp"
+#include "riffler/verify/verification.hpp"
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
+#include "verify/edit.hpp"
+#include "verify/slab_run.hpp"
 
 namespace riffler {
 
@@ -18,10 +21,26 @@ std::size_t done_by_all(const std::vector<SlabState>& slabs, std::size_t rows) {
 
 }  // namespace
 
-Verification::Verification(VerifyArguments arguments, const Progress& progress)
+struct Verification::Core {
+  Core(VerifyArguments arguments, const Progress& progress);
+  VerifyReport run(const Program& program, const Progress& progress);
+
+  struct Memory {  // of the run before
+    RunRows rows;
+    std::vector<SlabState> slabs;
+  };
+
+  /// Which slabs can stay as they are, and from where on the others must be run again.
+  std::vector<SlabState> resume(const RunRows& rows, VerifyStats& stats) const;
+
+  std::shared_ptr<VerifyScene> scene_;
+  std::optional<Memory> memory_;
+};
+
+Verification::Core::Core(VerifyArguments arguments, const Progress& progress)
     : scene_(std::make_shared<VerifyScene>(std::move(arguments), progress)) {}
 
-std::vector<SlabState> Verification::resume(const RunRows& rows, VerifyStats& stats) const {
+std::vector<SlabState> Verification::Core::resume(const RunRows& rows, VerifyStats& stats) const {
   if (!memory_) {
     std::vector<SlabState> slabs = scene_->fresh();
     for (SlabState& slab : slabs) slab.snapshots.push_back({0, slab.tiles});
@@ -56,7 +75,7 @@ std::vector<SlabState> Verification::resume(const RunRows& rows, VerifyStats& st
   return slabs;
 }
 
-VerifyReport Verification::run(const Program& program, const Progress& progress) {
+VerifyReport Verification::Core::run(const Program& program, const Progress& progress) {
   SlabRun run(scene_);
   RunRows rows;
   const auto what_differs = [&](const RowChunk& chunk, const Progress& work) {
@@ -73,6 +92,17 @@ VerifyReport Verification::run(const Program& program, const Progress& progress)
   VerifyReport report = run.finish(part(progress, 0.8, 1));
   memory_ = Memory{std::move(rows), std::move(run.slabs())};
   return report;
+}
+
+Verification::Verification(VerifyArguments arguments, const Progress& progress)
+    : core_(std::make_unique<Core>(std::move(arguments), progress)) {}
+
+Verification::~Verification() = default;
+Verification::Verification(Verification&&) noexcept = default;
+Verification& Verification::operator=(Verification&&) noexcept = default;
+
+VerifyReport Verification::run(const Program& program, const Progress& progress) {
+  return core_->run(program, progress);
 }
 
 }  // namespace riffler

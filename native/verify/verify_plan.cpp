@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

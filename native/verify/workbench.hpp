@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "dexel/stats.hpp"
-#include "sweep/carve.hpp"
+#include "riffler/dexel/stats.hpp"
+#include "sweep/carve_moves.hpp"
 #include "verify/slab.hpp"
 
 namespace riffler {

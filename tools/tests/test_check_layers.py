@@ -96,6 +96,39 @@ def test_types_are_found_behind_templates_literals_and_comments():
 def test_the_core_has_types_and_each_once():
     found = cpp_types.definitions(ROOT / "native")
     assert len(found) > 500
-    assert found["riffler::Program"] == ["nc/program.hpp"]
+    assert [path.removeprefix("include/riffler/") for path in found["riffler::Program"]] == ["nc/program.hpp"]
     assert check_layers.type_problems(ROOT) == []
     assert check_layers.circle_problems(ROOT) == []
+    assert check_layers.public_problems(ROOT) == []
+
+
+def test_public_headers_stand_in_their_topic(tree):
+    tree("include/riffler/base/io.hpp", '#include "riffler/nc/program.hpp"\n')
+    tree("include/riffler/nc/program.hpp", "")
+    assert check_layers.core_problems(tree.root) == [
+        "native/include/riffler/base/io.hpp:1: base includes nc/program.hpp, which is not above it"
+    ]
+    tree("nc/program.cpp", '#include "riffler/base/io.hpp"\n#include "riffler/nc/program.hpp"\n')
+    assert check_layers.header_problems(tree.root) == [
+        "native/nc/program.cpp: includes riffler/base/io.hpp before riffler/nc/program.hpp"
+    ]
+    assert check_layers.circle_problems(tree.root) == ["a circle of files: base/io → nc/program → base/io"]
+
+
+def test_a_public_header_needs_nothing_private(tree):
+    tree("nc/rows.hpp", "")
+    tree(
+        "include/riffler/nc/program.hpp",
+        '#include <glm/glm.hpp>\n#include <vector>\n\n#include "riffler/nc/rows.hpp"\n',
+    )
+    tree("include/riffler/nc/zip.hpp", '#include <zlib.h>\n#include <hidapi/hidapi.h>\n\n#include "nc/rows.hpp"\n')
+    assert check_layers.public_problems(tree.root) == [
+        "native/include/riffler/nc/program.hpp:4: a public header includes riffler/nc/rows.hpp, which is private",
+        "native/include/riffler/nc/zip.hpp:1: a public header includes <zlib.h>, of another library than GLM",
+        "native/include/riffler/nc/zip.hpp:2: a public header includes <hidapi/hidapi.h>, of another library than GLM",
+        "native/include/riffler/nc/zip.hpp:4: a public header includes nc/rows.hpp, which is private",
+    ]
+    tree("include/riffler/nc/rows.hpp", "")
+    assert check_layers.public_problems(tree.root)[0] == (
+        "native/include/riffler/nc/rows.hpp: there is a private header of that name too"
+    )

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
-#include "base/parallel.hpp"
 #include "base/planes.hpp"
-#include "dexel/file/file.hpp"
 #include "dexel/file/format.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/dexel/file/file.hpp"
 
 namespace riffler {
 

@@ -3,10 +3,10 @@
 #include <unordered_map>
 
 #include "base/io.hpp"
-#include "base/parallel.hpp"
 #include "base/planes.hpp"
-#include "dexel/file/file.hpp"
 #include "dexel/file/format.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/dexel/file/file.hpp"
 
 namespace riffler {
 

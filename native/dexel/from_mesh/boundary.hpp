@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

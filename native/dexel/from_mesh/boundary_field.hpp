@@ -7,7 +7,7 @@
 
 #include "dexel/from_mesh/field_points.hpp"
 #include "dexel/from_mesh/local_expansion.hpp"
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/bulk.hpp"
-#include "base/parallel.hpp"
+#include "riffler/base/bulk.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

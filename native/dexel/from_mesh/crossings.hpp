@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/bulk.hpp"
-#include "dexel/grid.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/base/bulk.hpp"
+#include "riffler/dexel/grid.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

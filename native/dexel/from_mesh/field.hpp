@@ -16,7 +16,7 @@
 
 #include "dexel/from_mesh/boundary_field.hpp"
 #include "dexel/from_mesh/field_points.hpp"
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

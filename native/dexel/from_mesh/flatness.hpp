@@ -1,7 +1,7 @@
 // Meshes that bound no volume.
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "dexel/from_mesh/from_mesh.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -7,14 +7,14 @@
 #include <string>
 #include <utility>
 
-#include "base/parallel.hpp"
 #include "dexel/from_mesh/crossing_lanes.hpp"
 #include "dexel/from_mesh/crossings.hpp"
 #include "dexel/from_mesh/flatness.hpp"
 #include "dexel/from_mesh/mesh_findings.hpp"
 #include "dexel/from_mesh/openings.hpp"
 #include "dexel/from_mesh/solid_mesh.hpp"
-#include "mesh/measure.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/mesh/measure.hpp"
 
 namespace riffler {
 

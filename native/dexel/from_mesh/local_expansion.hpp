@@ -4,7 +4,7 @@
 #include <array>
 
 #include "dexel/from_mesh/field_sum.hpp"
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

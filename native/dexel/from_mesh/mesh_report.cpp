@@ -1,10 +1,10 @@
-#include "dexel/from_mesh/mesh_report.hpp"
+#include "riffler/dexel/from_mesh/mesh_report.hpp"
 
 #include <atomic>
 
-#include "base/parallel.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/near_points.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

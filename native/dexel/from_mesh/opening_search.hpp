@@ -13,7 +13,7 @@
 #include "dexel/from_mesh/boundary_field.hpp"
 #include "dexel/from_mesh/field.hpp"
 #include "dexel/from_mesh/passage.hpp"
-#include "dexel/grid.hpp"
+#include "riffler/dexel/grid.hpp"
 
 namespace riffler {
 

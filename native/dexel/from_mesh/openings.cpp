@@ -7,10 +7,10 @@
 #include <tuple>
 #include <utility>
 
-#include "base/parallel.hpp"
 #include "dexel/from_mesh/boundary_field.hpp"
 #include "dexel/from_mesh/opening_search.hpp"
 #include "geom/math.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

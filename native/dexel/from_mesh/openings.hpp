@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "base/progress.hpp"
 #include "dexel/from_mesh/crossings.hpp"
 #include "dexel/from_mesh/passage.hpp"
-#include "dexel/grid.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/dexel/grid.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "dexel/span.hpp"
+#include "riffler/dexel/span.hpp"
 
 namespace riffler {
 

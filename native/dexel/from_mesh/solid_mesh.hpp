@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dexel/from_mesh/boundary.hpp"
-#include "mesh/orient.hpp"
+#include "riffler/mesh/orient.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler {
 

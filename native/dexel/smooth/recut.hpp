@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "dexel/grid.hpp"
 #include "dexel/smooth/moved_field.hpp"
-#include "dexel/stats.hpp"
+#include "riffler/dexel/grid.hpp"
+#include "riffler/dexel/stats.hpp"
 
 namespace riffler {
 

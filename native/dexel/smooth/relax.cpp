@@ -2,8 +2,8 @@
 // neighbours' places it leaves planes as they are at their borders too, where neighbours are on one side.
 #include "dexel/smooth/relax.hpp"
 
-#include "base/parallel.hpp"
 #include "dexel/joiner.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

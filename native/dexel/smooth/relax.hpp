@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "base/progress.hpp"
 #include "dexel/smooth/end_points.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler {
 

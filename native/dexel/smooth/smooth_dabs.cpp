@@ -1,18 +1,18 @@
 // Three stages for each dab: the ends of all spans in the brush are points of the surface (end_points.hpp), these move
 // (relax.hpp), and the rays are cut anew by the surface that the moved points say (moved_field.hpp). One field cuts the
 // three grids, so they agree.
-#include "dexel/smooth/smooth_dabs.hpp"
+#include "riffler/dexel/smooth/smooth_dabs.hpp"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "base/check.hpp"
-#include "base/parallel.hpp"
-#include "dexel/boolean.hpp"
 #include "dexel/smooth/moved_field.hpp"
 #include "dexel/smooth/recut.hpp"
 #include "dexel/smooth/relax.hpp"
+#include "riffler/base/check.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/dexel/boolean.hpp"
 
 namespace riffler {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "geom/vec.hpp"
 #include "mesh/decimate/edge_costs.hpp"
 #include "mesh/decimate/half_edge.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

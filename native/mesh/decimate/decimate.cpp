@@ -1,4 +1,4 @@
-#include "mesh/decimate/decimate.hpp"
+#include "riffler/mesh/decimate/decimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/parallel.hpp"
 #include "base/sort_unique.hpp"
 #include "geom/float32.hpp"
 #include "mesh/decimate/collapse.hpp"
@@ -19,6 +18,7 @@
 #include "mesh/decimate/patches.hpp"
 #include "mesh/decimate/separate.hpp"
 #include "mesh/decimate/tolerance_check.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

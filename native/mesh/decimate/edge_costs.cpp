@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.hpp"
 #include "geom/float32.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "base/progress.hpp"
 #include "mesh/decimate/half_edge.hpp"
 #include "mesh/decimate/quadric.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler {
 

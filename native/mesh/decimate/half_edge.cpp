@@ -2,8 +2,8 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include "mesh/decimate/half_edge.hpp"
 
-#include "base/parallel.hpp"
 #include "mesh/decimate/separate.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

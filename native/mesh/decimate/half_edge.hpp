@@ -4,9 +4,9 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

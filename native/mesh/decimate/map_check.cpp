@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/parallel.hpp"
 #include "base/sort_unique.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

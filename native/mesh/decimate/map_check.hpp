@@ -5,9 +5,9 @@
 #include <atomic>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "mesh/closest.hpp"
 #include "mesh/decimate/surface_map.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "base/progress.hpp"
 #include "mesh/decimate/half_edge.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler {
 

@@ -1,7 +1,7 @@
 // Quadric error metric.
 #pragma once
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

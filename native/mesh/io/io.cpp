@@ -1,4 +1,4 @@
-#include "mesh/io/io.hpp"
+#include "riffler/mesh/io/io.hpp"
 
 #include <stdexcept>
 #include <string>

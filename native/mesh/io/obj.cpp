@@ -5,9 +5,9 @@
 #include <charconv>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "mesh/io/scan.hpp"
 #include "mesh/weld.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <utility>
 
-#include "base/error.hpp"
 #include "geom/float32.hpp"
 #include "mesh/io/scan.hpp"
 #include "mesh/weld.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

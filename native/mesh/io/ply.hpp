@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.hpp"
-#include "mesh/mesh.hpp"
+#include "riffler/base/progress.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

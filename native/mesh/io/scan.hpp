@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

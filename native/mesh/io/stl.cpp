@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "geom/float32.hpp"
 #include "mesh/io/scan.hpp"
 #include "mesh/weld.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler {
 

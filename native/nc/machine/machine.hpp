@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "geom/pose.hpp"
 #include "nc/machine/two_rotations.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler {
 

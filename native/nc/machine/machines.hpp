@@ -1,30 +1,17 @@
-// The machines that programs are written for and read from: those that come with Riffler
-// (native/nc/machine/shipped/*.toml), and files of the user's own.
+// A machine by its name or by the path of its description.
 #pragma once
 
 #include <memory>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "base/descriptions.hpp"
 #include "nc/machine/machine.hpp"
 #include "nc/options.hpp"
+#include "riffler/nc/machine/machine_list.hpp"
 
 namespace riffler {
-
-/// All machines, ours first, then every *.toml in the folders of RIFFLER_MACHINES (apart as in PATH) and in
-/// riffler/machines of the user's folder for settings; of a file that cannot be read the description says why.
-std::vector<DescriptionEntry> machines();
-
-/// The names of those with an axis of this letter whose control reads `language`, apart by commas.
-std::string machines_with(char axis, std::string_view language = "rs274");
 
 /// `name` is one of machines(), or the path of a .toml file. Options that the machine does not take stay in `options`.
 /// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options);
-
-/// The names of machines() whose control reads `language`, apart by commas.
-std::string machines_of_language(std::string_view language);
 
 }  // namespace riffler

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

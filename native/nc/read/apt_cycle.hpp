@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "geom/pose.hpp"
 #include "nc/read/apt_lexer.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "nc/program.hpp"
-#include "nc/read/read_options.hpp"
+#include "riffler/nc/program.hpp"
+#include "riffler/nc/read/read_options.hpp"
 
 namespace riffler {
 

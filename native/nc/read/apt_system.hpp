@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "geom/vec.hpp"
 #include "nc/source.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

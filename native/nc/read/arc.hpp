@@ -1,7 +1,7 @@
 // Circular arcs of G2 and G3, in their plane.
 #pragma once
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "base/progress.hpp"
 #include "nc/read/cursor.hpp"
 #include "nc/read/o_word.hpp"
 #include "nc/read/parameters.hpp"
 #include "nc/source.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler {
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "geom/vec.hpp"
 #include "nc/source.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

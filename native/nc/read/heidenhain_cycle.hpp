@@ -6,10 +6,10 @@
 #include <functional>
 #include <optional>
 
-#include "geom/vec.hpp"
 #include "nc/read/drill_cycle.hpp"
 #include "nc/read/heidenhain_values.hpp"
 #include "nc/source.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -1,7 +1,7 @@
 // Where programmed coordinates are in the part: datum shift, tilted working plane, rotation.
 #pragma once
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -20,10 +20,10 @@
 #include "nc/read/heidenhain_values.hpp"
 #include "nc/read/heidenhain_words.hpp"
 #include "nc/read/notes.hpp"
-#include "nc/read/read_options.hpp"
 #include "nc/read/rows.hpp"
 #include "nc/read/stand.hpp"
 #include "nc/read/tool_diameters.hpp"
+#include "riffler/nc/read/read_options.hpp"
 
 namespace riffler {
 

@@ -18,11 +18,11 @@
 #include "nc/read/frame.hpp"
 #include "nc/read/notes.hpp"
 #include "nc/read/parameters.hpp"
-#include "nc/read/read_options.hpp"
 #include "nc/read/rows.hpp"
 #include "nc/read/tool_diameters.hpp"
 #include "nc/read/words.hpp"
 #include "nc/source.hpp"
+#include "riffler/nc/read/read_options.hpp"
 
 namespace riffler {
 

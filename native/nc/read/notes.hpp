@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "nc/program.hpp"
+#include "riffler/nc/program.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

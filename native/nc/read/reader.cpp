@@ -1,9 +1,8 @@
-#include "nc/read/reader.hpp"
+#include "riffler/nc/read/reader.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
 #include "nc/limits.hpp"
 #include "nc/machine/machines.hpp"
@@ -13,6 +12,7 @@
 #include "nc/read/interpreter.hpp"
 #include "nc/read/sinumerik_reader.hpp"
 #include "nc/read/sinumerik_text.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "nc/machine/machine.hpp"
-#include "nc/program.hpp"
 #include "nc/read/arc.hpp"
 #include "nc/read/frame.hpp"
 #include "nc/source.hpp"
+#include "riffler/nc/program.hpp"
 
 namespace riffler {
 

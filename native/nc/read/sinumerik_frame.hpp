@@ -1,7 +1,7 @@
 // Where programmed coordinates of a Sinumerik program are in the part: TRANS, ROT, and the plane of CYCLE800.
 #pragma once
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -14,7 +14,6 @@
 
 #include "nc/read/arc.hpp"
 #include "nc/read/notes.hpp"
-#include "nc/read/read_options.hpp"
 #include "nc/read/rows.hpp"
 #include "nc/read/sinumerik_cycle.hpp"
 #include "nc/read/sinumerik_frame.hpp"
@@ -22,6 +21,7 @@
 #include "nc/read/sinumerik_values.hpp"
 #include "nc/read/sinumerik_words.hpp"
 #include "nc/read/stand.hpp"
+#include "riffler/nc/read/read_options.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler {
 

@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "nc/program.hpp"
 #include "nc/write/block_sink.hpp"
-#include "nc/write/write_options.hpp"
+#include "riffler/nc/program.hpp"
+#include "riffler/nc/write/write_options.hpp"
 
 namespace riffler {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "nc/machine/machine.hpp"
-#include "nc/program.hpp"
+#include "riffler/nc/program.hpp"
 
 namespace riffler {
 

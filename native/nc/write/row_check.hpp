@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "nc/program.hpp"
 #include "nc/write/post.hpp"
-#include "nc/write/write_options.hpp"
+#include "riffler/nc/program.hpp"
+#include "riffler/nc/write/write_options.hpp"
 
 namespace riffler {
 

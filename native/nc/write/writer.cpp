@@ -1,4 +1,4 @@
-#include "nc/write/writer.hpp"
+#include "riffler/nc/write/writer.hpp"
 
 #include <algorithm>
 

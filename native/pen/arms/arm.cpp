@@ -1,4 +1,4 @@
-#include "pen/arms/arm.hpp"
+#include "riffler/pen/arms/arm.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "pen/arms/compensation.hpp"
+#include "riffler/pen/arms/compensation.hpp"
 
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

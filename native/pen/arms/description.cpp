@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/toml.hpp"
-#include "pen/arms/arm.hpp"
-#include "pen/arms/kinematics.hpp"
+#include "riffler/pen/arms/arm.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 
 namespace riffler {
 

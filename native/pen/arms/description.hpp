@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "pen/arms/geometry.hpp"
+#include "riffler/pen/arms/geometry.hpp"
 
 namespace riffler {
 

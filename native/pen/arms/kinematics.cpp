@@ -1,4 +1,4 @@
-#include "pen/arms/kinematics.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 
 #include <cmath>
 

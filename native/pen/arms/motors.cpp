@@ -1,4 +1,4 @@
-#include "pen/arms/motors.hpp"
+#include "riffler/pen/arms/motors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/descriptions.hpp"
-#include "pen/arms/geometry.hpp"
+#include "riffler/base/descriptions.hpp"
+#include "riffler/pen/arms/geometry.hpp"
 
 namespace riffler {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "pen/arms/kinematics.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 
 namespace riffler {
 

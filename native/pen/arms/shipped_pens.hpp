@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "base/descriptions.hpp"
+#include "riffler/base/descriptions.hpp"
 
 namespace riffler {
 

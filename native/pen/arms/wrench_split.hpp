@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "haptics/wrench.hpp"
-#include "pen/arms/kinematics.hpp"
+#include "riffler/haptics/wrench.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 
 namespace riffler {
 

@@ -11,7 +11,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "pen/hid/hid_list.hpp"
+#include "pen/hid/hidapi_mutex.hpp"
+#include "riffler/pen/hid/hid_list.hpp"
 
 namespace riffler {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "pen/hid/hid_list.hpp"
-#include "pen/hid/open_error.hpp"
 #include "pen/hid/transport.hpp"
+#include "riffler/pen/hid/hid_list.hpp"
+#include "riffler/pen/hid/open_error.hpp"
 
 struct hid_device_;
 

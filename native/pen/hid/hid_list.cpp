@@ -1,4 +1,4 @@
-#include "pen/hid/hid_list.hpp"
+#include "riffler/pen/hid/hid_list.hpp"
 
 #include <hidapi/hidapi.h>
 
@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+
+#include "pen/hid/hidapi_mutex.hpp"
 
 namespace riffler {
 namespace {

@@ -11,8 +11,8 @@
 #include <atomic>
 #include <cstdint>
 
-#include "pen/hid/hid_list.hpp"
 #include "pen/hid_model.hpp"
+#include "riffler/pen/hid/hid_list.hpp"
 
 namespace riffler {
 

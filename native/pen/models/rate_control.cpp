@@ -1,4 +1,4 @@
-#include "pen/models/rate_control.hpp"
+#include "riffler/pen/models/rate_control.hpp"
 
 #include <algorithm>
 #include <cmath>

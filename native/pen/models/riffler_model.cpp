@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "pen/arms/motors.hpp"
 #include "pen/arms/pens.hpp"
 #include "pen/arms/redundancy.hpp"
 #include "pen/arms/wrench_split.hpp"
+#include "riffler/pen/arms/motors.hpp"
 
 namespace riffler {
 namespace {

@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "device/protocol/pen_protocol.h"
-#include "pen/arms/compensation.hpp"
 #include "pen/arms/count_speed.hpp"
-#include "pen/arms/kinematics.hpp"
 #include "pen/hid_model.hpp"
+#include "riffler/pen/arms/compensation.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 
 namespace riffler {
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "pen/hid/hid_descriptor.hpp"
-#include "pen/hid/hid_list.hpp"
 #include "pen/hid_model.hpp"
-#include "pen/models/rate_control.hpp"
+#include "riffler/pen/hid/hid_list.hpp"
+#include "riffler/pen/models/rate_control.hpp"
 
 namespace riffler {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "haptics/settings.hpp"
+#include "riffler/haptics/settings.hpp"
 
 namespace riffler {
 

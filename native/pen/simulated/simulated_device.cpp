@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "base/check.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/simulated/simulated_transport.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "pen/arms/compensation.hpp"
 #include "pen/hid_pen.hpp"
 #include "pen/simulated/simulated_pen.hpp"
 #include "pen/simulated/stall_tolerant_clock.hpp"
+#include "riffler/pen/arms/compensation.hpp"
 
 namespace riffler {
 

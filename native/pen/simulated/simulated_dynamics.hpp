@@ -13,8 +13,8 @@
 
 #include <array>
 
-#include "pen/arms/kinematics.hpp"
-#include "pen/arms/motors.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
+#include "riffler/pen/arms/motors.hpp"
 
 namespace riffler {
 

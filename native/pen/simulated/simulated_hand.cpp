@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include "base/check.hpp"
 #include "geom/math.hpp"
+#include "riffler/base/check.hpp"
 
 namespace riffler {
 

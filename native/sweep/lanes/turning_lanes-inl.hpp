@@ -13,7 +13,7 @@
 
 #include <algorithm>
 
-#include "base/block_pool.hpp"
+#include "riffler/base/block_pool.hpp"
 #include "sweep/lanes/certificate_lanes-inl.hpp"
 #include "sweep/lanes/cut_lanes-inl.hpp"
 #include "sweep/lanes/hit_lanes-inl.hpp"

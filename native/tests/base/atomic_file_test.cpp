@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
+#include "riffler/base/error.hpp"
 #include "support/file_limit.hpp"
 
 namespace riffler::atomic_file_test {

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::background_test {
 namespace {

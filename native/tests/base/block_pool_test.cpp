@@ -1,4 +1,4 @@
-#include "base/block_pool.hpp"
+#include "riffler/base/block_pool.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/check.hpp"
+#include "riffler/base/check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "bench/capsule_loop.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::sweep_error_test {
 namespace {

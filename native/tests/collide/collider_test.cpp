@@ -1,11 +1,11 @@
-#include "collide/collider.hpp"
+#include "riffler/collide/collider.hpp"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
 #include "collide/tools.hpp"
-#include "marching/to_mesh.hpp"
+#include "riffler/marching/to_mesh.hpp"
 #include "stress/random.hpp"
 #include "support/box_mesh.hpp"
 #include "support/effort.hpp"

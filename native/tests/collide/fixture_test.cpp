@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "collide/collider.hpp"
 #include "collide/tools.hpp"
+#include "riffler/collide/collider.hpp"
 #include "stress/random.hpp"
 #include "support/effort.hpp"
 #include "sweep/kernels.hpp"

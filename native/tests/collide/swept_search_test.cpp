@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "collide/collider.hpp"
+#include "collide/outline_lanes.hpp"
 #include "collide/tools.hpp"
 #include "mesh/shapes.hpp"
 #include "reference/assembly_distance.hpp"
 #include "reference/surface_entry.hpp"
+#include "riffler/collide/collider.hpp"
 #include "stress/random.hpp"
 
 namespace riffler::swept_search_test {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler {
 

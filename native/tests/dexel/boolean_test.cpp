@@ -1,4 +1,4 @@
-#include "dexel/boolean.hpp"
+#include "riffler/dexel/boolean.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,13 +7,13 @@
 #include <random>
 #include <stdexcept>
 
-#include "dexel/boolean.hpp"
-#include "dexel/clip.hpp"
-#include "dexel/contains.hpp"
-#include "dexel/parts.hpp"
 #include "dexel/volumes.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/dexel/boolean.hpp"
+#include "riffler/dexel/clip.hpp"
+#include "riffler/dexel/contains.hpp"
+#include "riffler/dexel/parts.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::edits_test {
 namespace {

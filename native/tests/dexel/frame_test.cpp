@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "dexel/from_mesh/from_mesh.hpp"
-#include "dexel/volume.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
+#include "riffler/dexel/volume.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::frame_test {

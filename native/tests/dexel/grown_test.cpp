@@ -1,5 +1,5 @@
 // Volumes in larger boxes against the rays that they had.
-#include "dexel/grown.hpp"
+#include "riffler/dexel/grown.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Spheres and cylinders against signed distances, at the degenerate limits.
-#include "dexel/quadrics.hpp"
+#include "riffler/dexel/quadrics.hpp"
 
 #include <gtest/gtest.h>
 

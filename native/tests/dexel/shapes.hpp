@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "dexel/volume.hpp"
 #include "geom/math.hpp"
 #include "mesh/solids.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler::shapes {
 

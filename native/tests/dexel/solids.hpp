@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler::test {
 

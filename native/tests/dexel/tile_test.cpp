@@ -1,10 +1,10 @@
-#include "dexel/tile.hpp"
+#include "riffler/dexel/tile.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dexel/volume.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/dexel/volume.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::tile_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
 
 namespace riffler::test {
 

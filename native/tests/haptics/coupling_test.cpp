@@ -1,4 +1,4 @@
-#include "haptics/coupling.hpp"
+#include "riffler/haptics/coupling.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>

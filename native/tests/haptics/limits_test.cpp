@@ -1,4 +1,4 @@
-#include "haptics/limits.hpp"
+#include "riffler/haptics/limits.hpp"
 
 #include <gtest/gtest.h>
 

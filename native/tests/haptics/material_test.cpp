@@ -1,4 +1,4 @@
-#include "haptics/material.hpp"
+#include "riffler/haptics/material.hpp"
 
 #include <gtest/gtest.h>
 

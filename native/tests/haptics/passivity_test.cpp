@@ -1,8 +1,8 @@
-#include "haptics/passivity.hpp"
+#include "riffler/haptics/passivity.hpp"
 
 #include <gtest/gtest.h>
 
-#include "haptics/coupling.hpp"
+#include "riffler/haptics/coupling.hpp"
 #include "stress/passive_bound.hpp"
 #include "stress/stability.hpp"
 #include "support/effort.hpp"

@@ -1,4 +1,4 @@
-#include "haptics/safety.hpp"
+#include "riffler/haptics/safety.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // The haptic step against closed forms and against the same balance integrated in very small steps.
-#include "haptics/sculpt_step.hpp"
+#include "riffler/haptics/sculpt_step.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
 
-#include "haptics/passivity.hpp"
+#include "riffler/haptics/passivity.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
 #include "support/allocations.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::sculpt_step_test {
 namespace {

@@ -1,10 +1,10 @@
 // The parts together, as haptics/safety.hpp calls them in one tick.
 #include <gtest/gtest.h>
 
-#include "haptics/coupling.hpp"
-#include "haptics/limits.hpp"
-#include "haptics/passivity.hpp"
-#include "haptics/safety.hpp"
+#include "riffler/haptics/coupling.hpp"
+#include "riffler/haptics/limits.hpp"
+#include "riffler/haptics/passivity.hpp"
+#include "riffler/haptics/safety.hpp"
 #include "stress/random.hpp"
 #include "support/allocations.hpp"
 

@@ -1,4 +1,4 @@
-#include "haptics/workspace.hpp"
+#include "riffler/haptics/workspace.hpp"
 
 #include <gtest/gtest.h>
 

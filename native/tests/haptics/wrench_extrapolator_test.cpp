@@ -1,4 +1,4 @@
-#include "haptics/wrench_extrapolator.hpp"
+#include "riffler/haptics/wrench_extrapolator.hpp"
 
 #include <gtest/gtest.h>
 

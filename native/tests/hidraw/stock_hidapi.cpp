@@ -17,7 +17,7 @@
 #include "allocations.hpp"
 #include "device/firmware/pen_firmware.h"
 #include "pen/hid/hid_handle.hpp"
-#include "pen/registry.hpp"
+#include "riffler/pen/registry.hpp"
 #include "support/hid_devices.hpp"
 #include "virtual_hid.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "bench/mesh_distance.hpp"
 #include "geom/math.hpp"
-#include "marching/to_mesh.hpp"
+#include "riffler/marching/to_mesh.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/random.hpp"
 #include "stress/solids.hpp"

@@ -1,16 +1,16 @@
-#include "marching/mesher.hpp"
+#include "riffler/marching/mesher.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <map>
 
-#include "marching/to_mesh.hpp"
+#include "riffler/marching/to_mesh.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/mesh_scenes.hpp"
 #include "support/effort.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::mesher_test {
 namespace {

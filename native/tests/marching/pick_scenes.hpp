@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "marching/mesher.hpp"
+#include "riffler/marching/mesher.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/mesh_scenes.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::test {
 

@@ -1,4 +1,4 @@
-#include "marching/pick.hpp"
+#include "riffler/marching/pick.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "marching/pick_scenes.hpp"
-#include "marching/to_mesh.hpp"
 #include "mesh/closest.hpp"
+#include "riffler/marching/to_mesh.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::pick_test {

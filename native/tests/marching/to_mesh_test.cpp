@@ -1,17 +1,17 @@
-#include "marching/to_mesh.hpp"
+#include "riffler/marching/to_mesh.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/mesh_scenes.hpp"
 #include "stress/random.hpp"
 #include "stress/solids.hpp"
 #include "support/effort.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::to_mesh_test {
 namespace {

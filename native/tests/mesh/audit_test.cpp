@@ -1,4 +1,4 @@
-#include "mesh/audit.hpp"
+#include "riffler/mesh/audit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "mesh/orient.hpp"
+#include "riffler/mesh/orient.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <random>
 
-#include "mesh/audit.hpp"
 #include "mesh/shapes.hpp"
 #include "mesh/solids.hpp"
+#include "riffler/mesh/audit.hpp"
 
 namespace riffler::orient_test {
 namespace {

@@ -1,13 +1,13 @@
-#include "mesh/smooth.hpp"
+#include "riffler/mesh/smooth.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <random>
 
-#include "mesh/audit.hpp"
 #include "mesh/io/stl.hpp"
 #include "mesh/shapes.hpp"
+#include "riffler/mesh/audit.hpp"
 
 namespace riffler::smooth_test {
 namespace {

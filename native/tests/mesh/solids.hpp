@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler::shapes {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/error.hpp"
 #include "geom/math.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler::apt_cutter_test {
 namespace {

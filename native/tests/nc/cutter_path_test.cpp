@@ -1,4 +1,4 @@
-#include "nc/cutter_path.hpp"
+#include "riffler/nc/cutter_path.hpp"
 
 #include <gtest/gtest.h>
 

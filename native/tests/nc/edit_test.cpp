@@ -1,13 +1,13 @@
-#include "nc/edit.hpp"
+#include "riffler/nc/edit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "nc/cutter_path.hpp"
+#include "riffler/nc/cutter_path.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/error_of.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::edit_test {
 namespace {

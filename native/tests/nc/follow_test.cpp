@@ -5,10 +5,10 @@
 #include <string>
 
 #include "geom/math.hpp"
-#include "nc/edit.hpp"
 #include "nc/follow.hpp"
-#include "nc/program_file.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/nc/edit.hpp"
+#include "riffler/nc/program_file.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::follow_test {

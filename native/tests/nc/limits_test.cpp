@@ -6,14 +6,14 @@
 #include <cmath>
 #include <random>
 
-#include "nc/cutter_path.hpp"
 #include "nc/machine/machines.hpp"
-#include "nc/read/reader.hpp"
 #include "nc/write/rotary.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/nc/cutter_path.hpp"
+#include "riffler/nc/read/reader.hpp"
+#include "riffler/nc/write/writer.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/nc_blocks.hpp"
 #include "support/tilted.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::limits_test {
 namespace {

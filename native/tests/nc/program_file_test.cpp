@@ -1,4 +1,4 @@
-#include "nc/program_file.hpp"
+#include "riffler/nc/program_file.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <functional>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
 #include "stress/thread_count.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::program_file_test {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "riffler/tool/cutters.hpp"
 #include "support/tilted.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::retract_path_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler::source_test {
 namespace {

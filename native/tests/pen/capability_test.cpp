@@ -1,10 +1,10 @@
 // What devices say of themselves.
-#include "pen/capability.hpp"
+#include "riffler/pen/capability.hpp"
 
 #include <gtest/gtest.h>
 
-#include "pen/arms/motors.hpp"
 #include "pen/arms/wrench_split.hpp"
+#include "riffler/pen/arms/motors.hpp"
 #include "support/pens.hpp"
 
 namespace riffler::capability_test {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "pen/hid_pen.hpp"
-#include "pen/published.hpp"
+#include "riffler/pen/published.hpp"
 
 namespace riffler::driver_test {
 namespace {

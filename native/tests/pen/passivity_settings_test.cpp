@@ -1,5 +1,5 @@
 // Bounds that hold wherever the arms stand, judged by the kinematics of random postures.
-#include "pen/passivity_settings.hpp"
+#include "riffler/pen/passivity_settings.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pen/arms/arm.hpp"
-#include "pen/arms/motors.hpp"
+#include "riffler/pen/arms/arm.hpp"
+#include "riffler/pen/arms/motors.hpp"
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 

@@ -1,10 +1,10 @@
-#include "plan/contact_location.hpp"
+#include "riffler/plan/contact_location.hpp"
 
 #include <gtest/gtest.h>
 
 #include "cutters.hpp"
-#include "plan/cc_frame.hpp"
 #include "reference/cutter_distance.hpp"
+#include "riffler/plan/cc_frame.hpp"
 #include "stress/random.hpp"
 
 namespace riffler::contact_location_test {

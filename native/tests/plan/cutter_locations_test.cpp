@@ -1,13 +1,14 @@
-#include "plan/cutter_locations.hpp"
+#include "riffler/plan/cutter_locations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
+#include "geom/directions.hpp"
 #include "mesh/shapes.hpp"
-#include "plan/least_tilt.hpp"
-#include "plan/orientation.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/plan/least_tilt.hpp"
+#include "riffler/plan/orientation.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::cutter_locations_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler {
 

@@ -1,4 +1,4 @@
-#include "plan/drop.hpp"
+#include "riffler/plan/drop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "plan/engrave.hpp"
+#include "riffler/plan/engrave.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::engrave_test {
 namespace {

@@ -1,12 +1,12 @@
-#include "plan/lift.hpp"
+#include "riffler/plan/lift.hpp"
 
 #include <gtest/gtest.h>
 
 #include "cutters.hpp"
 #include "mesh/shapes.hpp"
-#include "plan/contact_location.hpp"
 #include "plan/point_lift.hpp"
 #include "reference/cutter_distance.hpp"
+#include "riffler/plan/contact_location.hpp"
 #include "stress/random.hpp"
 #include "support/effort.hpp"
 

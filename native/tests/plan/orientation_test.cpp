@@ -1,4 +1,4 @@
-#include "plan/orientation.hpp"
+#include "riffler/plan/orientation.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
@@ -7,8 +7,9 @@
 #include <limits>
 #include <string>
 
-#include "plan/cc_frame.hpp"
+#include "geom/directions.hpp"
 #include "plan/smooth_axes.hpp"
+#include "riffler/plan/cc_frame.hpp"
 #include "stress/random.hpp"
 
 namespace riffler::orientation_test {

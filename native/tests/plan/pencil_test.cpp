@@ -1,13 +1,13 @@
-#include "plan/pencil.hpp"
+#include "riffler/plan/pencil.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
-#include "base/error.hpp"
 #include "mesh/closest.hpp"
 #include "plan/parts.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::pencil_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "plan/swarf.hpp"
+#include "riffler/plan/swarf.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "mesh/closest.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::swarf_test {
 namespace {

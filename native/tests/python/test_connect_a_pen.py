@@ -11,7 +11,7 @@ import riffler
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "connect-a-pen.md").read_text()
-LIMITS = (ROOT / "native" / "haptics" / "limits.hpp").read_text()
+LIMITS = (ROOT / "native/include/riffler/haptics/limits.hpp").read_text()
 RAMP = 0.5  # s, as the page says
 
 

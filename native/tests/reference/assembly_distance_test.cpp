@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "reference/surface_distance.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::reference::assembly_distance_test {
 namespace {

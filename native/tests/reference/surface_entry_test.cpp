@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "reference/surface_distance.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::reference::surface_entry_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::reference::swept_distance_test {
 namespace {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "session/journal_file.hpp"
-#include "session/replay.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/session/journal_file.hpp"
+#include "riffler/session/replay.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::scenes {
 

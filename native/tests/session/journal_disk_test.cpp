@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "base/io.hpp"
-#include "session/journal_file.hpp"
+#include "riffler/session/journal_file.hpp"
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
 

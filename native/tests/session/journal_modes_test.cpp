@@ -5,16 +5,16 @@
 #include <random>
 #include <vector>
 
-#include "base/error.hpp"
-#include "dexel/file/file.hpp"
-#include "dexel/smooth/smooth_dabs.hpp"
-#include "session/journal_file.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/dexel/smooth/smooth_dabs.hpp"
+#include "riffler/session/journal_file.hpp"
+#include "riffler/session/replay.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "session/journal_records.hpp"
-#include "session/replay.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::journal_modes_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "session/journal.hpp"
+#include "riffler/session/journal.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,9 +12,9 @@
 #include <stdexcept>
 
 #include "base/bytes.hpp"
-#include "base/error.hpp"
 #include "base/io.hpp"
-#include "session/journal_file.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/session/journal_file.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
 

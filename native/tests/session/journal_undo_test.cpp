@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/error.hpp"
-#include "session/journal_file.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/session/journal_file.hpp"
 #include "session/journal_records.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "dexel/boolean.hpp"
-#include "dexel/file/file.hpp"
 #include "dexel/volumes.hpp"
-#include "session/journal_file.hpp"
-#include "session/replay.hpp"
+#include "riffler/dexel/boolean.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/session/journal_file.hpp"
+#include "riffler/session/replay.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/error_of.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::masked_stock_test {
 namespace {

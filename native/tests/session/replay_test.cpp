@@ -1,5 +1,5 @@
 // A journal replayed leaves the bytes that the session left.
-#include "session/replay.hpp"
+#include "riffler/session/replay.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,16 +8,16 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/error.hpp"
-#include "dexel/file/file.hpp"
 #include "dexel/volumes.hpp"
-#include "haptics/sculpt_step.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/haptics/sculpt_step.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/sweep/move_carver.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "session/journal_stream.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
-#include "sweep/carve.hpp"
-#include "sweep/move_carver.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::replay_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pen/simulated/simulated_bench.hpp"
-#include "session/journal_rules.hpp"
-#include "session/sculpt_loop.hpp"
+#include "riffler/session/journal_rules.hpp"
+#include "riffler/session/sculpt_loop.hpp"
 
 namespace riffler::test {
 

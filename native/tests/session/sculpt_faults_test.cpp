@@ -9,13 +9,13 @@
 #include <thread>
 
 #include "dexel/volumes.hpp"
-#include "session/journal_sink.hpp"
-#include "session/replay.hpp"
+#include "riffler/session/journal_sink.hpp"
+#include "riffler/session/replay.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/effort.hpp"
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::sculpt_faults_test {
 namespace {
@@ -69,7 +69,7 @@ std::vector<Fault> faults() {
 }
 
 std::unique_ptr<JournalSink> sink_to(const std::filesystem::path& path, const Volume& stock,
-                                     const JournalStream::Options& options = {}) {
+                                     const JournalStreamOptions& options = {}) {
   auto writer = std::make_unique<JournalWriter>(path, JournalWriter::Keep::Rules);
   writer->set_stock({stock.frame().box, stock.frame().pitch, stock.frame().directions, ""});
   writer->add_tool(1, "{}");

@@ -1,5 +1,5 @@
 // Sculpting through the whole stack, on a virtual clock.
-#include "session/sculpt_loop.hpp"
+#include "riffler/session/sculpt_loop.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 
 #include "dexel/volumes.hpp"
 #include "pen/arms/pens.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/allocations.hpp"
 #include "support/box_mesh.hpp"
 #include "support/effort.hpp"
 #include "support/error_of.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::sculpt_loop_test {
 namespace {

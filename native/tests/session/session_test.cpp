@@ -1,5 +1,5 @@
 // Sessions with their threads, on the clock of the system.
-#include "session/session.hpp"
+#include "riffler/session/session.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
@@ -9,15 +9,15 @@
 #include <thread>
 
 #include "dexel/volumes.hpp"
-#include "marching/mesher.hpp"
-#include "pen/playback.hpp"
-#include "pen/pointer.hpp"
 #include "pen/simulated/simulated_device.hpp"
+#include "riffler/marching/mesher.hpp"
+#include "riffler/pen/playback.hpp"
+#include "riffler/pen/pointer.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "session/sculpt_bench.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::session_test {
 namespace {

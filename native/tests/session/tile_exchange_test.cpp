@@ -1,14 +1,14 @@
 // Tiles from the thread that cuts to the one that shows.
-#include "session/tile_exchange.hpp"
+#include "riffler/session/tile_exchange.hpp"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
 
-#include "base/ring.hpp"
 #include "dexel/volumes.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/base/ring.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::tile_exchange_test {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "dexel/file/file.hpp"
-#include "marching/to_mesh.hpp"
 #include "mesh/shapes.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/marching/to_mesh.hpp"
 #include "stress/float_audit.hpp"
 #include "stress/mesh_run.hpp"
 #include "support/checkout.hpp"

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "riffler/tool/cutters.hpp"
 #include "stress/run.hpp"
 #include "support/effort.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::stress::stress_test {
 namespace {

@@ -1,7 +1,7 @@
 // A box of twelve triangles, outward.
 #pragma once
 
-#include "mesh/mesh.hpp"
+#include "riffler/mesh/mesh.hpp"
 
 namespace riffler::test {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "device/protocol/pen_protocol.h"
-#include "pen/hid/hid_list.hpp"
+#include "riffler/pen/hid/hid_list.hpp"
 
 namespace riffler::test {
 

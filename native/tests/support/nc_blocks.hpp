@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "geom/pose.hpp"
+#include "riffler/geom/pose.hpp"
 
 namespace riffler::test {
 

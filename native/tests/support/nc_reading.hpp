@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "base/error.hpp"
-#include "nc/read/reader.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/nc/read/reader.hpp"
 
 namespace riffler::test {
 

@@ -1,8 +1,8 @@
 // Pens and poses that tests of the pen share.
 #pragma once
 
-#include "pen/arms/kinematics.hpp"
 #include "pen/arms/pens.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 #include "stress/random.hpp"
 
 namespace riffler::test {

@@ -9,10 +9,10 @@
 #include "nc/limits.hpp"
 #include "nc/machine/machines.hpp"
 #include "nc/machine/shipped_machines.hpp"
-#include "nc/program.hpp"
-#include "nc/write/write_options.hpp"
+#include "riffler/nc/program.hpp"
+#include "riffler/nc/write/write_options.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/tilted.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::test {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geom/math.hpp"
-#include "geom/vec.hpp"
+#include "riffler/geom/vec.hpp"
 
 namespace riffler::test {
 

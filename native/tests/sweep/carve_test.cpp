@@ -1,4 +1,4 @@
-#include "sweep/carve.hpp"
+#include "riffler/sweep/carve.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "dexel/volumes.hpp"
 #include "reference/swept_distance.hpp"
-#include "sweep/move_carver.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/sweep/move_carver.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::carve_test {
 namespace {

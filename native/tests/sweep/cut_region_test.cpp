@@ -10,11 +10,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "dexel/boolean.hpp"
 #include "dexel/volumes.hpp"
 #include "reference/swept_distance.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/dexel/boolean.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::cut_region_test {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/effort.hpp"
-#include "sweep/carve.hpp"
 #include "sweep/kernels.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::instruction_sets_test {
 namespace {

@@ -1,5 +1,5 @@
 // Moves one by one, as a pen makes them: the same as `carve`, without asking the system for memory.
-#include "sweep/move_carver.hpp"
+#include "riffler/sweep/move_carver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "dexel/volumes.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/allocations.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::move_carver_test {
 namespace {

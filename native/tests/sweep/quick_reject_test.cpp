@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::quick_reject_test {
 namespace {

@@ -3,8 +3,8 @@
 #include <random>
 
 #include "reference/swept_distance.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::random_moves_test {
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "reference/swept_distance.hpp"
-#include "sweep/carve.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "sweep/convex_group.hpp"
 #include "sweep/turning_part.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::steps_test {
 namespace {

@@ -1,5 +1,5 @@
 // The table of cutters: every row holds to the same rules, so that a new one is tested by standing in it.
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "tool/outline.hpp"
+#include "riffler/tool/outline.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "reference/cutter_distance.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::outline_test {
 namespace {

@@ -1,13 +1,13 @@
-#include "tool/profile.hpp"
+#include "riffler/tool/profile.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "dexel/volume.hpp"
+#include "riffler/dexel/volume.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/error_of.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::profile_test {
 namespace {

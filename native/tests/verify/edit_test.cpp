@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tool/cutters.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::edit_test {
 namespace {

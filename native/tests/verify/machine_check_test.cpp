@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nc/write/writer.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/effort.hpp"
 #include "support/random_rows.hpp"
 

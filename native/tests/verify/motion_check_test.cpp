@@ -5,10 +5,10 @@
 
 #include <filesystem>
 
-#include "nc/write/writer.hpp"
+#include "riffler/nc/write/writer.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::motion_check_test {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
-#include "tool/cutters.hpp"
 #include "verify/moves.hpp"
 
 namespace riffler::shapes_test {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/effort.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
 #include "verify/toolset.hpp"
 
 namespace riffler::slab_packets_test {

@@ -6,15 +6,15 @@
 #include <random>
 #include <set>
 
-#include "base/parallel.hpp"
-#include "dexel/file/file.hpp"
-#include "nc/edit.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/nc/edit.hpp"
+#include "riffler/tool/cutters.hpp"
+#include "riffler/verify/verification.hpp"
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
 #include "support/tilted.hpp"
-#include "tool/cutters.hpp"
 #include "verify/remote.hpp"
-#include "verify/verification.hpp"
 #include "verify/verify_plan.hpp"
 
 namespace riffler::slab_run_test {

@@ -4,9 +4,9 @@
 
 #include <set>
 
-#include "dexel/file/file.hpp"
-#include "sweep/carve.hpp"
-#include "tool/cutters.hpp"
+#include "riffler/dexel/file/file.hpp"
+#include "riffler/sweep/carve.hpp"
+#include "riffler/tool/cutters.hpp"
 
 namespace riffler::slab_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "dexel/file/file.hpp"
+#include "riffler/dexel/file/file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <functional>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
 #include "base/planes.hpp"
-#include "dexel/boolean.hpp"
 #include "dexel/volumes.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/dexel/boolean.hpp"
 
 namespace riffler::file_test {
 namespace {

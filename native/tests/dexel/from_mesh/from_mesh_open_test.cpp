@@ -10,10 +10,10 @@
 #include "dexel/from_mesh/crossing_lanes.hpp"
 #include "dexel/from_mesh/crossings.hpp"
 #include "dexel/from_mesh/field.hpp"
-#include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/from_mesh/openings.hpp"
 #include "dexel/shapes.hpp"
 #include "geom/math.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
 #include "support/effort.hpp"
 
 namespace riffler::from_mesh_open_test {

@@ -3,8 +3,8 @@
 
 #include <chrono>
 
-#include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/shapes.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
 
 namespace riffler::from_mesh_orient_test {
 namespace {

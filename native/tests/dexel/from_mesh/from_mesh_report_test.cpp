@@ -5,9 +5,9 @@
 #include <limits>
 #include <random>
 
-#include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/shapes.hpp"
 #include "geom/math.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
 
 namespace riffler::from_mesh_report_test {
 namespace {

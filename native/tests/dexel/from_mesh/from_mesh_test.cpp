@@ -1,4 +1,4 @@
-#include "dexel/from_mesh/from_mesh.hpp"
+#include "riffler/dexel/from_mesh/from_mesh.hpp"
 
 #include <gtest/gtest.h>
 

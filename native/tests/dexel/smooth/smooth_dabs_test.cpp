@@ -1,5 +1,5 @@
 // The smooth brush against planes, spheres and boxes in closed form, and on what it must not break.
-#include "dexel/smooth/smooth_dabs.hpp"
+#include "riffler/dexel/smooth/smooth_dabs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "dexel/boolean.hpp"
 #include "dexel/solids.hpp"
 #include "dexel/volumes.hpp"
-#include "marching/to_mesh.hpp"
-#include "mesh/audit.hpp"
+#include "riffler/dexel/boolean.hpp"
+#include "riffler/marching/to_mesh.hpp"
+#include "riffler/mesh/audit.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::smooth_dabs_test {

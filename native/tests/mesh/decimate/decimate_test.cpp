@@ -1,4 +1,4 @@
-#include "mesh/decimate/decimate.hpp"
+#include "riffler/mesh/decimate/decimate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 
 #include "bench/mesh_distance.hpp"
 #include "geom/float32.hpp"
-#include "mesh/audit.hpp"
 #include "mesh/io/stl.hpp"
 #include "mesh/shapes.hpp"
+#include "riffler/mesh/audit.hpp"
 #include "support/effort.hpp"
 
 namespace riffler::decimate_test {

@@ -4,12 +4,12 @@
 #include <random>
 #include <string>
 
-#include "base/error.hpp"
-#include "mesh/audit.hpp"
 #include "mesh/io/obj.hpp"
 #include "mesh/io/ply.hpp"
 #include "mesh/io/stl.hpp"
 #include "mesh/shapes.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/mesh/audit.hpp"
 
 namespace riffler::files_fuzz_test {
 namespace {

@@ -8,15 +8,15 @@
 #include <limits>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
 #include "geom/float32.hpp"
-#include "mesh/audit.hpp"
-#include "mesh/io/io.hpp"
 #include "mesh/io/obj.hpp"
 #include "mesh/io/ply.hpp"
 #include "mesh/io/stl.hpp"
 #include "mesh/shapes.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/mesh/audit.hpp"
+#include "riffler/mesh/io/io.hpp"
 
 namespace riffler::files_test {
 namespace {

@@ -10,11 +10,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
 #include "nc/machine/machines.hpp"
 #include "nc/write/post.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/damaged.hpp"
 
 namespace riffler::description_test {

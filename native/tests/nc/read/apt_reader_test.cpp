@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "riffler/tool/cutters.hpp"
 #include "support/nc_reading.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::apt_reader_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "base/error.hpp"
+#include "riffler/base/error.hpp"
 
 namespace riffler::cursor_test {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "base/error.hpp"
-#include "nc/cutter_path.hpp"
-#include "nc/read/reader.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/nc/cutter_path.hpp"
+#include "riffler/nc/read/reader.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/nc_blocks.hpp"
 
 namespace riffler::joint_words_test {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "nc/edit.hpp"
 #include "nc/machine/machines.hpp"
-#include "nc/program_file.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/nc/edit.hpp"
+#include "riffler/nc/program_file.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::machine_position_test {

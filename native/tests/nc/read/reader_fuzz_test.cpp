@@ -6,9 +6,9 @@
 #include <random>
 #include <string>
 
-#include "base/error.hpp"
-#include "nc/read/reader.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/nc/read/reader.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/effort.hpp"
 
 namespace riffler::reader_fuzz_test {

@@ -1,4 +1,4 @@
-#include "nc/read/reader.hpp"
+#include "riffler/nc/read/reader.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "base/error.hpp"
-#include "nc/cutter_path.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/nc/cutter_path.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/nc_blocks.hpp"
 
 namespace riffler::reader_test {

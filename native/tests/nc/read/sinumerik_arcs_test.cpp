@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geom/math.hpp"
-#include "nc/read/reader.hpp"
+#include "riffler/nc/read/reader.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::sinumerik_arcs_test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "nc/read/reader.hpp"
+#include "riffler/nc/read/reader.hpp"
 #include "support/nc_reading.hpp"
 
 namespace riffler::sinumerik_flow_test {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "geom/math.hpp"
-#include "nc/read/reader.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/nc/read/reader.hpp"
+#include "riffler/nc/write/writer.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/nc_reading.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::sinumerik_reader_test {
 namespace {

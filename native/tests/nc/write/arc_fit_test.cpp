@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "nc/read/reader.hpp"
+#include "riffler/nc/read/reader.hpp"
 #include "stress/random.hpp"
 #include "support/effort.hpp"
 #include "support/error_of.hpp"

@@ -8,12 +8,12 @@
 #include <regex>
 #include <sstream>
 
-#include "nc/cutter_path.hpp"
-#include "nc/read/reader.hpp"
-#include "nc/write/writer.hpp"
+#include "riffler/nc/cutter_path.hpp"
+#include "riffler/nc/read/reader.hpp"
+#include "riffler/nc/write/writer.hpp"
+#include "riffler/tool/cutters.hpp"
 #include "support/error_of.hpp"
 #include "support/nc_blocks.hpp"
-#include "tool/cutters.hpp"
 
 namespace riffler::post_test {
 namespace {

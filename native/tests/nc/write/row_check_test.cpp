@@ -7,7 +7,7 @@
 #include <map>
 #include <ostream>
 
-#include "nc/write/writer.hpp"
+#include "riffler/nc/write/writer.hpp"
 #include "support/effort.hpp"
 #include "support/random_rows.hpp"
 

@@ -1,4 +1,4 @@
-#include "nc/write/writer.hpp"
+#include "riffler/nc/write/writer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <regex>
 #include <stdexcept>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
-#include "nc/cutter_path.hpp"
-#include "nc/read/reader.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/nc/cutter_path.hpp"
+#include "riffler/nc/read/reader.hpp"
 #include "support/nc_blocks.hpp"
 
 namespace riffler::writer_test {

@@ -1,5 +1,5 @@
 // One arm: its posture against products of rotations, its Jacobian against differences and virtual work, its inverse.
-#include "pen/arms/arm.hpp"
+#include "riffler/pen/arms/arm.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>

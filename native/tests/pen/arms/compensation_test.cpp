@@ -1,5 +1,5 @@
 // Weight and friction that the motors make up for: within their peaks, behind the gate, and never a source of energy.
-#include "pen/arms/compensation.hpp"
+#include "riffler/pen/arms/compensation.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>

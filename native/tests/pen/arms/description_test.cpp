@@ -8,11 +8,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "base/error.hpp"
 #include "base/io.hpp"
-#include "pen/arms/kinematics.hpp"
 #include "pen/arms/pens.hpp"
 #include "pen/arms/shipped_pens.hpp"
+#include "riffler/base/error.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 #include "support/damaged.hpp"
 
 namespace riffler::pen_description_test {

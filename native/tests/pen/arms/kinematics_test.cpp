@@ -1,5 +1,5 @@
 // The whole pen: counters to poses and back, speeds, homing, wraps.
-#include "pen/arms/kinematics.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 #include "geom/math.hpp"
 
 #include <gtest/gtest.h>

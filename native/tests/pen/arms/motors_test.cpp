@@ -1,5 +1,5 @@
 // Torques through gears to commands, weight and friction.
-#include "pen/arms/motors.hpp"
+#include "riffler/pen/arms/motors.hpp"
 
 #include <gtest/gtest.h>
 

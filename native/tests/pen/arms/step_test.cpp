@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "pen/arms/count_speed.hpp"
-#include "pen/arms/motors.hpp"
 #include "pen/arms/redundancy.hpp"
 #include "pen/arms/wrench_split.hpp"
+#include "riffler/pen/arms/motors.hpp"
 #include "support/allocations.hpp"
 #include "support/pens.hpp"
 

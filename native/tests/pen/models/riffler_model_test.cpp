@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "pen/arms/motors.hpp"
 #include "pen/arms/pens.hpp"
 #include "pen/fake_link.hpp"
+#include "riffler/pen/arms/motors.hpp"
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 

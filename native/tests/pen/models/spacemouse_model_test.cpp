@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pen/fake_link.hpp"
-#include "pen/registry.hpp"
+#include "riffler/pen/registry.hpp"
 #include "stress/random.hpp"
 #include "support/hid_devices.hpp"
 

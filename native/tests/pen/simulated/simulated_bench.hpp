@@ -5,10 +5,10 @@
 #include <functional>
 #include <memory>
 
-#include "haptics/safety.hpp"
 #include "pen/driver_loop.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/simulated/simulated_transport.hpp"
+#include "riffler/haptics/safety.hpp"
 
 namespace riffler::test {
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "pen/arms/redundancy.hpp"
-#include "pen/registry.hpp"
+#include "riffler/pen/registry.hpp"
 #include "support/error_of.hpp"
 
 namespace riffler::simulated_device_test {

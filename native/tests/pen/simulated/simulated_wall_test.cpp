@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "geom/math.hpp"
-#include "haptics/limits.hpp"
-#include "haptics/passivity.hpp"
-#include "pen/arms/motors.hpp"
 #include "pen/arms/pens.hpp"
-#include "pen/passivity_settings.hpp"
 #include "pen/simulated/simulated_bench.hpp"
+#include "riffler/haptics/limits.hpp"
+#include "riffler/haptics/passivity.hpp"
+#include "riffler/pen/arms/motors.hpp"
+#include "riffler/pen/passivity_settings.hpp"
 #include "support/effort.hpp"
 
 namespace riffler::simulated_wall_test {

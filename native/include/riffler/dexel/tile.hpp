@@ -1,0 +1,97 @@
+// A square of 32 × 32 rays: the unit of sharing, copying on write, undo and re-meshing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "riffler/base/block_pool.hpp"
+#include "riffler/dexel/span.hpp"
+#include "riffler/geom/interval.hpp"
+
+namespace riffler {
+
+inline constexpr int kTileSide = 32;
+inline constexpr int kTileRays = kTileSide * kTileSide;
+
+/// Where the rays of a tile begin among its spans, and where the last one ends. Nearly all tiles have one span in each
+/// ray, or none at all: they need no memory for this. Immutable; copies share what there is.
+class RayOffsets {
+ public:
+  using Array = std::array<std::uint32_t, kTileRays + 1>;
+
+  /// Of a tile without spans.
+  RayOffsets() : first_(none().data()) {}
+  explicit RayOffsets(const Array& offsets);
+
+  std::uint32_t operator[](int r) const { return first_[r]; }
+  /// Whether each ray has one span.
+  bool one_each() const { return first_ == one().data(); }
+  const std::uint32_t* data() const { return first_; }
+  std::size_t size() const { return kTileRays + 1; }
+  const std::uint32_t* begin() const { return first_; }
+  const std::uint32_t* end() const { return first_ + size(); }
+  std::size_t nbytes() const { return own_ ? sizeof *own_ : 0; }
+  bool operator==(const RayOffsets& o) const;
+
+ private:
+  static const Array& none();
+  static const Array& one();
+  std::shared_ptr<const Array> own_;  // null for none() and one()
+  const std::uint32_t* first_;
+};
+
+/// Rays of one tile in compressed rows: ray r = a · 32 + b (a along u, b along v) owns spans [offset[r], offset[r +
+/// 1]). A tile in a grid is never written: volumes and snapshots share it, and a change puts a new one in its place.
+/// Rays of a border tile that lie beyond the grid are empty.
+struct Tile {
+  RayOffsets offset;
+  BlockVector<Span> spans;
+  BlockVector<SpanNormals> normals;  // as long as `spans`, or empty in a grid that stores none
+  Interval reach;                    // covers every span; may be larger after a cut, never smaller
+  std::uint64_t revision = 0;        // changes whenever the content does
+
+  std::span<const Span> ray(int r) const { return {spans.data() + offset[r], spans.data() + offset[r + 1]}; }
+  std::span<const SpanNormals> ray_normals(int r) const {
+    return normals.empty() ? std::span<const SpanNormals>{}
+                           : std::span<const SpanNormals>{normals.data() + offset[r], normals.data() + offset[r + 1]};
+  }
+  std::size_t nbytes() const;
+};
+
+/// The same spans and normals, whatever the revision.
+inline bool same_material(const Tile& a, const Tile& b) {
+  return a.offset == b.offset && a.spans == b.spans && a.normals == b.normals;
+}
+
+/// A fresh revision number, greater than all before it in this process.
+std::uint64_t next_revision();
+
+/// Writes a tile ray by ray, in the order r = 0 … 1023; rays not written before `finish` are empty.
+class TileBuilder {
+ public:
+  explicit TileBuilder(bool with_normals) : with_normals_(with_normals) { clear(); }
+
+  /// Appends one span to the current ray. The caller keeps spans sorted and disjoint.
+  void add(const Span& span, const SpanNormals& normals = {}) {
+    tile_.spans.push_back(span);
+    if (with_normals_) tile_.normals.push_back(normals);
+    tile_.reach.include(span.near), tile_.reach.include(span.far);
+  }
+  /// Ends the current ray.
+  void next_ray() { offset_[++rays_] = static_cast<std::uint32_t>(tile_.spans.size()); }
+  int rays() const { return rays_; }
+  /// The finished tile, with storage trimmed to its content and a fresh revision; the builder is empty again.
+  std::shared_ptr<Tile> finish();
+
+ private:
+  void clear();
+  bool with_normals_;
+  int rays_ = 0;
+  RayOffsets::Array offset_{};
+  Tile tile_;
+};
+
+}  // namespace riffler

@@ -1,0 +1,43 @@
+// Tool poses and the motion between two of them.
+#pragma once
+
+#include "riffler/geom/vec.hpp"
+
+namespace riffler {
+
+/// Where a tool stands: its tip (mm) and its unit axis, from the tip towards the spindle.
+struct Pose {
+  Vec3 tip{0, 0, 0};
+  Vec3 axis{0, 0, 1};
+};
+
+/// The motion between two poses: the tip on a straight line, the axis on the great circle at constant rate, both
+/// functions of one t in [0, 1] (methods: "Conventions"). Good for any angle from 0 up to, not including, π.
+class Motion {
+ public:
+  Motion(const Pose& from, const Pose& to);
+
+  const Pose& from() const { return from_; }
+  const Pose& to() const { return to_; }
+  Vec3 axis(double t) const;
+  Vec3 tip(double t) const { return from_.tip + t * (to_.tip - from_.tip); }
+  Pose at(double t) const { return {tip(t), axis(t)}; }
+  /// Angle between the two axes, rad; accurate for 1e-12 as for 3.
+  double angle() const { return angle_; }
+  /// Rotation vector of the whole motion: unit normal of the great circle times the angle; zero if there is none.
+  const Vec3& rotation() const { return rotation_; }
+  /// Velocity, mm per unit of t, of the tool's material point that is at `p` at time t.
+  Vec3 velocity(const Vec3& p, double t) const { return (to_.tip - from_.tip) + glm::cross(rotation_, p - tip(t)); }
+
+ private:
+  Pose from_, to_;
+  double angle_;
+  Vec3 rotation_, side_;  // side_: unit vector in the plane of the great circle, normal to from_.axis
+};
+
+/// The great circle from unit vector `a` to unit vector `b` at constant rate, u in [0, 1]. Not for opposite ones.
+inline Vec3 slerp(const Vec3& a, const Vec3& b, double u) {
+  return Motion({Vec3(0), a}, {Vec3(0), b}).axis(u);
+}
+
+}  // namespace riffler

@@ -1,0 +1,27 @@
+// What the settings of the haptic step have in common: pairs of bounds and their checks.
+#pragma once
+
+#include <string>
+
+#include "riffler/base/check.hpp"
+
+namespace riffler {
+
+/// A bound on translation and its sister on rotation: they have no common unit.
+struct Bounds {
+  double linear, angular;
+
+  double operator[](int coordinate) const { return coordinate < 3 ? linear : angular; }
+};
+
+/// std::invalid_argument naming the one that is not positive and finite: "NAME.linear must be positive".
+inline void require_positive(const Bounds& b, const std::string& name) {
+  require_positive(b.linear, name + ".linear"), require_positive(b.angular, name + ".angular");
+}
+
+/// As require_positive, but zero is allowed: it switches off what is bounded.
+inline void require_not_negative(const Bounds& b, const std::string& name) {
+  require_not_negative(b.linear, name + ".linear"), require_not_negative(b.angular, name + ".angular");
+}
+
+}  // namespace riffler

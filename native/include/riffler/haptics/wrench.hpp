@@ -1,0 +1,78 @@
+// Wrench and twist: six coordinates about one pivot, and which of them a device can push.
+#pragma once
+
+#include <array>
+
+#include "riffler/geom/vec.hpp"
+
+namespace riffler {
+
+/// Three translations, then three rotations, along the axes of the part frame.
+inline constexpr int kCoordinates = 6;
+
+/// Force (N) and torque (N·mm) about a pivot that the context names.
+struct Wrench {
+  Vec3 force{0}, torque{0};
+
+  double operator[](int k) const { return k < 3 ? force[k] : torque[k - 3]; }
+  double& operator[](int k) { return k < 3 ? force[k] : torque[k - 3]; }
+  friend Wrench operator+(const Wrench& a, const Wrench& b) { return {a.force + b.force, a.torque + b.torque}; }
+  friend Wrench operator-(const Wrench& a, const Wrench& b) { return {a.force - b.force, a.torque - b.torque}; }
+  friend Wrench operator-(const Wrench& a) { return {-a.force, -a.torque}; }
+  friend Wrench operator*(double s, const Wrench& a) { return {s * a.force, s * a.torque}; }
+  friend bool operator==(const Wrench& a, const Wrench& b) { return a.force == b.force && a.torque == b.torque; }
+};
+
+/// Velocity (mm/s) of the body's material point at the pivot, and angular velocity (rad/s). Over a tick, the
+/// displacement in mm and the rotation vector in rad.
+struct Twist {
+  Vec3 linear{0}, angular{0};
+
+  double operator[](int k) const { return k < 3 ? linear[k] : angular[k - 3]; }
+  double& operator[](int k) { return k < 3 ? linear[k] : angular[k - 3]; }
+  friend Twist operator+(const Twist& a, const Twist& b) { return {a.linear + b.linear, a.angular + b.angular}; }
+  friend Twist operator-(const Twist& a, const Twist& b) { return {a.linear - b.linear, a.angular - b.angular}; }
+  friend Twist operator*(double s, const Twist& a) { return {s * a.linear, s * a.angular}; }
+};
+
+/// N·mm/s that the wrench delivers to the body that moves so; N·mm for a displacement. About one and the same pivot.
+inline double power(const Wrench& w, const Twist& t) {
+  return glm::dot(w.force, t.linear) + glm::dot(w.torque, t.angular);
+}
+
+/// The same wrench or twist about another pivot, `to`.
+inline Wrench moved(const Wrench& w, const Vec3& from, const Vec3& to) {
+  return {w.force, w.torque + glm::cross(from - to, w.force)};
+}
+inline Twist moved(const Twist& t, const Vec3& from, const Vec3& to) {
+  return {t.linear + glm::cross(t.angular, to - from), t.angular};
+}
+
+inline bool finite(const Wrench& w) {
+  return finite(w.force) && finite(w.torque);
+}
+inline bool finite(const Twist& t) {
+  return finite(t.linear) && finite(t.angular);
+}
+
+/// Which coordinates a device can push: forces along, and torques about, three axes square to each other, which may
+/// turn with its grip. The pen pushes all but the torque about its own axis: `axes` with the grip for the third column.
+struct Capability {
+  std::array<bool, kCoordinates> push{true, true, true, true, true, true};
+  Mat3 axes{1};  ///< orthonormal; columns in the part frame
+
+  friend bool operator==(const Capability&, const Capability&) = default;
+};
+
+/// The part of the wrench that the device can render: its projection. What it cannot is the difference.
+inline Wrench renderable(const Capability& device, const Wrench& w) {
+  Wrench out;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 axis = device.axes[k];
+    if (device.push[static_cast<std::size_t>(k)]) out.force += glm::dot(w.force, axis) * axis;
+    if (device.push[static_cast<std::size_t>(k + 3)]) out.torque += glm::dot(w.torque, axis) * axis;
+  }
+  return out;
+}
+
+}  // namespace riffler

@@ -1,0 +1,32 @@
+// Indexed triangle mesh: the currency between files, volumes and Blender.
+#pragma once
+
+#include "riffler/base/bulk.hpp"
+#include "riffler/geom/vec.hpp"
+
+namespace riffler {
+
+using Vertices = BulkVector<Vec3>;
+using Triangles = BulkVector<Vec3i>;
+
+/// Vertices (mm) and triangles (vertex indices, counter-clockwise seen from outside the material).
+/// Nothing here is checked: `audit.hpp` says what a mesh is worth, `validate` below whether it can be used at all.
+struct Mesh {
+  Vertices vertices;
+  Triangles triangles;
+
+  bool empty() const { return triangles.empty(); }
+};
+
+/// Throws std::invalid_argument naming the first row of `vertices` that is not finite (or beyond 1e30) or of
+/// `triangles` whose index is out of range.
+void validate(const Mesh& mesh);
+
+/// Signed volume enclosed, mm³ (divergence theorem about the box's centre); meaningful for closed meshes.
+double volume(const Mesh& mesh);
+/// Sum of the triangles' areas, mm².
+double area(const Mesh& mesh);
+/// Box of the vertices that triangles use; empty for an empty mesh.
+Box3 bounds(const Mesh& mesh);
+
+}  // namespace riffler

@@ -1,0 +1,14 @@
+// Named options of machines and posts, as callers give them.
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace riffler {
+
+using OptionValue = std::variant<bool, double, std::string, std::vector<double>>;
+using Options = std::map<std::string, OptionValue>;
+
+}  // namespace riffler

@@ -1,0 +1,27 @@
+// A value that one thread writes and any thread reads, without locks.
+#pragma once
+
+#include "riffler/base/sequence_lock.hpp"
+
+namespace riffler {
+
+template <class T>
+class Published {
+ public:
+  explicit Published(const T& value = T{}) noexcept { set(value); }
+
+  /// By one thread, which never waits.
+  void set(const T& value) noexcept { lock_.store(value, lock_.ticket() + 2); }
+  /// By any thread; copies again where the writer came in between.
+  T get() const noexcept {
+    T value;
+    while (lock_.load(value) == 0) {
+    }
+    return value;
+  }
+
+ private:
+  SequenceLock<T> lock_;
+};
+
+}  // namespace riffler
