@@ -1,7 +1,7 @@
 // The source's scheme for forces between two steps, which haptic_run measures the loop against.
 #pragma once
 
-#include "haptics/wrench.hpp"
+#include "riffler/haptics/wrench.hpp"
 
 namespace riffler::bench {
 
