@@ -49,10 +49,11 @@ def show(scene, plan_ob, job=None):
         plan_ob[ASKED] = True
     frames, _, _, ends = motion.joined([played for _, played in _played(plan_ob)])
     plan = plan_store.plan(plan_ob)
-    deep = [np.full(len(played.poses), plan.depths.get(k, 0.0)) for k, played in _played(plan_ob)]
+    tolerance = plan.tolerance or 0.01
+    deep = [np.full(len(p.poses), plan.depths[k] + tolerance if k in plan.depths else 0.0) for k, p in _played(plan_ob)]
     now.looks += job.computed
     clearances = job.clearances + np.concatenate([np.empty(0), *deep])  # those that the cutter is to enter the part by
-    now.colliding = collisions.runs(frames, clearances, -(plan.tolerance or 0.01), ends)
+    now.colliding = collisions.runs(frames, clearances, -tolerance, ends)
     timeline.mark(scene, collisions.union(state(p).colliding for p in on_timeline() if scene.objects.get(p.name) == p))
     return now.colliding
 

@@ -197,6 +197,16 @@ def test_kept_locations_are_the_poses_and_find_what_a_shank_meets():
     assert not report.ok and "holder meets the part" in report.blocked[0][1]
 
 
+def test_chords_over_a_round_part_are_within_twice_the_tolerance():
+    ball = riffler.Volume.sphere((0, 0, 0), 20.0, 0.5, "xyz").to_mesh()
+    a = np.linspace(0, 2 * np.pi, 80)
+    ring = np.column_stack([9 * np.cos(a), 9 * np.sin(a), np.full(80, 18.0)])
+    for tolerance in (0.01, 0.05):
+        found = plan.find("engrave", ball, GRAVER, [ring], tolerance=tolerance).plan
+        report = plan.kept_locations(found.paths[0], 0.3, GRAVER, riffler.Collider(ball), tolerance=tolerance)[1]
+        assert report.ok and report.bound >= -0.3 - 2 * tolerance
+
+
 def test_locations_of_poses_are_those_of_the_path():
     part, collider = step(), riffler.Collider(step())
     (path,) = plan.pencil(part, BALL)

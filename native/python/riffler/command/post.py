@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     if not len(program):
         raise ValueError(f"{Path(arguments.file).name}: nothing moves in it")
     with console.step("write"), console.writing(out) as beside:
-        how["collider"], how["contact_tolerance"] = collider, WRITTEN + depth
+        how["collider"], how["contact_tolerance"] = collider, max(WRITTEN, depth)
         report = program.save(beside) if saved else program.write(beside, post=arguments.post, **how)
     data = summary(program, report) | {"post": arguments.post, "notes": notes}
     data |= {"out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
@@ -107,8 +107,8 @@ def vector(text: str, what: str) -> np.ndarray:
 
 
 def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str], Collider | None, float]:
-    """The program, what one should know about it, what its moves are checked against, and how far it is to enter the
-    part, mm."""
+    """The program, what one should know about it, what its moves are checked against, and how far they may enter the
+    part since they are to, mm."""
     kind = Path(arguments.file).suffix.lower()
     path = input_file(arguments.file, (kind,))
     code = kind not in PLANS + RECORDINGS + PROGRAMS
@@ -196,13 +196,18 @@ def from_plan(
         cl = [start(planned, k, paths[k], tool) if rows is None else rows for k, rows in known.items()]
         if any(rows is None for rows in known.values()):
             notes.append("not checked for gouges: --part does that")
-    depth = planned.deepest
+    depth = planned.deepest + 3 * chords(planned) if planned.depths else 0.0
     program = Program.from_cl(
         [rows for rows in cl if len(rows)], tools=[tool], feed=feed, spindle=spindle, safe_height=height(arguments),
-        collider=collider, contact_tolerance=TOUCHED + depth,
+        collider=collider, contact_tolerance=max(TOUCHED, depth),
         provenance={"plan": name, "part": planned.part.get("name", ""), **planned.provenance},
     )  # fmt: skip
     return (program.retooled({1: called}) if called != 1 else program), notes, collider, depth
+
+
+def chords(planned: plan.Plan) -> float:
+    """mm that paths whose poses are kept may be from the surface between their points."""
+    return max(LIFTED, planned.tolerance or 0.0)
 
 
 def located(planned: plan.Plan) -> list:
@@ -268,7 +273,7 @@ def lifted(
             path = paths[k]
             if k in planned.depths:
                 depth = planned.depths[k]
-                rows, report = plan.kept_locations(path, depth, guarded, collider, tolerance=LIFTED)
+                rows, report = plan.kept_locations(path, depth, guarded, collider, tolerance=chords(planned))
             else:
                 rows, report = plan.cutter_locations(path, guarded, collider, tolerance=LIFTED)
             if not report.ok:

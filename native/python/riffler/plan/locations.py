@@ -90,9 +90,11 @@ def poses_of(path):
 def kept_locations(path, depth, tool, collider, clearance=0.0, *, tolerance=0.01, progress=None):
     """``cutter_locations`` of a path in ``Plan.depths``: its own poses, checked and not lifted.
 
-    The cutter enters the part by up to ``depth`` mm there; shank and holder keep ``clearance`` from part and fixtures.
-    (That the cutter enters a fixture by less than ``depth`` is not seen here.)
+    The cutter enters the part by up to ``depth`` mm there, and by ``tolerance`` more at a point and twice that between
+    two, since the path's chords are as far from the surface; shank and holder keep ``clearance`` from part and
+    fixtures. (That the cutter enters a fixture by less than ``depth`` is not seen here.)
     """
+    depth += tolerance
     body = with_room(tool, depth + clearance)
     return cutter_locations(
         poses_of(path), body, collider, -depth, tolerance=tolerance, max_lift=0.0, progress=progress
