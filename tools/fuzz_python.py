@@ -48,13 +48,43 @@ def seed_plan() -> bytes:
     path = plan.PencilPath(3, centres, contacts, normals).oriented({0: [0, 0, 1]})
     cl = np.column_stack([centres, np.tile([0.0, 0, 1], (3, 1))])
     part = {"name": "part", "sha256": "0" * 64}
-    return plan.dumps(plan.Plan([path], riffler.Tool.ball(6, 40), [cl], part=part, tolerance=0.01))
+    tool, depths = riffler.Tool.ball(6, 40), {1: 0.25}
+    return plan.dumps(plan.Plan([path, path], tool, [cl, None], part=part, tolerance=0.01, depths=depths))
 
 
 def read_plan(data: bytes) -> None:
     from riffler import plan
 
     plan.dumps(plan.loads(data, "fuzz"))
+
+
+def seed_curves() -> bytes:
+    """What all kinds of files with curves have: each reads its own lines, or refuses the others."""
+    return b"v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2\nl 2 3\nl -1 1\n\n0 0 0\n1, 2, 3 # a point\n\n[[[0, 0, 0], [1, 2, 3]]]\n"
+
+
+def read_curves(data: bytes) -> None:
+    """Each line by line and as a whole, so that every kind of file gets past what belongs to the others."""
+    import numpy as np
+    import riffler
+    from riffler import plan
+
+    rows = data.splitlines(keepends=True)
+    kinds = {
+        ".obj": data,
+        ".txt": b"".join(row for row in rows if row[:1] not in b"vl["),
+        ".json": data[data.find(b"[") :],
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix, text in kinds.items():
+            path = Path(folder) / f"fuzz{suffix}"
+            path.write_bytes(text)
+            try:
+                curves = plan.read_curves(path)
+            except riffler.FormatError:
+                continue
+            if not all(c.ndim == 2 and c.shape[1] == 3 and len(c) > 1 and np.isfinite(c).all() for c in curves):
+                raise BrokenError("curves that are none")
 
 
 def seed_record() -> bytes:
@@ -143,6 +173,7 @@ class Target:
 
 TARGETS = {
     "plan": Target(read_plan, seed_plan),
+    "curves": Target(read_curves, seed_curves),
     "record": Target(read_record, seed_record),
     "tools": Target(read_tools, seed_tools),
     "threemf": Target(read_threemf, lambda: MODEL),

@@ -31,14 +31,14 @@ def look(scene, plan_ob):
 def clearance_job(plan_ob, near, known):
     """Of all poses of the animation; `known`: clearances with these surroundings."""
     now = state(plan_ob)
-    poses = np.vstack([e.poses for e in _played(plan_ob)] or [np.empty((0, 6))])
+    poses = np.vstack([played.poses for _, played in _played(plan_ob)] or [np.empty((0, 6))])
     return collisions.ClearanceJob(near, now.tool, poses, known)
 
 
 def _played(plan_ob):
-    """Of the paths that are on."""
+    """(number, plan.pure.motion.Played) of the paths that are on."""
     off = plan_store.plan(plan_ob).off
-    return [e.played for k, e in enumerate(state(plan_ob).motions) if k not in off]
+    return [(k, e.played) for k, e in enumerate(state(plan_ob).motions) if k not in off]
 
 
 def show(scene, plan_ob, job=None):
@@ -47,10 +47,13 @@ def show(scene, plan_ob, job=None):
     job, now.job = job or now.job, None
     if not asked(plan_ob):
         plan_ob[ASKED] = True
-    frames, _, _, ends = motion.joined(_played(plan_ob))
-    tolerance = plan_store.plan(plan_ob).tolerance or 0.01
+    frames, _, _, ends = motion.joined([played for _, played in _played(plan_ob)])
+    plan = plan_store.plan(plan_ob)
+    tolerance = plan.tolerance or 0.01
+    deep = [np.full(len(p.poses), plan.depths[k] + tolerance if k in plan.depths else 0.0) for k, p in _played(plan_ob)]
     now.looks += job.computed
-    now.colliding = collisions.runs(frames, job.clearances, -tolerance, ends)
+    clearances = job.clearances + np.concatenate([np.empty(0), *deep])  # those that the cutter is to enter the part by
+    now.colliding = collisions.runs(frames, clearances, -tolerance, ends)
     timeline.mark(scene, collisions.union(state(p).colliding for p in on_timeline() if scene.objects.get(p.name) == p))
     return now.colliding
 

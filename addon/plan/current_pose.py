@@ -67,11 +67,13 @@ def spot(scene, ob, frame=None):
 
 
 def seen(context):
-    """The spot that handles and maps are for, without an error: drawing has nobody to tell."""
+    """The spot that handles and maps are for; None also where the path takes no keys, and without an error: drawing
+    has nobody to tell."""
     try:
-        return spot(context.scene, plan_object(context))
+        found = spot(context.scene, plan_object(context))
     except ValueError:
         return None
+    return None if found is None or found.path in found.plan.depths else found
 
 
 def sight(context, region, space):

@@ -10,7 +10,7 @@ from ..blender import object_surfaces, operator_parts, scene_units, versions
 from ..blender.panel_parts import Sidebar, give, lines, wrapped
 from ..common import presets, units
 from ..translations import local
-from . import fit_check, obstacles, plan_store, properties, tool_icons, tool_libraries
+from . import fit_check, obstacles, plan_store, properties, strategy_fields, tool_icons, tool_libraries
 from .current_pose import plan_object
 from .operators import change_tool, find, scene_unit, setup, watch
 from .pure import size_guess, tool_library
@@ -52,7 +52,7 @@ class RIFFLER_MT_plan_tools(bpy.types.Menu):
 
 class RIFFLER_PT_plan(Tab, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_plan"
-    bl_label = "Pencil Cuts (mm)"
+    bl_label = "Plan (mm)"
 
     def draw(self, context):
         layout = self.layout
@@ -68,8 +68,9 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
         column = layout.column(align=True)
         column.use_property_split = True
         column.use_property_decorate = False
-        for key in properties.FindSettings.__annotations__:
-            column.prop(context.scene.riffler.plan, key)
+        settings = context.scene.riffler.plan
+        for key in ("strategy", *strategy_fields.shown(settings)):
+            column.prop(settings, key)
         self._find(layout, context, "")
         if ob is not None:
             self._find(layout, context, ob.name)
@@ -99,13 +100,16 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
         settings = context.scene.riffler.plan
         if why := object_surfaces.unfit(settings.part, context.scene):
             lines(layout, *wrapped(context, f"{why}."), icon="INFO")
+        elif why := find.missing(context, settings):
+            lines(layout, *wrapped(context, f"{local(why)}."), icon="INFO")
         elif ob is None:
             plans = plan_store.in_scene(context.scene)
-            said = "Select one of the plans, or find another." if plans else "Next: find the pencil cuts."
+            said = "Select one of the plans, or find another." if plans else "Next: find the paths."
             lines(layout, *wrapped(context, said), icon="INFO")
 
     def _find(self, layout, context, replace):
-        text, icon = ("Find Again", "FILE_REFRESH") if replace else ("Find Pencil Cuts", "VIEWZOOM")
+        action = strategy_fields.chosen(context.scene.riffler.plan).action
+        text, icon = ("Find Again", "FILE_REFRESH") if replace else (action, "VIEWZOOM")
         op = layout.operator(find.RIFFLER_OT_plan_find.bl_idname, text=text, icon=icon)
         op.replace = replace
         give(op, context.scene.riffler.plan, properties.FindSettings)

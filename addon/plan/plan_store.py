@@ -121,6 +121,15 @@ def wanted(plan):
     return [k for k, path in enumerate(plan.paths) if len(path.axes) and k not in plan.off]
 
 
+def refuse_turning(plan, path):
+    """ValueError where the poses of a path, by its number from 0, are what is to be cut: keys would change them."""
+    if path in plan.depths:
+        raise ValueError(
+            f"Path {path + 1} has its orientations from its strategy, not from keys: find it again with another "
+            "inclination or tilt"
+        )
+
+
 def free(plan):
     """Numbers, from 0, of the paths with cutter locations that are free all the way."""
     return {k for k, rows in enumerate(plan.cl) if rows is not None and len(rows)}

@@ -17,6 +17,7 @@ from bpy.props import (
 from ..blender.fields import length
 from ..blender.object_surfaces import WITH_SURFACE
 from ..common import json_object, presets
+from . import strategy_fields
 from .machines import MACHINES
 
 SHOWN = (
@@ -33,24 +34,9 @@ LEAVE = (
 
 
 class FindSettings:
-    """Shared by the panel's settings and the operator."""
+    """Shared by the panel's settings and the operator: the strategy, and the parameters of all of them."""
 
-    tolerance: length(
-        "Tolerance",
-        0.01,
-        "Of the paths, in mm; a valley that is no deeper below the ball is taken for a faceted one",
-        1e-4,
-        10.0,
-    )
-    minimum_length: length("Shortest", 0.0, "Paths that are shorter are left out, in mm")
-    passes: IntProperty(
-        name="Passes",
-        default=1,
-        min=1,
-        max=100,
-        description="1: along each valley only; each one more adds a path on either side of it",
-    )
-    stepover: length("Stepover", 0.0, "Between two passes, in mm; 0: what leaves ridges of the tolerance")
+    __annotations__ = strategy_fields.FIELDS
 
 
 def _named(settings, context):
@@ -143,7 +129,7 @@ class RifflerFinding(bpy.types.PropertyGroup):
 STATES = (
     ("free", "Free", "Resolved: the tool is clear of part and fixtures all along it"),
     ("blocked", "Blocked", "The tool collides somewhere: turn its keys, or switch it off"),
-    ("keyed", "To Resolve", "It has keys, and was not resolved since they changed"),
+    ("keyed", "To Resolve", "It was not resolved since it was found or turned"),
     ("unplanned", "No Keys", "It has no key orientation"),
     ("off", "Off", "It is left out: neither resolved nor written"),
 )

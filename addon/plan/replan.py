@@ -88,11 +88,12 @@ def _take_keys(plan_ob, plan, tool, now):
         if not change:
             continue
         try:
+            plan_store.refuse_turning(plan, k)
             before = now.resolved.get(k, path, change.keys, mark)
             paths[k], cl[k] = before or (_oriented(path, change.keys), None)
             now.changes[k] = change
         except ValueError as error:
-            now.problems.append(f"Path {k + 1}, {error}; it stays as it was")
+            now.problems.append(str(error) if k in plan.depths else f"Path {k + 1}, {error}; it stays as it was")
     if now.changes:
         plan = replace(plan, paths=paths, cl=cl)
         plan_ob.riffler.plan.forget(now.changes)
@@ -128,7 +129,7 @@ def bake(scene, plan_ob, plan):
         if k < len(now.motions) and now.motions[k].of(path, rows, ends):
             entries.append(now.motions[k])
         else:
-            along = _motion(path, rows, track, plan.tool)
+            along = _motion(path, rows, track, plan.tool, k in plan.depths)
             entries.append(Baked(path, rows, ends, along, motion.played(along)))
             now.baked += 1
             now.resolved.put(k, path, rows, plan.provenance.get(plan_store.RESOLVED))
@@ -167,8 +168,11 @@ def _unname():
             timeline.name_paths(scene, [])
 
 
-def _motion(path, rows, track, tool):
-    """Of a path without keys, along the middle between its contacts; there is no program of that."""
+def _motion(path, rows, track, tool, kept):
+    """Of a path without keys, along the middle between its contacts; there is no program of that. `kept`: its poses are
+    what is to be cut."""
+    if kept:
+        return motion.along(track, riffler.plan.poses_of(path), np.arange(len(path)), rows)
     shown = path if len(path.axes) else path.with_axes(path.frames[:, 2])
     start, report = riffler.plan.cutter_locations(shown, tool, nothing(), max_lift=0)
     if not len(start):

@@ -53,16 +53,26 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
         self._found = []
         tool = riffler.plan.with_room(plan.tool, clearance)  # the cutter touches what it cuts
-        sizes = {"tolerance": plan.tolerance or 0.01, "max_lift": scene_units.clean(self.max_lift)}
-        return AfterJob(taken, lambda near: self._all(plan, tool, near, sizes))
+        self._clearance, self._max_lift = clearance, scene_units.clean(self.max_lift)
+        return AfterJob(taken, lambda near: self._all(plan, tool, near))
 
-    def _all(self, plan, tool, near, sizes):
+    def _all(self, plan, tool, near):
         self._near = near
+        tolerance = plan.tolerance or 0.01
+
+        def locate(k):
+            path = plan.paths[k]
+            if k in plan.depths:
+                room = self._clearance
+                kept = riffler.tasks.kept_locations
+                return kept(path, plan.depths[k], plan.tool, near.collider, room, tolerance=tolerance)
+            sizes = {"tolerance": tolerance, "max_lift": self._max_lift}
+            return riffler.tasks.cutter_locations(path, tool, near.collider, **sizes)
 
         def start(k):
             def go(before):
                 self._found += [before] if before is not None else []
-                return riffler.tasks.cutter_locations(plan.paths[k], tool, near.collider, **sizes)
+                return locate(k)
 
             return go
 
@@ -74,19 +84,27 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         kept = [e for e in findings.read(ob.riffler.plan.findings) if e["path"] not in self._paths]
         found, blocked = [*self._found, job.result], 0
         for k, (rows, report) in zip(self._paths, found, strict=True):
-            cl[k] = rows if report.ok else None  # what collides anywhere is no program
-            blocked += not report.ok
+            entered = self._entered(plan, rows) if k in plan.depths else []
+            free = report.ok and not entered
+            cl[k] = rows if free else None  # what collides anywhere is no program
+            blocked += not free
             kept += location_messages.entries(k, plan.paths[k].centres, rows, report)
+            kept += [location_messages.entered(k, plan.paths[k].centres[0], *fixture) for fixture in entered]
         plan = replace(plan, cl=cl, provenance={**plan.provenance, plan_store.RESOLVED: self._mark})
         plan_store.write(ob, plan)
         findings.write(ob.riffler.plan.findings, location_messages.ordered(kept))
         plan_store.refresh_rows(ob)
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
-        free = [report for _, report in found if report.ok]
-        self._notes += self._too_near(plan, [rows for rows, report in found if report.ok])
+        done = [k for k in self._paths if cl[k] is not None]
+        free = [report for k, (_, report) in zip(self._paths, found, strict=True) if k in done]
+        self._notes += self._too_near(plan, [cl[k] for k in done])
         self._say(ob, blocked, location_messages.left(free, plan.tolerance or 0.01))
         return {"FINISHED"}
+
+    def _entered(self, plan, rows):
+        """(mm, name) of the fixtures that a tool enters which is to enter the part."""
+        return self._near.near_fixtures(plan.tool, rows, -(plan.tolerance or 0.01)) if len(rows) else []
 
     def _too_near(self, plan, free):
         """Where the cutter itself comes nearer to a fixture than the clearance, which lifts shank and holder only."""

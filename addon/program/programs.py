@@ -101,9 +101,9 @@ def of_plan(context, ob, plan, feed, spindle):
 
 
 def touch(plan):
-    """mm by which a plan's tool may enter part and fixtures: that of its locations, as much again between blocks, and
-    rounding."""
-    return 3 * (plan.tolerance or 0.01)
+    """mm by which a plan's tool may enter part and fixtures: that of its locations, as much again between blocks,
+    rounding, and as deep as it cuts."""
+    return 3 * (plan.tolerance or 0.01) + plan.deepest
 
 
 def _links(settings):
@@ -151,6 +151,7 @@ class Setup:
     in_machine: bool = False  # the machine has the program in the stock's frame, not in the scene's
     plan: str = ""
     notes: tuple = ()  # what is not in it, as sentences
+    deepest: float = 0.0  # mm below the part's surface that are to be cut
 
     @property
     def to_machine(self):
@@ -240,7 +241,7 @@ def _plan(context):
         where = program_timeline.of_paths(program.poses, _played_paths(context, ob, plan))
     chosen = options(context.scene, settings.post)
     program, text = _with_lines(program, plan, settings.post, chosen)
-    more = {"machine": settings.post, "options": chosen, "plan": ob.name}
+    more = {"machine": settings.post, "options": chosen, "plan": ob.name, "deepest": plan.deepest}
     return _new(ob.name, program, where, text=text, notes=tuple(filter(None, [left_out(plan)])), **more)
 
 

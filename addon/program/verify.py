@@ -53,7 +53,7 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
         fixtures = [mesh for _, mesh in held]
         self._setup = setup
         limits = {
-            "gouge_tolerance": scene_units.clean(self.gouge),
+            "gouge_tolerance": scene_units.clean(self.gouge) + setup.deepest,
             "rest_tolerance": scene_units.clean(self.rest) or None,
         }
         if part is None:
@@ -83,6 +83,8 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             settings.said = f"{setup.name}: {units.counted(len(found), 'finding')}"
         else:
             settings.said = f"{setup.name}: nothing was found" + ("" if report.passed else ", not all was checked")
+        if setup.deepest:
+            settings.said += f"; up to {units.trim(setup.deepest)} mm below the part's surface are to be cut"
         notes = " ".join(f"{local(said)}." for said in setup.notes)
         level = {"INFO"} if report.passed and not notes else {"WARNING"}
         self.report(level, " ".join(filter(None, (f"{settings.said}.", notes, more))))

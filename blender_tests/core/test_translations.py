@@ -139,6 +139,16 @@ def of_shapes():
             yield from ((where, text) for text in (of.label, of.description))
 
 
+def of_strategies():
+    """(where, text) of the strategies and of the fields that are made from their parameters."""
+    for strategy in riffler.plan.STRATEGIES.values():
+        where = f"riffler.plan.STRATEGIES, {strategy.id}"
+        said = [strategy.label, strategy.action, strategy.description, strategy.missing]
+        for p in strategy.parameters:
+            said += [p.label, p.help, *(text for _, *both in p.choices for text in both)]
+        yield from ((where, text) for text in said if text)
+
+
 def shown(tree):
     """(line, text) of all that a source shows."""
     names = variables(tree)
@@ -160,7 +170,7 @@ def shown(tree):
 def found():
     """{text: where it is}"""
     said = {text: f"riffler.machines()[{name!r}]" for name, text in riffler.machines().items()}
-    for where, text in (*of_machines(), *of_shapes()):
+    for where, text in (*of_machines(), *of_shapes(), *of_strategies()):
         said.setdefault(text, where)
     for path, tree in sources():
         for line, text in shown(tree):

@@ -121,7 +121,7 @@ def cancelled(screen):
         bpy.ops.ed.undo_push(message="Ripples")
         assert bpy.ops.riffler.plan_find("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
     yield lambda: bpy.context.window_manager.riffler.percent > 1 or not running()
-    assert running() == "Finding pencil cuts"
+    assert running() == "Finding paths"
     yield from screen.picture("23-plan-searching")
     shell, took = common.part("blender.long_work").LongWork, []
     original = shell.cancel

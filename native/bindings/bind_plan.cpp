@@ -131,14 +131,22 @@ py::dict from_locations(const CutterLocations& found) {
                   "bound"_a = found.bound, "evaluations"_a = found.evaluations, "ok"_a = found.good());
 }
 
-auto locate(const Path& path, const Tool& tool, const Obstacle& collider, double clearance, double tolerance,
-            double max_lift, int max_inserted, const py::object& progress) {
+/// `from`: a shared path or vector of poses.
+template <class From>
+auto locate(const std::shared_ptr<From>& from, const Tool& tool, const Obstacle& collider, double clearance,
+            double tolerance, double max_lift, int max_inserted, const py::object& progress) {
   LocationRule rule;
   rule.clearance = clearance, rule.tolerance = tolerance, rule.max_lift = max_lift, rule.max_inserted = max_inserted;
   const auto work = [=](const Progress& listener) {
-    return cutter_locations(*path, Assembly(tool), *collider, rule, listener);
+    return cutter_locations(*from, Assembly(tool), *collider, rule, listener);
   };
   return long_call(progress, work, &from_locations);
+}
+
+auto locate_poses(const Doubles& poses, const Tool& tool, const Obstacle& collider, double clearance, double tolerance,
+                  double max_lift, int max_inserted, const py::object& progress) {
+  const auto from = std::make_shared<const std::vector<Pose>>(to_unit_poses(poses));
+  return locate(from, tool, collider, clearance, tolerance, max_lift, max_inserted, progress);
 }
 
 MapRule to_rule(const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
@@ -195,7 +203,9 @@ void bind_plan(py::module_& m) {
   m.def("lift", &lift_all, "tool"_a, "poses"_a, "collider"_a, py::kw_only(), "clearance"_a, "tolerance"_a, "max_lift"_a,
         "max_evaluations"_a, "progress"_a);
   m.def("drop", &drop_all, "tool"_a, "points"_a, "part"_a, "axis"_a, "progress"_a);
-  m.def("cutter_locations", &locate, "path"_a.none(false), "tool"_a, "collider"_a.none(false), py::kw_only(),
+  m.def("cutter_locations", &locate<PencilPath>, "path"_a.none(false), "tool"_a, "collider"_a.none(false),
+        py::kw_only(), "clearance"_a, "tolerance"_a, "max_lift"_a, "max_inserted"_a, "progress"_a);
+  m.def("cutter_locations", &locate_poses, "path"_a.none(false), "tool"_a, "collider"_a.none(false), py::kw_only(),
         "clearance"_a, "tolerance"_a, "max_lift"_a, "max_inserted"_a, "progress"_a);
   m.def("orientation_maps", &maps, "path"_a.none(false), "points"_a, "tool"_a, "collider"_a.none(false), py::kw_only(),
         "inclinations"_a, "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "progress"_a);

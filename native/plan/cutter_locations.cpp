@@ -35,9 +35,7 @@ std::string why_not_free(const Lift& lift, const LocationRule& rule) {
                                               : text(", not shown to be free, blocked up to %g mm", lift.height));
 }
 
-void check(const PencilPath& path, const LocationRule& rule) {
-  if (path.axes.size() != path.size() || path.axes.empty())
-    throw std::invalid_argument("path: has no axes; orient it first");
+void check(const LocationRule& rule) {
   require(std::isfinite(rule.clearance), "clearance", "must be finite");
   require_tolerance(rule.tolerance);
   require_not_negative(rule.max_lift, "max_lift", kFiniteAndNotNegative);
@@ -48,8 +46,8 @@ void check(const PencilPath& path, const LocationRule& rule) {
 
 class Planner {
  public:
-  Planner(const PencilPath& path, const Assembly& assembly, const Collider& collider, const LocationRule& rule)
-      : path_(path), assembly_(assembly), collider_(collider), rule_(rule), cutter_(assembly.tool()) {}
+  Planner(const Assembly& assembly, const Collider& collider, const LocationRule& rule)
+      : assembly_(assembly), collider_(collider), rule_(rule) {}
 
   /// What became of one pose.
   struct Try {
@@ -65,9 +63,11 @@ class Planner {
     if (!found.free) out.blocked = why_not_free(found, rule_);
     return out;
   }
-  Try try_point(std::size_t k) const {
+  /// `pose_at(k)`: where the tool begins; std::invalid_argument where it cannot stand.
+  template <class PoseAt>
+  Try try_point(const PoseAt& pose_at, std::size_t k) const {
     try {
-      return try_pose(location_on_path(cutter_, path_, k, path_.axes[k]), static_cast<std::ptrdiff_t>(k));
+      return try_pose(pose_at(k), static_cast<std::ptrdiff_t>(k));
     } catch (const std::invalid_argument& error) {
       return {{}, error.what(), 0};
     }
@@ -130,24 +130,19 @@ class Planner {
     return middle.row;
   }
 
-  const PencilPath& path_;
   const Assembly& assembly_;
   const Collider& collider_;
   const LocationRule& rule_;
-  const CutterSupport cutter_;
 };
 
-}  // namespace
-
-CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembly, const Collider& collider,
-                                 const LocationRule& rule, const Progress& progress) {
-  check(path, rule);
-  const Planner planner(path, assembly, collider, rule);
-  std::vector<Planner::Try> points(path.size());
+template <class PoseAt>
+CutterLocations located(std::size_t n, bool closed, const PoseAt& pose_at, const Planner& planner,
+                        const Progress& progress) {
+  std::vector<Planner::Try> points(n);
   parallel_for(
-      path.size(), 1,
+      n, 1,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) points[k] = planner.try_point(k);
+        for (std::size_t k = begin; k < end; ++k) points[k] = planner.try_point(pose_at, k);
       },
       part(progress, 0, 0.3));
   CutterLocations out;
@@ -160,7 +155,7 @@ CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembl
     else
       out.blocked.push_back({k, points[k].blocked});
   }
-  if (path.closed && rows.size() > 1) rows.push_back(rows.front());
+  if (closed && rows.size() > 1) rows.push_back(rows.front());
   std::vector<Planner::Way> ways(rows.empty() ? 0 : rows.size() - 1);
   parallel_for(
       ways.size(), 1,
@@ -179,6 +174,26 @@ CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembl
     out.evaluations += way.evaluations;
   }
   return out;
+}
+
+}  // namespace
+
+CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembly, const Collider& collider,
+                                 const LocationRule& rule, const Progress& progress) {
+  if (path.axes.size() != path.size() || path.axes.empty())
+    throw std::invalid_argument("path: has no axes; orient it first");
+  check(rule);
+  const CutterSupport cutter(assembly.tool());
+  const auto pose_at = [&](std::size_t k) { return location_on_path(cutter, path, k, path.axes[k]); };
+  return located(path.size(), path.closed, pose_at, Planner(assembly, collider, rule), progress);
+}
+
+CutterLocations cutter_locations(const std::vector<Pose>& poses, const Assembly& assembly, const Collider& collider,
+                                 const LocationRule& rule, const Progress& progress) {
+  if (poses.empty()) throw std::invalid_argument("path: has no poses");
+  check(rule);
+  return located(
+      poses.size(), false, [&](std::size_t k) { return poses[k]; }, Planner(assembly, collider, rule), progress);
 }
 
 }  // namespace riffler

@@ -1,4 +1,6 @@
-"""Pencil cuts found on the part, in a thread of their own; the result is a plan and its curves."""
+"""Paths found on the part by a strategy, in a thread of their own; the result is a plan and its curves."""
+
+import functools
 
 import bpy
 import riffler
@@ -6,18 +8,42 @@ import riffler
 from ...blender import object_surfaces, operator_parts, scene_units
 from ...blender.long_work import LongWork
 from ...common import units
-from ...common.job import TaskJob
+from ...common.job import TaskJob, ThreadTask
 from ...sculpt import live_registry, sculpt_work
-from .. import fit_check, obstacles, path_curves, path_switches, plan_states, plan_store, properties, replan, timeline
+from ...translations import local
+from .. import (
+    fit_check,
+    given_curves,
+    obstacles,
+    path_curves,
+    path_switches,
+    plan_states,
+    plan_store,
+    properties,
+    replan,
+    strategy_fields,
+    timeline,
+)
+
+
+def missing(context, settings):
+    """What the chosen strategy starts from and is not there, with the next step, or nothing; cheap enough for a
+    panel."""
+    strategy, ob = strategy_fields.chosen(settings), plan_store.active(context)
+    there = {
+        "curves": given_curves.objects(context),
+        "paths": ob is not None and any(r.on for r in ob.riffler.plan.rows),
+    }
+    return "" if there.get(strategy.needs, True) else strategy.missing
 
 
 class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator):
-    """Find the valleys of the part that a ball of the cutter's diameter touches on both sides, as paths of a plan"""
+    """Find paths on the part by a strategy, as those of a new plan"""
 
     bl_idname = "riffler.plan_find"
-    bl_label = "Find Pencil Cuts"
+    bl_label = "Find Paths"
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Finding pencil cuts"
+    doing = "Finding paths"
     cancelled = "Search cancelled: nothing has changed"
 
     tool: bpy.props.StringProperty(
@@ -32,7 +58,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
     @classmethod
     def description(cls, context, properties):
         if not properties.replace:
-            return cls.__doc__
+            return local(strategy_fields.chosen(properties).description)
         return f"Replace the paths of {properties.replace} and their orientations by what is found on its part now"
 
     @classmethod
@@ -62,17 +88,25 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         live_registry.end_all()  # the mesh of a sculpt that is being worked at is not up to date
         mesh = object_surfaces.in_world(context, part)
         self._part, self._mm = part.name, scene_units.mm_per_unit(context.scene)
-        self._made_on = riffler.plan.part_of(mesh, self._part)
-        self._tolerance = units.clean(self.tolerance)
-        task = riffler.tasks.pencil(
-            mesh,
-            self._tool,
-            tolerance=self._tolerance,
-            minimum_length=units.clean(self.minimum_length),
-            passes=self.passes,
-            stepover=units.clean(self.stepover) or None,
-        )
-        return TaskJob(task)
+        strategy, options = strategy_fields.chosen(self), strategy_fields.options(self)
+        given = self._given(context, strategy)
+        self._nothing = strategy.nothing
+        call = functools.partial(riffler.plan.find, strategy.id, mesh, self._tool, given, name=self._part, **options)
+        return TaskJob(ThreadTask(lambda progress: call(progress=progress)))
+
+    def _given(self, context, strategy):
+        """The curves or paths that the strategy starts from. ValueError with the next step where there are none."""
+        found = []
+        if strategy.needs == "curves":
+            found = given_curves.selected(context, strategy_fields.options(self).get("tolerance", 0.01))
+        elif strategy.needs == "paths":
+            ob = context.scene.objects[self.replace] if self.replace else plan_store.active(context)
+            plan = plan_store.plan(ob) if ob is not None else None
+            kept = [] if plan is None else sorted({*range(len(plan.paths))} - plan.off - set(plan.depths))
+            found = [plan.paths[k] for k in kept]
+        if strategy.needs != "part" and not found:
+            raise ValueError(local(strategy.missing))
+        return found
 
     def _own_part(self, context):
         """That of the plan that is to be replaced, if it is still there."""
@@ -87,10 +121,9 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         return ""
 
     def finish(self, context, job):
-        paths = list(job.result)
+        plan, paths = job.result.plan, job.result.plan.paths
         if not paths:
-            raise ValueError(f"{self._part}: no pencil cut, as {job.result.reason}")
-        plan = riffler.plan.Plan(paths, self._tool, part=self._made_on, tolerance=self._tolerance)
+            raise ValueError(f"{self._part}: no {self._nothing}, as {job.result.reason}")
         if self.replace:
             ob = context.scene.objects[self.replace]
             ob.riffler.plan.findings.clear()  # on the paths of before
@@ -101,15 +134,15 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         left = path_curves.kept_note(path_curves.show(ob, plan, self._mm))
         total = units.trim(sum(path.length for path in paths), 1)
         found = f"{ob.name}: {units.counted(len(paths), 'path')}, {total} mm"
-        problems = []
+        problems = list(job.result.notes)
         if timeline.pair(ob) is not None:
             replan.sync(context.scene, ob)
-            problems = plan_states.state(ob).problems
+            problems += plan_states.state(ob).problems
         operator_parts.tell_all(self, f"{found}. {left}" if left else found, problems)
         return {"FINISHED"}
 
     def draw(self, context):
-        operator_parts.draw_fields(self, properties.FindSettings.__annotations__)
+        operator_parts.draw_fields(self, ("strategy", *strategy_fields.shown(self)))
 
 
 class RIFFLER_OT_plan_show(bpy.types.Operator):

@@ -63,7 +63,7 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
 
     def _divided(self, ob, plan, rate):
         """The plan with a point at each frame; and where it is on the timeline so already, what that says."""
-        paths = [key_orientations.divided(p, rate) for p in plan.paths]
+        paths = [p if k in plan.depths else key_orientations.divided(p, rate) for k, p in enumerate(plan.paths)]
         cl = list(plan.cl) or [None] * len(paths)
         cl = [rows if path.interpolation != "linear" or path is old else None
               for rows, path, old in zip(cl, paths, plan.paths, strict=True)]  # fmt: skip
@@ -171,6 +171,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
         raise ValueError(f"Frame {frame:g} is on no path: go to one between {ranges(layout)}")
     reading = key_orientations.read(layout, frames, quats)
     path, index, _ = layout.place(frame)
+    plan_store.refuse_turning(plan, path)
     frame = reading.frames.get((path, index), frame)
     if quat is None:
         before = quats[max(0, int(np.searchsorted(frames, frame)) - 1)] if len(frames) else None

@@ -100,19 +100,27 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             layout, frame = replan.layout_of(ob, plan), context.scene.frame_current_final
             if layout.at(frame) is None:
                 raise ValueError(f"Frame {frame:g} is on no path: go to one between {keys.ranges(layout)}")
+            plan_store.refuse_turning(plan, layout.at(frame))
             return [layout.at(frame)]
         if self.paths == "SELECTED":
             selected = set(context.selected_objects)
             found = {k for k, c in path_curves.numbered(ob).items() if c in selected}
             if not found:
                 raise ValueError("No path is selected: select their curves")
+            for k in found:
+                plan_store.refuse_turning(plan, k)
             return sorted(k for k in found if k < len(plan.paths))
         on = [k for k in range(len(plan.paths)) if k not in plan.off]
         if not on:
             raise ValueError("Every path is off: switch one on in the list of paths")
+        on = [k for k in on if k not in plan.depths]
         found = [k for k in on if self.paths == "ALL" or not plan.paths[k].keys]
         if not found:
-            raise ValueError("Every path has keys: choose All to replace them")
+            raise ValueError(
+                "Every path has keys: choose All to replace them"
+                if on
+                else "Every path has its orientations from its strategy: none takes keys"
+            )
         return found
 
     def finish(self, context, job):

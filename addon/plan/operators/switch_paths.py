@@ -113,6 +113,7 @@ class RIFFLER_OT_plan_delete_paths(bpy.types.Operator):
             paths=[plan.paths[k] for k in kept],
             cl=[cl[k] for k in kept],
             off=frozenset(number[k] for k in plan.off if k in number),
+            depths={number[k]: depth for k, depth in plan.depths.items() if k in number},
         )
         p, found = ob.riffler.plan, timeline.pair(ob)
         marks = [

@@ -125,6 +125,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         try:
             ob = plan_object(context)
             spot, _ = _spot(context, ob)
+            plan_store.refuse_turning(spot.plan, spot.path)
             view = current_pose.sight(context, context.region, context.region_data)
             radius = current_pose.reach(context, view, spot.centre)
             self._turn = tool_rotation.Turn(
@@ -292,6 +293,7 @@ class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
     def begin(self, context):
         ob, _ = self.take(context)
         self._spot, self._frame = _spot(context, ob, self.path, self.point)
+        plan_store.refuse_turning(self._spot.plan, self._spot.path)
         if obstacles.part_of(context.scene, ob) is None:
             return DoneJob(None)
         scene, start = context.scene.name, riffler.tasks.free_orientations

@@ -43,6 +43,11 @@ def left(reports, tolerance: float) -> str:
     return f"{_rows(len(lifts))} {are} lifted by up to {_mm(lifts.max())}: material stays"
 
 
+def entered(path: int, place: np.ndarray, gap: float, name: str) -> dict:
+    """Of a path whose poses enter a fixture, by `gap` mm below zero."""
+    return _entry(path, "blocked", 0, place, f"the tool enters {name}, {_mm(-gap)} deep")
+
+
 def without_key(path: int, point: int, place: np.ndarray, reason: str) -> dict:
     """Of a path that has no free orientation at this point."""
     return _entry(path, "blocked", point, place, f"no key, point {point}: {reason}")

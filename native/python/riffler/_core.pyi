@@ -2065,7 +2065,11 @@ def clear_drafts(path: os.PathLike | str | bytes) -> None:
     """
 def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
+@typing.overload
 def cutter_locations(path: PencilPath, tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: typing.Any) -> dict:
+    ...
+@typing.overload
+def cutter_locations(path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: typing.Any) -> dict:
     ...
 def draft_prefix(path: os.PathLike | str | bytes) -> pathlib.Path:
     """

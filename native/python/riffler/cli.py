@@ -10,14 +10,13 @@ import argparse
 import os
 import sys
 import traceback
-from types import ModuleType
 from typing import Any, NoReturn
 
 from . import Cancelled, __version__
-from .command import audit, bench, carve, convert, doctor, machines, mesh, pen, pencil, post, replay, verify
+from .command import audit, bench, carve, convert, doctor, machines, mesh, pen, pencil, plan, post, replay, verify
 from .command.console import Console
 
-COMMANDS = (carve, replay, verify, convert, mesh, pencil, post, machines, audit, pen, doctor, bench)
+COMMANDS = (carve, replay, verify, convert, mesh, plan, pencil, post, machines, audit, pen, doctor, bench)
 LISTS = ("--origin", "--axis")
 EPILOG = "lengths in mm, angles on the command line in degrees; exit status 0, 1 (a check failed) or 2 (bad input)"
 
@@ -42,7 +41,7 @@ def parser() -> Parser:
     return top
 
 
-def add_command(commands: Any, module: ModuleType, name: str) -> None:
+def add_command(commands: Any, module: Any, name: str) -> None:
     """One command, or with PARTS the commands that it consists of: ``riffler pen list``."""
     sub = commands.add_parser(
         name, help=module.HELP, description=module.__doc__, epilog=EPILOG, allow_abbrev=False,

@@ -20,6 +20,7 @@ __all__ = [
     "free_orientations",
     "from_mesh",
     "grown",
+    "kept_locations",
     "least_tilt",
     "parts",
     "pencil",
@@ -49,6 +50,7 @@ def _task_of(call, name):
 
 pencil = _task_of(plan.pencil, "plan.pencil")
 cutter_locations = _task_of(plan.cutter_locations, "plan.cutter_locations")
+kept_locations = _task_of(plan.kept_locations, "plan.kept_locations")
 free_orientations = _task_of(plan.free_orientations, "plan.free_orientations")
 least_tilt = _task_of(plan.least_tilt, "plan.least_tilt")
 collider = _task_of(Collider.made, "Collider")

@@ -10,7 +10,7 @@ sys.path.append(str(Path(__file__).parents[3] / "tools"))
 sys.path.append(str(Path(__file__).parents[3]))
 import fuzz_python
 
-RUNS = {"plan": 300, "record": 300, "tools": 150, "threemf": 40}
+RUNS = {"plan": 300, "curves": 300, "record": 300, "tools": 150, "threemf": 40}
 
 
 @pytest.mark.parametrize("name", fuzz_python.TARGETS)

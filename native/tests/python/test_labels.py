@@ -41,7 +41,8 @@ LONGEST = 60  # of a label; what is longer is a sentence
 
 @pytest.fixture(scope="module")
 def addon():
-    paths = [*(ROOT / "addon").rglob("*.py"), ROOT / "addon" / "common" / "presets.json"]
+    strategies = (ROOT / "native/python/riffler/plan/strategies").glob("*.py")
+    paths = [*(ROOT / "addon").rglob("*.py"), *strategies, ROOT / "addon" / "common" / "presets.json"]
     return (
         "\n".join(spoken(path.read_text()) for path in paths)
         + (ROOT / "native/pen/simulated/simulated_device.hpp").read_text()

@@ -11,7 +11,7 @@ import pytest
 import riffler
 from riffler import plan
 from riffler.cli import main
-from riffler.command import pencil as pencil_command
+from riffler.plan.strategies import pencil as pencil_strategy
 
 MODELS = Path(__file__).resolve().parents[3].parent / "shared" / "models"
 UP = np.array([0.0, 0.0, 1.0])
@@ -393,8 +393,8 @@ def test_a_plan_comes_back_to_the_bit(tmp_path):
     ("where", "value", "message"),
     [
         (("format",), "other", 'format: "riffler-plan" expected'),
-        (("version",), 7, "version: 1 expected, not 7: a newer Riffler"),
-        (("version",), "1", "version: 1 expected, not '1'$"),
+        (("version",), 7, "version: 1 or 2 expected, not 7: a newer Riffler"),
+        (("version",), "1", "version: 1 or 2 expected, not '1'$"),
         (("units",), {"length": "inch"}, "units: "),
         (("tool",), {"kind": "spoon"}, "tool: kind must be"),
         (("tool",), 3, "tool: "),
@@ -483,8 +483,8 @@ def test_paths_that_are_off_come_back_off():
 
 
 def test_a_plan_of_a_newer_version_says_so():
-    data = plan.dumps(some_plan()).replace(b'"version": 1', b'"version": 2')
-    with pytest.raises(riffler.FormatError, match=r"^plan: version: 1 expected, not 2: a newer Riffler wrote it$"):
+    data = plan.dumps(some_plan()).replace(b'"version": 1', b'"version": 3')
+    with pytest.raises(riffler.FormatError, match=r"^plan: version: 1 or 2 expected, not 3: a newer Riffler wrote it$"):
         plan.loads(data)
 
 
@@ -513,7 +513,7 @@ def test_pencil_writes_a_plan(tmp_path, monkeypatch, capsys):
         given.update(options, tool=tool)
         return [corner(), corner(4, closed=True)]
 
-    monkeypatch.setattr(pencil_command.plan, "pencil", find)
+    monkeypatch.setattr(pencil_strategy, "pencil", find)
     mesh(FLOOR, WALL).write(tmp_path / "part.stl")
     monkeypatch.chdir(tmp_path)
     assert run("pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--tolerance", "0.02", "--json") == 0

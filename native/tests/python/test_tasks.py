@@ -84,6 +84,7 @@ WRITTEN = os.path.join(tempfile.mkdtemp(), "written.stl")
 CALLS = {
     "pencil": (plan.pencil, (STEP, BALL, 0.01, 3), {"scallop": 0.1}),
     "cutter_locations": (plan.cutter_locations, (PATH, BALL, COLLIDER), {"clearance": 0.1}),
+    "kept_locations": (plan.kept_locations, (PATH, 0.1, BALL, COLLIDER), {"clearance": 0.1}),
     "free_orientations": (plan.free_orientations, (PATH, [0, 4], BALL, COLLIDER), GRID),
     "least_tilt": (plan.least_tilt, (PATH, BALL, COLLIDER), GRID | {"limit": (UP, 1.0)}),
     "verify": (riffler.verify, (passes(), stock(), PART, [PART, VOLUME]), {"rest_tolerance": 0.1}),

@@ -65,4 +65,8 @@ struct CutterLocations {
 CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembly, const Collider& collider,
                                  const LocationRule& rule, const Progress& progress = {});
 
+/// The same from `poses` with unit axes, which stand for the points of an open path.
+CutterLocations cutter_locations(const std::vector<Pose>& poses, const Assembly& assembly, const Collider& collider,
+                                 const LocationRule& rule, const Progress& progress = {});
+
 }  // namespace riffler

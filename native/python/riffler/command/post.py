@@ -21,7 +21,7 @@ from .arguments import MESHES, add_machine_option, finite, input_file, length, m
 from .carve import read_program
 from .console import Console, number, times
 from .shapes import read_part
-from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
+from .surroundings import add_fixtures, add_rods, fixture, fixtures_alone, rods, with_rods
 
 HELP = "write NC code for a machine"
 __doc__ += f"""
@@ -36,6 +36,8 @@ PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 AXIS_TOLERANCE = 0.00175  # rad
 LIFTED = 0.01  # mm that the tool may enter the part of a plan
+TOUCHED = 0.02  # mm, on the ways into its cuts and out of them
+WRITTEN = 0.05  # mm, between the blocks of what is written
 OF_A_PART = ("fixture", "shank", "holder", "clearance", "skip_blocked")  # what goes with --part
 FEED = 500.0  # mm/min, slow: of a plan without another
 
@@ -79,11 +81,11 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         else math.radians(length(arguments.axis_tolerance, "--axis-tolerance")),
         "options": machine_options(arguments.option, "--option"),
     }
-    program, notes, collider = read(arguments, console)
+    program, notes, collider, depth = read(arguments, console)
     if not len(program):
         raise ValueError(f"{Path(arguments.file).name}: nothing moves in it")
     with console.step("write"), console.writing(out) as beside:
-        how["collider"] = collider
+        how["collider"], how["contact_tolerance"] = collider, max(WRITTEN, depth)
         report = program.save(beside) if saved else program.write(beside, post=arguments.post, **how)
     data = summary(program, report) | {"post": arguments.post, "notes": notes}
     data |= {"out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
@@ -104,8 +106,9 @@ def vector(text: str, what: str) -> np.ndarray:
 # ---- the program
 
 
-def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str], Collider | None]:
-    """The program, what one should know about it, and what its moves are checked against."""
+def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str], Collider | None, float]:
+    """The program, what one should know about it, what its moves are checked against, and how far they may enter the
+    part since they are to, mm."""
     kind = Path(arguments.file).suffix.lower()
     path = input_file(arguments.file, (kind,))
     code = kind not in PLANS + RECORDINGS + PROGRAMS
@@ -135,7 +138,7 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
             program = read_program(path, arguments.machine, how, console)
     if kind in PLANS:
         return from_plan(planned, path.name, arguments, console)
-    return changed(program, arguments), notes, None
+    return changed(program, arguments), notes, None, 0.0
 
 
 def recorded(path: Path, arguments: argparse.Namespace) -> tuple[Program, list[str]]:
@@ -172,7 +175,7 @@ def changed(program: Program, arguments: argparse.Namespace) -> Program:
 
 def from_plan(
     planned: plan.Plan, name: str, arguments: argparse.Namespace, console: Console
-) -> tuple[Program, list[str], Collider | None]:
+) -> tuple[Program, list[str], Collider | None, float]:
     feed = FEED if arguments.feed is None else length(arguments.feed, "--feed")
     spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
     axis = vector(arguments.axis or "0,0,1", f"--axis {arguments.axis}")
@@ -190,15 +193,21 @@ def from_plan(
         cl, collider = lifted(planned, paths, tool, arguments, console, notes)
     else:
         known = {k: rows for k, rows in enumerate(located(planned)) if k not in planned.off}
-        cl = [tips(paths[k], tool) if rows is None else rows for k, rows in known.items()]
+        cl = [start(planned, k, paths[k], tool) if rows is None else rows for k, rows in known.items()]
         if any(rows is None for rows in known.values()):
             notes.append("not checked for gouges: --part does that")
-    safe = height(arguments)
+    depth = planned.deepest + 3 * chords(planned) if planned.depths else 0.0
     program = Program.from_cl(
-        [rows for rows in cl if len(rows)], tools=[tool], feed=feed, spindle=spindle, safe_height=safe,
-        collider=collider, provenance={"plan": name, "part": planned.part.get("name", ""), **planned.provenance},
+        [rows for rows in cl if len(rows)], tools=[tool], feed=feed, spindle=spindle, safe_height=height(arguments),
+        collider=collider, contact_tolerance=max(TOUCHED, depth),
+        provenance={"plan": name, "part": planned.part.get("name", ""), **planned.provenance},
     )  # fmt: skip
-    return (program.retooled({1: called}) if called != 1 else program), notes, collider
+    return (program.retooled({1: called}) if called != 1 else program), notes, collider, depth
+
+
+def chords(planned: plan.Plan) -> float:
+    """mm that paths whose poses are kept may be from the surface between their points."""
+    return max(LIFTED, planned.tolerance or 0.0)
 
 
 def located(planned: plan.Plan) -> list:
@@ -230,6 +239,11 @@ def upright(path, axis: np.ndarray):
     return path.with_axes(np.tile(axis, (len(path), 1)))
 
 
+def start(planned: plan.Plan, number: int, path, tool: Tool) -> np.ndarray:
+    """(n, 6): where the tool stands along a path before anything is looked at."""
+    return plan.poses_of(path) if number in planned.depths else tips(path, tool)
+
+
 def tips(path, tool: Tool) -> np.ndarray:
     """(n, 6): the tip where the ball's centres are those of the path; a loop ends with its first row again."""
     radius = tip_radius(tool)
@@ -254,11 +268,18 @@ def lifted(
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
             raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
         collider, found, raised, blocked = Collider(mesh, fixtures=fixtures), [], {}, {}
+        alone = fixtures_alone(fixtures) if planned.deepest else None
         for k in sorted({*range(len(paths))} - planned.off):
             path = paths[k]
-            rows, report = plan.cutter_locations(path, guarded, collider, tolerance=LIFTED)
+            if k in planned.depths:
+                depth = planned.depths[k]
+                rows, report = plan.kept_locations(path, depth, guarded, collider, tolerance=chords(planned))
+            else:
+                rows, report = plan.cutter_locations(path, guarded, collider, tolerance=LIFTED)
             if not report.ok:
                 blocked[k] = first_blocked(path, rows, report)
+            elif k in planned.depths and (entering := first_within(alone, guarded, rows)) is not None:
+                blocked[k] = placed(entering)
             else:
                 found.append(rows)
                 if len(high := report.lift[report.lift > LIFTED]):
@@ -269,7 +290,8 @@ def lifted(
         said = f"{listed(blocked, len(paths))}: places that no lift frees, the first at {next(iter(blocked.values()))}"
         if not arguments.skip_blocked:
             move = ", move the fixtures" if fixtures else ""
-            raise ValueError(f"{said}; turn the tool by --axis{move}, or leave such paths out by --skip-blocked")
+            turn = "give it another depth or tilt" if planned.depths else "turn the tool by --axis"
+            raise ValueError(f"{said}; {turn}{move}, or leave such paths out by --skip-blocked")
         notes.append(f"{said}: left out")
     if raised:
         lifts = np.concatenate(list(raised.values()))
@@ -279,6 +301,8 @@ def lifted(
         )
     names = ", ".join([part.name, *(Path(name).name for name in arguments.fixture)])
     notes.append(f"free of {names} along all rows within {LIFTED:g} mm, approaches and retracts included")
+    if planned.deepest:
+        notes.append(f"the cutter enters {part.name} by up to {planned.deepest:g} mm, as the plan says")
     if not (tool.shank or tool.holder):
         notes.append("shank and holder were not looked at: --shank and --holder describe them")
     if not fixtures:
@@ -288,8 +312,16 @@ def lifted(
 
 def first_blocked(path, rows: np.ndarray, report: plan.LocationReport) -> str:
     """Where on a path: of points that have no row the ball's centre, of ways between rows the tip."""
-    place = path.centres[report.blocked[0][0]] if report.blocked else rows[report.unsafe[0][0], :3]
-    return ", ".join(f"{x:.3f}" for x in place)
+    return placed(path.centres[report.blocked[0][0]] if report.blocked else rows[report.unsafe[0][0], :3])
+
+
+def first_within(fixtures: Collider | None, tool: Tool, rows: np.ndarray) -> np.ndarray | None:
+    """The tip of the first row at which the tool enters a fixture."""
+    return next((row[:3] for row in rows if fixtures and fixtures.nearest(tool, row)[0] < -LIFTED), None)
+
+
+def placed(point: np.ndarray) -> str:
+    return ", ".join(f"{x:.3f}" for x in point)
 
 
 def listed(numbers: Collection[int], of: int) -> str:

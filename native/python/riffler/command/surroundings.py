@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from .. import Tool, Volume, plan
+from .. import Collider, Mesh, Tool, Volume, plan
 from .arguments import MESHES, VOLUMES, finite, input_file
 from .console import Console
 from .shapes import from_mesh
@@ -53,6 +53,12 @@ def with_rods(by_number: dict[int, Tool], wanted: list[tuple]) -> dict[int, Tool
         for tool in out if number is None else [number]:
             out[tool] = out[tool].with_shank(pieces) if what == "shank" else out[tool].with_holder(pieces)
     return out
+
+
+def fixtures_alone(fixtures: list[Volume]) -> Collider | None:
+    """What a tool meets that is to enter the part but no fixture; None without fixtures."""
+    far = Mesh([(1e6, 0, 0), (1e6 + 1, 0, 0), (1e6, 1, 0)], [(0, 1, 2)])  # a part that no machine reaches
+    return Collider(far, fixtures=fixtures) if fixtures else None
 
 
 def fixture(name: str, console: Console, pitch: float | None = None) -> Volume:

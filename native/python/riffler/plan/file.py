@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from .. import _core, files
 
-FORMAT, VERSION = "riffler-plan", 1
+FORMAT, VERSION = "riffler-plan", 2
+PLAIN = 1  # the version of a plan without depths, which older readers read
 RULES = ("", "linear", "slerp", "smooth")
 
 
@@ -23,7 +25,8 @@ class Plan:
 
     ``cl``: for every path (n, 6) cutter locations, or None. ``part``: a dict with ``name`` and ``sha256``, as by
     ``part_of``. ``tolerance``: mm. ``provenance``: a dict of strings. ``off``: numbers, from 0, of the paths that are
-    not to be cut.
+    not to be cut. ``depths``: by number, from 0, the paths whose poses (``poses_of``) are what is to be cut, as by
+    engraving, and how far the cutter enters the part there, mm: they are never lifted, nor oriented.
     """
 
     paths: list
@@ -33,6 +36,12 @@ class Plan:
     tolerance: float | None = None
     provenance: dict = field(default_factory=dict)
     off: frozenset = frozenset()
+    depths: dict = field(default_factory=dict)
+
+    @property
+    def deepest(self) -> float:
+        """mm that the cutter enters the part by, as ``depths`` say of the paths that are on."""
+        return max((depth for k, depth in self.depths.items() if k not in self.off), default=0.0)
 
 
 def part_of(mesh, name: str) -> dict[str, str]:
@@ -53,15 +62,19 @@ class Texts:
     def __init__(self) -> None:
         self.made = 0
         # Has the objects, so that their ids stay theirs.
-        self._kept: dict[tuple[int, int, bool], tuple[Any, Any, bytes]] = {}
+        self._kept: dict[tuple[int, int, bool, float | None], tuple[Any, Any, bytes]] = {}
 
-    def of(self, paths: list, cl: list, off: Collection[int] = ()) -> list[bytes]:
-        kept, keys = {}, [(id(path), id(rows), k in off) for k, (path, rows) in enumerate(zip(paths, cl, strict=True))]
+    def of(
+        self, paths: list, cl: list, off: Collection[int] = (), depths: Mapping[int, float] = MappingProxyType({})
+    ) -> list[bytes]:
+        each = enumerate(zip(paths, cl, strict=True))
+        kept, keys = {}, [(id(path), id(rows), k in off, depths.get(k)) for k, (path, rows) in each]
         for k, key in enumerate(keys):
             if key in self._kept:
                 kept[key] = self._kept[key]
             elif key not in kept:
-                kept[key] = paths[k], cl[k], f"  {_compact(_from_path(paths[k], cl[k], k, off=key[2]))}".encode()
+                entry = _from_path(paths[k], cl[k], k, off=key[2], depth=key[3])
+                kept[key] = paths[k], cl[k], f"  {_compact(entry)}".encode()
                 self.made += 1
         self._kept = kept
         return [kept[key][2] for key in keys]
@@ -75,19 +88,30 @@ def dumps(plan: Plan, texts: Texts | None = None) -> bytes:
         raise ValueError(f"cl: {len(plan.paths)} expected, one for each path, not {len(cl)}")
     if strangers := sorted(k for k in plan.off if not 0 <= k < len(plan.paths)):
         raise ValueError(f"off: there is no path {strangers[0]}: the plan has {len(plan.paths)}, from 0")
+    _check_depths(plan)
     data = {
         "format": FORMAT,
-        "version": VERSION,
+        "version": VERSION if plan.depths else PLAIN,
         "units": {"length": "mm", "angle": "rad"},
         "provenance": {"riffler": _core.__version__, **{str(k): str(v) for k, v in plan.provenance.items()}},
         "part": dict(plan.part),
         "tool": plan.tool.to_dict(),
         "tolerance": plan.tolerance,
     }
-    entries = (texts or Texts()).of(plan.paths, cl, plan.off)
+    entries = (texts or Texts()).of(plan.paths, cl, plan.off, plan.depths)
     lines = [f" {_compact(name)}: {_compact(value)}" for name, value in data.items()]
     head = '{{\n{},\n "paths": [\n'.format(",\n".join(lines))
     return b"".join((head.encode(), b",\n".join(entries), b"\n ]\n}\n"))
+
+
+def _check_depths(plan: Plan) -> None:
+    for k, depth in plan.depths.items():
+        if not 0 <= k < len(plan.paths):
+            raise ValueError(f"depths: there is no path {k}: the plan has {len(plan.paths)}, from 0")
+        if not (math.isfinite(depth) and depth >= 0):
+            raise ValueError(f"depths[{k}] must be finite and not negative, not {depth}")
+        if not len(plan.paths[k].axes):
+            raise ValueError(f"depths: path {k} has no axes")
 
 
 def _compact(value) -> str:
@@ -100,7 +124,7 @@ def save(path, plan: Plan) -> None:
     files.write(path, dumps(plan))
 
 
-def _from_path(path, cl, number: int, *, off: bool) -> dict[str, Any]:
+def _from_path(path, cl, number: int, *, off: bool, depth: float | None) -> dict[str, Any]:
     out: dict[str, Any] = {
         "radius": path.radius,
         "closed": path.closed,
@@ -110,6 +134,8 @@ def _from_path(path, cl, number: int, *, off: bool) -> dict[str, Any]:
     }
     if off:
         out["off"] = True
+    if depth is not None:
+        out["depth"] = float(depth)
     if len(path.axes):
         out["interpolation"] = path.interpolation
         out["keys"] = [{"index": k, "axis": list(map(float, axis))} for k, axis in path.keys.items()]
@@ -184,10 +210,10 @@ def _array(value: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
 def _to_plan(data: Any) -> Plan:
     if _get(data, "format", "") != FORMAT:
         raise _WrongPlaceError(f'format: "{FORMAT}" expected')
-    if _get(data, "version", "") != VERSION:
-        version = data["version"]
+    version = _get(data, "version", "")
+    if isinstance(version, bool) or version not in (PLAIN, VERSION):
         newer = ": a newer Riffler wrote it" if isinstance(version, int) and version > VERSION else ""
-        raise _WrongPlaceError(f"version: {VERSION} expected, not {version!r}{newer}")
+        raise _WrongPlaceError(f"version: {PLAIN} or {VERSION} expected, not {version!r}{newer}")
     if _get(data, "units", "") != {"length": "mm", "angle": "rad"}:
         raise _WrongPlaceError('units: {"length": "mm", "angle": "rad"} expected')
     try:
@@ -201,20 +227,21 @@ def _to_plan(data: Any) -> Plan:
     paths = _get(data, "paths", "")
     if not isinstance(paths, list):
         raise _WrongPlaceError("paths: a list expected")
-    read = [_to_path(entry, f"paths[{k}]") for k, entry in enumerate(paths)]
+    read = [_to_path(entry, f"paths[{k}]", version > PLAIN) for k, entry in enumerate(paths)]
     return Plan(
-        paths=[path for path, _, _ in read],
+        paths=[path for path, *_ in read],
         tool=tool,
-        cl=[cl for _, cl, _ in read],
+        cl=[cl for _, cl, *_ in read],
         part=data["part"],
         tolerance=None if tolerance is None else _number(tolerance, "tolerance"),
         provenance=data["provenance"],
-        off=frozenset(k for k, (_, _, off) in enumerate(read) if off),
+        off=frozenset(k for k, (_, _, off, _) in enumerate(read) if off),
+        depths={k: depth for k, (*_, depth) in enumerate(read) if depth is not None},
     )
 
 
-def _to_path(entry: Any, place: str) -> tuple[Any, np.ndarray | None, bool]:
-    """The path, its cutter locations, and whether it is off."""
+def _to_path(entry: Any, place: str, depths: bool) -> tuple[Any, np.ndarray | None, bool, float | None]:
+    """The path, its cutter locations, whether it is off, and its depth. `depths`: of a version that has them."""
     centres = _array(_get(entry, "centres", place), (-1, 3), f"{place}.centres")
     n = len(centres)
     closed = _get(entry, "closed", place)
@@ -238,7 +265,14 @@ def _to_path(entry: Any, place: str) -> tuple[Any, np.ndarray | None, bool]:
     if "axes" in entry:
         path = _with_axes(path, entry, place)
     cl = _array(entry["cl"], (-1, 6), f"{place}.cl") if "cl" in entry else None
-    return path, cl, off
+    return path, cl, off, _depth(entry, path, place) if depths and "depth" in entry else None
+
+
+def _depth(entry: dict, path, place: str) -> float:
+    depth = _number(entry["depth"], f"{place}.depth")
+    if depth < 0 or not len(path.axes):
+        raise _WrongPlaceError(f"{place}.depth: {'not negative' if depth < 0 else 'axes beside it'} expected")
+    return depth
 
 
 def _with_axes(path, entry: dict, place: str):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from .around import with_room
 
 
 class LocationReport:
@@ -52,7 +53,8 @@ def cutter_locations(
     little as it takes, where its clearance over part and fixtures is less than ``clearance``. Between rows the tip
     moves on a line and the axis on the great circle; that motion is checked with a bound, not by samples, and where it
     gouges, rows are inserted and lifted. ``tolerance`` (mm) is how much less than ``clearance`` it may be: finishing
-    cuts touch the part everywhere. A closed path ends with its first row again.
+    cuts touch the part everywhere. A closed path ends with its first row again. ``path`` may also be (n, 6) poses, tip
+    and unit axis, from which the tool starts instead.
 
     What cannot be freed within ``max_lift`` (mm) or ``max_inserted`` rows between two points is in the report
     (``report.ok`` is False then) and its points are not in ``cl``; it is never made to fit silently.
@@ -69,6 +71,34 @@ def cutter_locations(
         progress=progress,
     )
     return _core.then(found, lambda found: (found.pop("cl"), LocationReport(found)))
+
+
+def path_of_poses(poses, contacts, normals, height):
+    """Poses (n, 6) as a path: its centres lie ``height`` mm above the tips, on the axes, and each of its contacts and
+    normals stands for both sides. ``poses_of`` gives the poses back, to rounding."""
+    poses = np.asarray(poses, dtype=float)
+    twice = [np.stack([rows, rows], axis=1) for rows in (contacts, normals)]
+    return _core.PencilPath(height, poses[:, :3] + height * poses[:, 3:], *twice).with_axes(poses[:, 3:])
+
+
+def poses_of(path):
+    """(n, 6) tip and axis of a path whose centres lie its radius above the tips: of one by ``path_of_poses``, or of a
+    ball's."""
+    return np.hstack([path.centres - path.radius * path.axes, path.axes])
+
+
+def kept_locations(path, depth, tool, collider, clearance=0.0, *, tolerance=0.01, progress=None):
+    """``cutter_locations`` of a path in ``Plan.depths``: its own poses, checked and not lifted.
+
+    The cutter enters the part by up to ``depth`` mm there, and by ``tolerance`` more at a point and twice that between
+    two, since the path's chords are as far from the surface; shank and holder keep ``clearance`` from part and
+    fixtures. (That the cutter enters a fixture by less than ``depth`` is not seen here.)
+    """
+    depth += tolerance
+    body = with_room(tool, depth + clearance)
+    return cutter_locations(
+        poses_of(path), body, collider, -depth, tolerance=tolerance, max_lift=0.0, progress=progress
+    )
 
 
 def contact_locations(tool, contacts, normals, axes, feeds=None):

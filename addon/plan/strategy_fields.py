@@ -1,0 +1,73 @@
+"""The strategies as fields: one choice, and what each is set to, made from the table that riffler has
+(riffler.plan.STRATEGIES)."""
+
+import zlib
+
+from bpy.props import EnumProperty, FloatProperty, IntProperty
+from riffler.plan import STRATEGIES
+
+from ..blender.fields import length
+from ..common import units
+
+FIRST = next(iter(STRATEGIES))  # its fields have no name in front: scripts and files have them since before the others
+
+
+def _number(name):
+    """What a .blend keeps of an entry: it stays where another one is added."""
+    return zlib.crc32(name.encode()) >> 1
+
+
+def _entries(choices):
+    return [(value.upper(), label, about, "NONE", _number(value)) for value, label, about in choices]
+
+
+def identifier(strategy, parameter):
+    """The name of the field: `tolerance`, `engrave_depth`."""
+    return parameter.key if strategy.id == FIRST else f"{strategy.id}_{parameter.key}"
+
+
+def _field(parameter):
+    about, default = parameter.help, parameter.default or 0
+    how = {"name": parameter.label, "description": about}
+    if parameter.choices:
+        return EnumProperty(items=_entries(parameter.choices), default=default.upper(), **how)
+    if not parameter.unit:
+        return IntProperty(default=default, min=int(parameter.low), max=int(parameter.high), **how)
+    if parameter.unit == "rad":
+        return FloatProperty(subtype="ANGLE", default=default, min=parameter.low, max=parameter.high, **how)
+    return length(parameter.label, default, about, parameter.low, parameter.high)
+
+
+FIELDS = {
+    "strategy": EnumProperty(
+        name="Strategy",
+        items=_entries([(s.id, s.label, s.description) for s in STRATEGIES.values()]),
+        default=FIRST.upper(),
+        description="How paths are found on the part",
+    )
+}
+FIELDS |= {identifier(s, p): _field(p) for s in STRATEGIES.values() for p in s.parameters}
+
+
+def chosen(settings):
+    """The riffler.plan.Strategy of settings that have the fields."""
+    return STRATEGIES[settings.strategy.lower()]
+
+
+def shown(settings):
+    """Names of the fields of the chosen strategy."""
+    return [identifier(chosen(settings), p) for p in chosen(settings).parameters]
+
+
+def options(settings):
+    """The chosen strategy's options, as riffler.plan.find takes them."""
+    strategy = chosen(settings)
+    return {p.key: _value(p, getattr(settings, identifier(strategy, p))) for p in strategy.parameters}
+
+
+def _value(parameter, value):
+    if parameter.choices:
+        return value.lower()
+    if parameter.default is None and not value:
+        return None
+    return value if not parameter.unit else units.clean(value)

@@ -1,0 +1,157 @@
+"""Find the paths of a plan by a strategy. There is a command for each strategy of riffler.plan."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import Any
+
+from .. import plan
+from ..plan import curves
+from . import tools
+from .arguments import MESHES, finite, input_file, length, output_file, whole
+from .console import Console, number, times
+from .shapes import read_part
+
+HELP = "find paths on a part by a strategy: " + ", ".join(plan.STRATEGIES)
+PLANS = (".json",)
+GIVEN = {  # what a strategy needs beside part and tool: the help of its option, and the files it may be
+    "curves": (
+        "the curves, as they lie on the part: polylines of .obj, points of .txt, .xyz, .csv or .json",
+        curves.FORMATS,
+    ),
+    "paths": ("the plan whose paths it starts from; those that are off are left out", PLANS),
+}
+
+
+class StrategyCommand:
+    """The command of one strategy, in the form of a command's module."""
+
+    def __init__(self, strategy: plan.Strategy) -> None:
+        self.strategy = strategy
+        self.__name__ = f"plan_{strategy.id}"
+        self.HELP = strategy.summary
+        more = f" --{strategy.needs} FILE" if strategy.needs in GIVEN else ""
+        self.__doc__ = (
+            f"{strategy.description}. They are written as a plan.\n\n"
+            f"riffler plan {strategy.id} part.stl --tool ball:6{more} --out plan.json"
+        )
+
+    def add_arguments(self, parser: argparse.ArgumentParser) -> None:
+        needs = self.strategy.needs
+        parser.add_argument("mesh", metavar="FILE", help="the part: .stl, .obj, .ply or .3mf")
+        whose = "; by default the plan's" if needs == "paths" else ""
+        parser.add_argument(
+            "--tool", required=not whose, metavar="TOOL", help=f"the cutter, as in ball:6, or a file{whose}"
+        )
+        if needs in GIVEN:
+            parser.add_argument(f"--{needs}", required=True, metavar="FILE", help=GIVEN[needs][0])
+        for parameter in self.strategy.parameters:
+            add_option(parser, parameter)
+        parser.add_argument("--out", required=True, metavar="FILE", help=".json")
+
+    def run(self, arguments: argparse.Namespace, console: Console) -> int:
+        strategy = self.strategy
+        options = {p.key: value_of(p, getattr(arguments, p.key)) for p in strategy.parameters}
+        asked = None if arguments.tool is None else tools.parse(arguments.tool)
+        path = input_file(arguments.mesh, MESHES)
+        source = (
+            input_file(getattr(arguments, strategy.needs), GIVEN[strategy.needs][1])
+            if strategy.needs in GIVEN
+            else None
+        )
+        out = output_file(arguments.out, PLANS)
+        with console.step("read"):
+            mesh = read_part(path, console, hollow=True)
+            given, tool = read_given(strategy.needs, source)
+        if asked is not None:
+            lower, upper = mesh.bounds
+            tool = asked.make(float(max(upper - lower)))
+        with console.step(strategy.id) as progress:
+            try:
+                found = plan.find(strategy.id, mesh, tool, given, name=path.name, progress=progress, **options)
+            except ValueError as error:
+                raise ValueError(f"{path.name}: {error}") from None
+        with console.step("write"), console.writing(out) as beside:
+            plan.save(beside, found.plan)
+        data = summary(found, path, out, source) | {"seconds": console.seconds}
+        console.result(data, f"{out.name} written", rows(data))
+        return 0
+
+
+def add_option(parser: argparse.ArgumentParser, parameter: plan.Parameter) -> None:
+    flag, about = f"--{parameter.key.replace('_', '-')}", parameter.help[:1].lower() + parameter.help[1:]
+    about = about.replace("; 0: ", "; by default ")  # a panel's way of leaving it out
+    if parameter.choices:
+        words = [value for value, _, _ in parameter.choices]
+        meanings = "; ".join(f"{value}: {help[:1].lower()}{help[1:]}" for value, _, help in parameter.choices)
+        parser.add_argument(
+            flag, choices=words, default=parameter.default, help=f"{about} (default {parameter.default}); {meanings}"
+        )
+        return
+    if parameter.default is not None:
+        about += f" (default {shown(parameter):g})"
+    metavar = {"mm": "MM", "rad": "DEG"}.get(parameter.unit, "N")
+    parser.add_argument(flag, metavar=metavar, help=about.replace("%", "%%"))
+
+
+def shown(parameter: plan.Parameter) -> float:
+    return math.degrees(parameter.default) if parameter.unit == "rad" else parameter.default
+
+
+def value_of(parameter: plan.Parameter, text: str | None) -> Any:
+    """What an option says, or the parameter's default."""
+    if text is None or parameter.choices:
+        return parameter.default if text is None else text
+    flag = f"--{parameter.key.replace('_', '-')}"
+    if not parameter.unit:
+        return whole(text, flag)
+    value = length(text, flag) if parameter.low >= 0 else finite(text, flag)
+    return math.radians(value) if parameter.unit == "rad" else value
+
+
+def read_given(needs: str, source: Path | None) -> tuple[list, Any]:
+    """The curves or paths of the file, and the tool of a plan."""
+    if source is None:
+        return [], None
+    if needs == "curves":
+        return curves.read_curves(source), None
+    planned = plan.load(source)
+    left = sorted({*range(len(planned.paths))} - planned.off - set(planned.depths))
+    if not left:
+        raise ValueError(f"{source.name}: every path is off, or has no ball at its walls")
+    return [planned.paths[k] for k in left], planned.tool
+
+
+def summary(found: plan.Found, path: Path, out: Path, source: Path | None) -> dict[str, Any]:
+    made = found.plan
+    data = {
+        "out": str(out),
+        "part": str(path),
+        "tool": made.tool.to_dict(),
+        "tolerance": made.tolerance,
+        "paths": len(made.paths),
+        "points": sum(map(len, made.paths)),
+        "closed": sum(p.closed for p in made.paths),
+        "length": float(sum(p.length for p in made.paths)),
+        "reason": found.reason,
+        "bytes": out.stat().st_size,
+    }
+    return data | ({} if source is None else {"from": str(source), "notes": found.notes})
+
+
+def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
+    loops = f", {number(data['closed'])} of them loops" if data["closed"] else ""
+    return [
+        ("paths", f"{number(data['paths'])}{loops}" + (f": {data['reason']}" if data["reason"] else "")),
+        ("points", number(data["points"])),
+        ("length", number(data["length"], "mm")),
+        ("tool", f"{data['tool']['name']}, paths to {data['tolerance']:g} mm"),
+        *(("note", note) for note in data.get("notes", ())),
+        ("file", number(data["bytes"], "bytes")),
+        ("times", times(data["seconds"])),
+    ]
+
+
+PARTS = tuple(map(StrategyCommand, plan.STRATEGIES.values()))

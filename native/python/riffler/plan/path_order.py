@@ -1,0 +1,56 @@
+"""An order of paths in which the moves between them are short."""
+
+import numpy as np
+
+
+def linked(paths, start=None):
+    """The paths in an order, and turned round, so that the moves between them are short: ``[(index, reversed), ...]``.
+
+    From ``start`` (a point; otherwise the first path's beginning) always to the nearest end, then exchanges of two
+    moves as long as they shorten the way. The same input gives the same order. A loop begins and ends at its first
+    point.
+    """
+    if not paths:
+        return []
+    first = np.array([p.centres[0] for p in paths])
+    last = np.array([p.centres[0 if p.closed else -1] for p in paths])
+    ends = np.stack([first, last])  # [end, path]
+    at = first[0] if start is None else np.asarray(start, dtype=float)
+    if at.shape != (3,) or not np.isfinite(at).all():
+        raise ValueError("start must be three finite numbers")
+    order, left = [], np.ones(len(paths), dtype=bool)
+    here = at
+    for _ in paths:
+        away = np.where(left, np.linalg.norm(ends - here, axis=2), np.inf)
+        turned, index = np.unravel_index(np.argmin(away), away.shape)
+        order.append((int(index), bool(turned)))
+        left[index] = False
+        here = ends[1 - turned, index]
+    return _exchanged(order, ends, None if start is None else at)
+
+
+def _exchanged(order, ends, start, rounds=20):
+    """2-opt (Croes, Operations Research 6 (1958) 791): turns stretches of the order round while that shortens it."""
+    index = np.array([i for i, _ in order])
+    turned = np.array([int(t) for _, t in order])
+    n = len(index)
+    for _ in range(rounds):
+        better = False
+        for i in range(n):
+            into = ends[turned, index]
+            out = ends[1 - turned, index]
+            j = np.arange(i, n)
+            before = out[i - 1] if i else start
+            now = np.zeros(n - i) if before is None else np.full(n - i, np.linalg.norm(into[i] - before))
+            then = np.zeros(n - i) if before is None else np.linalg.norm(out[j] - before, axis=1)
+            now[:-1] += np.linalg.norm(into[j[:-1] + 1] - out[j[:-1]], axis=1)
+            then[:-1] += np.linalg.norm(into[j[:-1] + 1] - into[i], axis=1)
+            gain = now - then
+            k = int(np.argmax(gain))
+            if gain[k] > 1e-9:
+                better = True
+                index[i : i + k + 1] = index[i : i + k + 1][::-1]
+                turned[i : i + k + 1] = 1 - turned[i : i + k + 1][::-1]
+        if not better:
+            break
+    return [(int(i), bool(t)) for i, t in zip(index, turned, strict=True)]
