@@ -3,6 +3,7 @@ set(shipped_sources)
 
 # `function`() of `header` gives the texts of `folder`/`name`.toml, in the order of the names.
 function(ship_texts function header folder)
+  string(REGEX REPLACE "/.*" "" topic ${header})
   set(entries "")
   foreach(name IN LISTS ARGN)
     set(file ${PROJECT_SOURCE_DIR}/${folder}/${name}.toml)
@@ -14,15 +15,15 @@ function(ship_texts function header folder)
 "// Made by cmake/shipped.cmake.
 #include \"@header@\"
 
-namespace riffler {
+namespace riffler::@topic@ {
 
-std::span<const ShippedText> @function@() {
-  static constexpr ShippedText kTexts[] = {
+std::span<const base::ShippedText> @function@() {
+  static constexpr base::ShippedText kTexts[] = {
 @entries@  };
   return kTexts;
 }
 
-}  // namespace riffler
+}  // namespace riffler::@topic@
 ")
   set(shipped_sources ${shipped_sources} ${PROJECT_BINARY_DIR}/${function}.cpp PARENT_SCOPE)
 endfunction()

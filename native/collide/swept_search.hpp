@@ -12,7 +12,7 @@
 #include "collide/triangle_search.hpp"
 #include "geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 struct Swept {
   enum class Answer {
@@ -74,4 +74,4 @@ class SweptSearch {
   Swept out_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_set>
 
-namespace riffler {
+namespace riffler::dexel {
 
 int ray_count(double extent, double pitch) {
   return std::max(1, static_cast<int>(std::lround(extent / pitch)));
@@ -36,7 +36,7 @@ Grid::Grid(Axis axis, const Box3& box, double pitch, bool with_normals)
   last_u_ = last_width(box_.size().x, nu_, pitch), last_v_ = last_width(box_.size().y, nv_, pitch);
   tiles_u_ = (nu_ + kTileSide - 1) / kTileSide;
   tiles_v_ = (nv_ + kTileSide - 1) / kTileSide;
-  const std::shared_ptr<const Tile> empty = make_shared_block<Tile>();
+  const std::shared_ptr<const Tile> empty = base::make_shared_block<Tile>();
   tiles_.assign(static_cast<std::size_t>(tiles_u_) * tiles_v_, empty);
 }
 
@@ -63,7 +63,7 @@ Tile& Grid::writable(std::size_t index) {
     // The last other holder may have been a reader on another thread: see its reads done before writing.
     std::atomic_thread_fence(std::memory_order_acquire);
   } else {
-    held = make_shared_block<Tile>(*held);
+    held = base::make_shared_block<Tile>(*held);
   }
   return const_cast<Tile&>(*held);  // every tile is made by make_shared_block<Tile>, never as a const object
 }
@@ -109,4 +109,4 @@ std::size_t Grid::nbytes() const {
   return bytes;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -5,7 +5,7 @@
 #include "haptics/settings.hpp"
 #include "haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// Zero in any field is allowed, and lets nothing through.
 struct LimitSettings {
@@ -56,4 +56,4 @@ Wrench limited(const LimitSettings& settings, const Capability& device, const Ac
                const Wrench& previous, const Wrench& wanted, const Twist& grip, double dt,
                LimitReport* report = nullptr);
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -33,7 +33,7 @@
 #include "haptics/trip_log.hpp"
 #include "haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct SafetySettings {
   double ramp = 0.5;           ///< s from nothing to all of the force, at the start and after every interruption
@@ -132,4 +132,4 @@ class Safety {
   TripLog log_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

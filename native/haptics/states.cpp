@@ -1,6 +1,6 @@
 #include "haptics/states.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 ForceState next(ForceState state, ForceEvent event) {
   using S = ForceState;
@@ -96,4 +96,4 @@ const char* sentence(Cause cause) {
   return "";
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -4,7 +4,7 @@
 #include "haptics/settings.hpp"
 #include "haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct WrenchExtrapolatorSettings {
   double ahead = 2e-3;          ///< s for which the last change goes on after a step, ever slower
@@ -65,4 +65,4 @@ class Interpolated {
   Wrench from_, to_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -5,9 +5,7 @@
 
 #include "marching/facets.hpp"
 
-namespace riffler {
-
-namespace marching {
+namespace riffler::marching {
 
 namespace {
 
@@ -78,10 +76,8 @@ std::optional<SurfaceHit> first_hit(const Lattice& lattice, const Vec3& origin, 
                     to_world(lattice.axis(), glm::normalize(best.normal)), best.brick};
 }
 
-}  // namespace marching
-
 std::optional<SurfaceHit> FrozenSurface::pick(const Vec3& origin, const Vec3& direction, PickStats& stats) const {
-  return marching::first_hit(lattice_, origin, direction, [&](std::size_t n) { return bricks_[n].get(); }, stats);
+  return first_hit(lattice_, origin, direction, [&](std::size_t n) { return bricks_[n].get(); }, stats);
 }
 
 std::size_t FrozenSurface::triangles() const {
@@ -96,4 +92,4 @@ std::size_t FrozenSurface::nbytes() const {
   return sum;
 }
 
-}  // namespace riffler
+}  // namespace riffler::marching

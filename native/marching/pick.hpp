@@ -10,11 +10,9 @@
 #include "geom/vec.hpp"
 #include "marching/lattice.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
-namespace marching {
 class Facets;
-}
 
 /// The first point of a surface along a ray.
 struct SurfaceHit {
@@ -36,8 +34,8 @@ struct PickStats {
 /// the bricks that did not change in between; goes on when the mesher has gone. May be read from several threads.
 class FrozenSurface {
  public:
-  using Bricks = std::vector<std::shared_ptr<const marching::Facets>>;  // null for bricks without triangles
-  FrozenSurface(const marching::Lattice& lattice, Bricks bricks) : lattice_(lattice), bricks_(std::move(bricks)) {}
+  using Bricks = std::vector<std::shared_ptr<const Facets>>;  // null for bricks without triangles
+  FrozenSurface(const Lattice& lattice, Bricks bricks) : lattice_(lattice), bricks_(std::move(bricks)) {}
 
   /// As Mesher::pick.
   std::optional<SurfaceHit> pick(const Vec3& origin, const Vec3& direction, PickStats& stats) const;
@@ -46,11 +44,9 @@ class FrozenSurface {
   std::size_t nbytes() const;
 
  private:
-  marching::Lattice lattice_;
+  Lattice lattice_;
   Bricks bricks_;
 };
-
-namespace marching {
 
 /// Looks at the bricks that the ray comes through. `facets`: those of a brick by its number, null where it has none;
 /// asked only for bricks whose triangles the ray may meet.
@@ -58,6 +54,4 @@ using FacetsOf = std::function<const Facets*(std::size_t brick)>;
 std::optional<SurfaceHit> first_hit(const Lattice& lattice, const Vec3& origin, const Vec3& direction,
                                     const FacetsOf& facets, PickStats& stats);
 
-}  // namespace marching
-
-}  // namespace riffler
+}  // namespace riffler::marching

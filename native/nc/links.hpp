@@ -8,14 +8,14 @@
 #include "collide/collider.hpp"
 #include "nc/retract_path.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// What approaches and retracts must keep clear of, and how they go.
 struct LinkRule {
-  const Collider* collider = nullptr;  ///< part and fixtures; null: nothing is looked at
-  double tolerance = 0.02;             ///< mm that the tool may enter them: cuts touch the part
-  std::optional<double> retract;       ///< mm of the first stretch out of a cut; not given: what is clear
-  std::optional<Vec3> direction;       ///< unit, of that stretch; not given: along the tool's axis, or what is clear
+  const collide::Collider* collider = nullptr;  ///< part and fixtures; null: nothing is looked at
+  double tolerance = 0.02;                      ///< mm that the tool may enter them: cuts touch the part
+  std::optional<double> retract;                ///< mm of the first stretch out of a cut; not given: what is clear
+  std::optional<Vec3> direction;  ///< unit, of that stretch; not given: along the tool's axis, or what is clear
   /// mm before a cut that are fed, the way down to there is a rapid; not given: all of it is fed.
   std::optional<double> lead_in;
 };
@@ -50,14 +50,14 @@ class LinkFinder {
 
   const ClearanceZone& space_;
   const LinkRule& rule_;
-  Assembly assembly_;
+  collide::Assembly assembly_;
   ToolEnvelope reach_;
   Box3 around_;
 };
 
 /// "the holder meets a fixture, 2.39 mm deep, at [1 2 3]", where `pose` is the worst of a motion.
-std::string meeting(const Collider& collider, const Assembly& assembly, const Pose& pose);
+std::string meeting(const collide::Collider& collider, const collide::Assembly& assembly, const Pose& pose);
 /// The pose of a motion that is deepest in part and fixtures, by samples: for messages.
-Pose deepest_pose(const Collider& collider, const Assembly& assembly, const Motion& motion);
+Pose deepest_pose(const collide::Collider& collider, const collide::Assembly& assembly, const Motion& motion);
 
-}  // namespace riffler
+}  // namespace riffler::nc

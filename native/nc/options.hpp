@@ -11,7 +11,7 @@
 
 #include "geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 using OptionValue = std::variant<bool, double, std::string, std::vector<double>>;
 using Options = std::map<std::string, OptionValue>;
@@ -85,4 +85,4 @@ class OptionReader {
   std::vector<OptionFact> facts_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -15,7 +15,7 @@
 #include "pen/hid_model.hpp"
 #include "pen/models/rate_control.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct PenOptions {
   RateSettings rate{};                     ///< of pucks
@@ -56,4 +56,4 @@ std::vector<FoundDevice> find_devices();
 /// OpenError; for a kind, of the device that came nearest to opening.
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options = {});
 
-}  // namespace riffler
+}  // namespace riffler::pen

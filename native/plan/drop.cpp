@@ -9,7 +9,7 @@
 #include "geom/median_tree.hpp"
 #include "plan/cc_frame.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -23,7 +23,7 @@ DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
   // Straight along z nothing is turned: coordinates stay what they are, to the bit.
   const CcFrame frame = axis == Vec3(0, 0, 1) ? CcFrame{} : cc_frame({1, 0, 0}, unit_axis(axis, "axis"));
   turn_ = Mat3(frame.x, frame.y, frame.z);
-  for (const ToolPiece& p : tool.assembly()) sides_.emplace_back(p.part, LowerSide(p.piece));
+  for (const tool::ToolPiece& p : tool.assembly()) sides_.emplace_back(p.part, LowerSide(p.piece));
   std::vector<Triangle> all;
   all.reserve(mesh.triangles.size());
   for (const Vec3i& t : mesh.triangles)
@@ -46,9 +46,9 @@ void DropCutter::build(const std::vector<Triangle>& all) {
     const Vec3 size = box_of(begin, end).size();
     return size.x >= size.y ? 0 : 1;
   };
-  sort_by_medians(order, levels_, axis,
-                  [&](std::size_t t, int side) { return all[t].a[side] + all[t].b[side] + all[t].c[side]; });
-  boxes_ = boxes_of_tree(levels_, [&](std::size_t leaf) {
+  geom::sort_by_medians(order, levels_, axis,
+                        [&](std::size_t t, int side) { return all[t].a[side] + all[t].b[side] + all[t].c[side]; });
+  boxes_ = geom::boxes_of_tree(levels_, [&](std::size_t leaf) {
     const auto at = [&](std::size_t k) { return order.begin() + static_cast<std::ptrdiff_t>(first(levels_, k)); };
     return box_of(at(leaf), at(leaf + 1));
   });
@@ -110,7 +110,7 @@ DropCutter::Landing DropCutter::operator()(const Vec3& p, Stats* stats) const {
 std::vector<DropCutter::Landing> DropCutter::operator()(const std::vector<Vec3>& points,
                                                         const Progress& progress) const {
   std::vector<Landing> out(points.size());
-  parallel_for(
+  base::parallel_for(
       points.size(), 64,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) out[i] = (*this)(points[i]);
@@ -119,4 +119,4 @@ std::vector<DropCutter::Landing> DropCutter::operator()(const std::vector<Vec3>&
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

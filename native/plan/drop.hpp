@@ -10,7 +10,7 @@
 #include "plan/lower_side.hpp"
 #include "tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// Over a mesh's triangles, seen along one axis. Exact to rounding for lines and arcs that bulge; a hollow arc is taken
 /// as cones that fill at most Profile::kConcaveTolerance of it less than the whole (tool/profile.hpp).
@@ -21,7 +21,7 @@ class DropCutter {
     bool touches = false;  ///< nothing lies below or above the tool otherwise
     double height = 0;     ///< of the tip along the axis, mm
     Vec3 point{0};         ///< of the part
-    Part part = Part::Cutter;
+    tool::Part part = tool::Part::Cutter;
   };
   struct Stats {
     std::size_t boxes = 0, triangles = 0;  ///< looked at
@@ -44,13 +44,13 @@ class DropCutter {
   };
 
   void build(const std::vector<Triangle>& all);
-  std::size_t first(std::size_t level, std::size_t place) const { return first_item(count_, level, place); }
+  std::size_t first(std::size_t level, std::size_t place) const { return geom::first_item(count_, level, place); }
 
-  Mat3 turn_;                                      // columns: the frame, its z the axis
-  std::vector<std::pair<Part, LowerSide>> sides_;  // of the assembly's pieces
-  std::size_t count_ = 0, levels_ = 0;             // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
+  Mat3 turn_;                                            // columns: the frame, its z the axis
+  std::vector<std::pair<tool::Part, LowerSide>> sides_;  // of the assembly's pieces
+  std::size_t count_ = 0, levels_ = 0;  // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
   std::vector<Box3> boxes_;
   std::vector<Triangle> triangles_;  // in the frame, in the order of the leaves
 };
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace riffler {
+namespace riffler::session {
 
 JournalSink::JournalSink(std::unique_ptr<JournalWriter> writer, int tool, double tolerance,
                          const JournalStream::Options& options)
@@ -46,4 +46,4 @@ bool JournalSink::close() {
   return done;
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

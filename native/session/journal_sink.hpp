@@ -7,7 +7,7 @@
 #include "session/journal_stream.hpp"
 #include "session/stroke_sink.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 class JournalSink final : public StrokeSink {
  public:
@@ -41,4 +41,4 @@ class JournalSink final : public StrokeSink {
   int owed_ = 0;  // strokes to be taken back (< 0) or brought back, for which there was no room
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -15,7 +15,7 @@
 #include "base/own_thread.hpp"
 #include "session/journal_file.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// A row of a stroke as the loop has it: columns as JournalRows.
 struct JournalRow {
@@ -128,10 +128,10 @@ class JournalStream {
   std::string write_problem_, sync_problem_, refusal_;
 
   std::mutex sleeping_;
-  HomeOnly<std::condition_variable> wake_;
-  HomeProcess home_;
+  base::HomeOnly<std::condition_variable> wake_;
+  base::HomeProcess home_;
   bool stopping_ = false, sync_wanted_ = false;
-  OwnThread keeper_, syncer_;
+  base::OwnThread keeper_, syncer_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

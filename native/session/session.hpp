@@ -13,7 +13,7 @@
 #include "session/masked_stock.hpp"
 #include "session/sculpt_loop.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 struct SessionSettings {
   SculptLoopSettings loop{};
@@ -24,7 +24,7 @@ struct SessionSettings {
   std::size_t undo = 64;  ///< strokes that can be taken back
   /// Add: the tool puts material on, within the stock's box. Nothing of that is felt, nor is the stock: only obstacles
   /// are.
-  CarveMode mode = CarveMode::Remove;
+  sweep::CarveMode mode = sweep::CarveMode::Remove;
 
   /// std::invalid_argument naming the field.
   void validate() const;
@@ -45,8 +45,9 @@ class Session {
   /// Validates; std::invalid_argument as MoveCarver. A device without force is spared the checks of its motion. What
   /// lies in `protect`, a volume of the stock's frame or null, stays as it is, material and air, and is as air to the
   /// tool.
-  Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen, std::shared_ptr<const Collider> obstacles,
-          const SessionSettings& settings, const Volume* protect = nullptr);
+  Session(const Volume& stock, const Tool& tool, std::shared_ptr<pen::Pen> pen,
+          std::shared_ptr<const collide::Collider> obstacles, const SessionSettings& settings,
+          const Volume* protect = nullptr);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   /// As stop(), but for what was not shown yet.
@@ -76,7 +77,7 @@ class Session {
 
   /// As of SculptLoop. nullptr before start().
   SculptLoop* loop() noexcept { return loop_.get(); }
-  Pen& pen() noexcept { return *pen_; }
+  pen::Pen& pen() noexcept { return *pen_; }
 
  private:
   enum class State : unsigned char { New, Running, Ended };
@@ -99,15 +100,15 @@ class Session {
 
   SessionSettings settings_;
   Tool tool_;
-  std::shared_ptr<Pen> pen_;
-  std::shared_ptr<const Collider> obstacles_;
+  std::shared_ptr<pen::Pen> pen_;
+  std::shared_ptr<const collide::Collider> obstacles_;
   std::shared_ptr<StrokeSink> sink_;
   std::shared_ptr<SculptLoop> loop_;
   State state_ = State::New;
-  OwnThread poller_;
-  HomeProcess home_;
+  base::OwnThread poller_;
+  base::HomeProcess home_;
   std::atomic<bool> ending_{false};
-  BlockReserve reserve_;
+  base::BlockReserve reserve_;
 
   std::optional<MaskedStock> masked_stock_;  // where that is not the volume itself
   std::optional<Volume> left_;               // of it, as it is shown
@@ -118,4 +119,4 @@ class Session {
   SessionFrame kept_;                        // for the next
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -10,7 +10,7 @@
 #include "sweep/convex_group.hpp"
 #include "tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Carves poses.size() − 1 moves with the cutter over its full length; shank and holder never cut. Throws
 /// std::invalid_argument naming the row for poses that are not finite, axes whose length differs from 1 by 1e-6 or
@@ -25,7 +25,7 @@ void check_options(const CarveOptions& options, std::size_t moves);
 /// Single moves on one grid, for those who simulate parts of a volume by themselves: move k goes from
 /// poses[ends[k] − 1] to poses[ends[k]]. What is left is, bit for bit, what `carve` leaves of the same moves. Returns
 /// mm³ of this grid's rays per move. The caller has called check_path, and gives the volume a fresh revision.
-std::vector<double> carve_moves(Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
-                                std::span<const std::uint32_t> ends, double tolerance, Stats& stats);
+std::vector<double> carve_moves(dexel::Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+                                std::span<const std::uint32_t> ends, double tolerance, dexel::Stats& stats);
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -4,16 +4,16 @@
 
 #include "base/check.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 MoveCarver::MoveCarver(Volume& volume, const Tool& tool, const Options& options)
     : volume_(volume), cutter_(convex_groups(tool.cutter())), cut_{{0}, {Vec3(0)}, {Vec3(0)}} {
   options_.tolerance = options.tolerance, options_.removal_constant = options.removal_constant;
   options_.dt = {1};
   check_options(options_, 1);
-  require_tolerance_for(options_.tolerance, std::max(tool.length(), tool.diameter()));
+  base::require_tolerance_for(options_.tolerance, std::max(tool.length(), tool.diameter()));
   carvers_.reserve(volume.grids().size());
-  for (Grid& grid : volume.grids())
+  for (dexel::Grid& grid : volume.grids())
     carvers_.emplace_back(grid, &grid == &volume.reference(), options_, cut_, &rollback_);
 }
 
@@ -23,7 +23,7 @@ MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) 
   options_.dt[0] = dt;
   check_options(options_, 1);
   cut_.removed[0] = 0, cut_.force[0] = cut_.torque[0] = Vec3(0);
-  Stats stats;
+  dexel::Stats stats;
   stats.moves = 1;
   replaced_.clear();
   try {
@@ -35,8 +35,8 @@ MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) 
     rollback_.undo();
     throw;
   }
-  const Grid* const first = volume_.grids().data();
-  rollback_.each([&](const Grid& grid, std::size_t tile) {
+  const dexel::Grid* const first = volume_.grids().data();
+  rollback_.each([&](const dexel::Grid& grid, std::size_t tile) {
     replaced_.push_back({static_cast<std::uint32_t>(&grid - first), static_cast<std::uint32_t>(tile)});
   });
   if (rollback_.commit()) volume_.touch();
@@ -44,4 +44,4 @@ MoveCarver::Taken MoveCarver::move(const Pose& from, const Pose& to, double dt) 
   return {cut_.removed[0], cut_.force[0], cut_.torque[0]};
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -9,7 +9,7 @@
 #include "sweep/grid_carver.hpp"
 #include "tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Leaves of a volume, bit for bit, what `carve` would leave of each move by itself, and says the same of it. Where
 /// moves stay as large, nothing is asked of the system after the first of them, as long as tiles that are replaced come
@@ -49,8 +49,8 @@ class MoveCarver {
   CarveOptions options_;
   Cut cut_;
   Rollback rollback_;
-  BlockVector<Place> replaced_;
+  base::BlockVector<Place> replaced_;
   std::vector<GridCarver> carvers_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

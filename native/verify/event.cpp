@@ -1,6 +1,6 @@
 #include "verify/event.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 const char* name_of(Kind kind) {
   static constexpr const char* names[] = {"rapid", "holder",  "shank",   "fixture", "gouge",
@@ -18,4 +18,4 @@ VerifyStats& VerifyStats::operator+=(const VerifyStats& o) {
   return *this;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -8,7 +8,7 @@
 #include "geom/vec.hpp"
 #include "verify/shapes.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 enum class Kind : unsigned char { Rapid, Holder, Shank, Fixture, Gouge, Rest, Spindle, Machine, Unknown };
 
@@ -51,4 +51,4 @@ struct VerifyStats {
   VerifyStats& operator+=(const VerifyStats& o);
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

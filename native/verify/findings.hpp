@@ -9,7 +9,7 @@
 #include "nc/program.hpp"
 #include "verify/report.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Takes events in stretches of ascending rows.
 class FindingList {
@@ -34,4 +34,4 @@ std::string message_of(const Finding& finding);
 /// The message of a finding of Kind::Unknown, which depends on how far its tool is described.
 std::string message_of_unknown(const Finding& finding, const Tool& tool);
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -10,7 +10,7 @@
 #include "verify/slab_job.hpp"
 #include "verify/toolset.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 struct VerifyOptions {
   double tolerance = 0.01;               ///< mm: as CarveOptions::tolerance; contact less deep than it is none
@@ -58,7 +58,7 @@ class VerifyScene {
   std::vector<SlabState> fresh() const;
   /// What there is of the part in a slab; empty without a part, and for fixtures.
   SlabTiles part_in(const SlabJob& job) const;
-  const Grid& grid_of(const SlabJob& job) const;
+  const dexel::Grid& grid_of(const SlabJob& job) const;
   /// Runs the moves on every slab, from where each of them stands. `keep`: whether slabs keep snapshots.
   void simulate(const Moves& moves, std::vector<SlabState>& slabs, bool keep, VerifyStats& stats,
                 const Progress& progress) const;
@@ -75,4 +75,4 @@ class VerifyScene {
   std::vector<Event> missing_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -9,7 +9,7 @@
 #include "sweep/convex_group.hpp"
 #include "tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Of a tool in the machine. Beyond: where its description has ended and nobody knows what there is.
 enum class Member : unsigned char { Cutter, Shank, Holder, Beyond };
@@ -26,19 +26,19 @@ struct Rod {
 /// What must not touch material.
 struct Probe {
   Member member;
-  std::vector<ConvexGroup> real;   ///< each piece by itself: their union is the probe
-  std::vector<ConvexGroup> small;  ///< the same, smaller by the tolerance on all sides: a touch is none yet
+  std::vector<sweep::ConvexGroup> real;   ///< each piece by itself: their union is the probe
+  std::vector<sweep::ConvexGroup> small;  ///< the same, smaller by the tolerance on all sides: a touch is none yet
 };
 
 struct ToolShapes {
   /// `reach` (mm): beyond its description the tool is taken to go on so far, a pitch wider than the widest of it.
   ToolShapes(const Tool& tool, double tolerance, double reach, double pitch);
 
-  std::vector<ConvexGroup> cutter;
-  std::vector<Probe> probes;       ///< shank, holder, beyond: those that there are
-  std::vector<ConvexGroup> small;  ///< of all probes
+  std::vector<sweep::ConvexGroup> cutter;
+  std::vector<Probe> probes;              ///< shank, holder, beyond: those that there are
+  std::vector<sweep::ConvexGroup> small;  ///< of all probes
   Rod cutter_rod, whole_rod;
   std::vector<Rod> probe_rods;  ///< of every piece of the probes
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

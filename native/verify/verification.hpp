@@ -6,7 +6,7 @@
 #include "verify/edit.hpp"
 #include "verify/slab_run.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Of a program that is like the one before only what differs is simulated again. The report is that of a fresh run,
 /// bit for bit.
@@ -16,7 +16,7 @@ class Verification {
   explicit Verification(VerifyArguments arguments, const Progress& progress = {});
 
   /// Throws as SlabRun::feed. After that, or Cancelled, this is as it was before the call.
-  VerifyReport run(const Program& program, const Progress& progress = {});
+  VerifyReport run(const nc::Program& program, const Progress& progress = {});
 
  private:
   struct Memory {  // of the run before
@@ -31,4 +31,4 @@ class Verification {
   std::optional<Memory> memory_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

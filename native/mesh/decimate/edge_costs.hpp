@@ -7,7 +7,7 @@
 #include "mesh/decimate/half_edge.hpp"
 #include "mesh/decimate/quadric.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The vertex at which `half` starts goes, the one where it ends is then at `point`.
 struct CollapseTarget {
@@ -49,4 +49,4 @@ class EdgeCosts {
   std::vector<float> cost_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

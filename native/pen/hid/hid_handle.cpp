@@ -13,7 +13,7 @@
 
 #include "pen/hid/hid_list.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 constexpr char kPlain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._-";
@@ -197,4 +197,4 @@ const char* problem_text(OpenProblem problem) noexcept {
   return "error of the system";
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

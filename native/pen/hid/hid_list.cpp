@@ -9,7 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 void append_utf8(std::string& out, std::uint32_t c) {
@@ -110,4 +110,4 @@ const HidInfo* find_again(const std::vector<HidInfo>& found, const HidAddress& a
   return first;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

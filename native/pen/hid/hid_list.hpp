@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Held while one of hid_init, hid_enumerate and hid_open_path is called: they write hidapi's last error, one global
 /// variable, without a lock, and two threads that call them free it twice.
@@ -52,4 +52,4 @@ struct HidAddress {
 /// first. Null if there is none.
 const HidInfo* find_again(const std::vector<HidInfo>& found, const HidAddress& address);
 
-}  // namespace riffler
+}  // namespace riffler::pen

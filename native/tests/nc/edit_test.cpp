@@ -9,7 +9,7 @@
 #include "support/error_of.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::edit_test {
+namespace riffler::nc::edit_test {
 namespace {
 
 using test::error_of;
@@ -84,4 +84,4 @@ TEST(Edit, RetooledRenamesRowsAndTools) {
 }
 
 }  // namespace
-}  // namespace riffler::edit_test
+}  // namespace riffler::nc::edit_test

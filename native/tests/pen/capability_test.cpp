@@ -7,7 +7,7 @@
 #include "pen/arms/wrench_split.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::capability_test {
+namespace riffler::pen::capability_test {
 namespace {
 
 DeviceCapability three_motors() {
@@ -78,4 +78,4 @@ TEST(Capability, PensLimitsAndResolutionsAreItsOwn) {
 }
 
 }  // namespace
-}  // namespace riffler::capability_test
+}  // namespace riffler::pen::capability_test

@@ -17,7 +17,7 @@
 #include "support/temporary_file.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::sculpt_faults_test {
+namespace riffler::session::sculpt_faults_test {
 namespace {
 
 using test::SculptBench;
@@ -155,4 +155,4 @@ TEST(SculptFault, AFullDiskEndsTheCutTheForceGoesWithItAndBothComeBackWithRoom) 
 }
 
 }  // namespace
-}  // namespace riffler::sculpt_faults_test
+}  // namespace riffler::session::sculpt_faults_test

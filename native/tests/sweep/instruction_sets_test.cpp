@@ -10,7 +10,7 @@
 #include "sweep/kernels.hpp"
 #include "tool/cutters.hpp"
 
-namespace riffler::instruction_sets_test {
+namespace riffler::sweep::instruction_sets_test {
 namespace {
 
 struct Result {
@@ -91,4 +91,4 @@ TEST(Kernels, RefuseAnInstructionSetThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace riffler::instruction_sets_test
+}  // namespace riffler::sweep::instruction_sets_test

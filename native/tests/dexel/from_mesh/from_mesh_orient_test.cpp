@@ -6,7 +6,7 @@
 #include "dexel/from_mesh/from_mesh.hpp"
 #include "dexel/shapes.hpp"
 
-namespace riffler::from_mesh_orient_test {
+namespace riffler::dexel::from_mesh_orient_test {
 namespace {
 
 using namespace shapes;
@@ -99,4 +99,4 @@ TEST(FromNestedShells, CostGrowsWithTheInput) {
 }
 
 }  // namespace
-}  // namespace riffler::from_mesh_orient_test
+}  // namespace riffler::dexel::from_mesh_orient_test
